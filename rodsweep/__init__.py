@@ -1,7 +1,7 @@
 """rodsweep: when a follower-loaded soft rod in a viscous fluid oscillates and flutters.
 
-Its Python interface, `import rodsweep as rs`, is described in docs/python.md. Importing the package starts
-neither MPI nor PETSc, and loads nothing but this module: each name is fetched when it is first used.
+The Python interface, `import rodsweep as rs`, is described in docs/python.md. Importing the package starts
+neither MPI nor PETSc and loads only this module: each public name is imported when it is first used.
 """
 
 from importlib import import_module
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
-    from .errors import EnvironmentLacks, InputError
+    from .errors import EnvironmentIncomplete, InputError
 
 __version__ = "0.1.0"
 __all__ = [
     "Answer",
     "Arm",
-    "EnvironmentLacks",
+    "EnvironmentIncomplete",
     "InputError",
     "Picture",
     "Rod",
@@ -37,7 +37,7 @@ __all__ = [
 _PLACES = {
     "Answer": "api.answers.answer.Answer",
     "Arm": "api.arm.Arm",
-    "EnvironmentLacks": "errors.EnvironmentLacks",
+    "EnvironmentIncomplete": "errors.EnvironmentIncomplete",
     "InputError": "errors.InputError",
     "Picture": "api.answers.picture.Picture",
     "Rod": "api.rod.SoftRod",
@@ -48,11 +48,11 @@ _PLACES = {
     "sweep": "sweep",
     "table": "api.answers.tabling.table",
 }
-"""Where the public names come from; `sweep` is a package that can be called."""
+"""Module path of every public name, relative to the package. `sweep` is a callable package."""
 
 
 def __getattr__(name: str) -> Any:
-    """A public name, fetched when it is first used."""
+    """Imports a public name when it is first used; AttributeError for an unknown name."""
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, _, own = _PLACES[name].rpartition(".")

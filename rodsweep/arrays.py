@@ -1,4 +1,4 @@
-"""The types of arrays, as annotations name them; what their shapes are, docstrings say."""
+"""Array types for annotations; shapes are in the docstrings."""
 
 import numpy as np
 from numpy.typing import NDArray

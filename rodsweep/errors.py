@@ -1,7 +1,7 @@
-"""The two ways a command ends early: the user's input is bad, or the environment lacks something.
+"""The two kinds of error that end a command early: bad input, and an incomplete environment.
 
-A parameter point that fails is neither: it keeps a status (`rodsweep.solve.status`) and the sweep
-goes on. Any other exception is a bug.
+A parameter point that fails is no such error: the point keeps a status (`rodsweep.solve.status`) and the
+sweep continues. Any other exception is a bug.
 """
 
 from typing import Self
@@ -11,13 +11,15 @@ BUG_STATUS = 70
 
 
 class Refusal(Exception):
-    """One sentence for the user; `collective` where every rank of a run raises it at the same place."""
+    """Error shown to the user as one sentence; `collective` if every rank of a run raises it at the same
+    place.
+    """
 
     collective = False
     exit_status = BUG_STATUS
 
     def on_all_ranks(self) -> Self:
-        """The same, of which every rank has a copy to raise at the same place."""
+        """Marks the error as collective: every rank has a copy and raises it at the same place."""
         self.collective = True
         return self
 
@@ -28,7 +30,7 @@ class InputError(Refusal):
     exit_status = 2
 
 
-class EnvironmentLacks(Refusal):
-    """The machine lacks a component or a right: the sentence says which."""
+class EnvironmentIncomplete(Refusal):
+    """The machine lacks a component or a permission; the sentence names it."""
 
     exit_status = 3

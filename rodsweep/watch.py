@@ -1,7 +1,8 @@
-"""Where a long solve is: solvers report it at safe places, and whoever runs them listens, or ends them there.
+"""Progress reports of long solves: a solver reports its position, and a listener shows it or ends the solve.
 
-A solver knows nothing of its listener. Without one a report costs a fraction of a microsecond. A place is
-safe where no compiled code is on the stack that calls back into Python, and nothing is half changed.
+The solver does not know its listener. Without a listener a report costs a fraction of a microsecond. Solvers
+report only where stopping is safe: no compiled code that calls back into Python is on the stack, and no data
+are half changed.
 """
 
 from collections.abc import Callable, Iterator
@@ -11,30 +12,34 @@ from typing import NamedTuple
 
 
 class Whereabouts(NamedTuple):
-    """Where a solve is, in words, and the share of its work that is done, from 0 to 1; None if unknown."""
+    """Position of a solve in words, and the fraction of its work that is done, from 0 to 1; None if
+    unknown.
+    """
 
     words: str = ""
     share: float | None = None
 
 
 MakeWhereabouts = Callable[[], Whereabouts]
-"""Makes the place of a report, which is only made where it is shown."""
+"""Builds the text of a report. It is called only if a listener shows the report."""
 Listener = Callable[[MakeWhereabouts], None]
-"""Hears every report; raises `Stopped` to end the solve."""
+"""Receives every report; raises `Stopped` to end the solve."""
 
 
 class Stopped(BaseException):
-    """Raised by a listener to end a solve in the middle. No handler of a solver's own errors catches it."""
+    """Raised by a listener to end a running solve. Solvers do not catch it with their own errors."""
 
 
 class _Part(NamedTuple):
-    """A part of a solve: its name, and the shares of the whole between which it lies, if they are known."""
+    """Named part of a solve; shares: fractions of the whole work at its start and its end, None if
+    unknown.
+    """
 
     name: str
     shares: tuple[float, float] | None
 
     def of_whole(self, inner: Whereabouts) -> Whereabouts:
-        """The place in the whole of a place in this part."""
+        """Converts a position within this part into a position within the whole solve."""
         share = None
         if self.shares is not None:
             begin, end = self.shares
@@ -48,7 +53,7 @@ _parts: ContextVar[tuple[_Part, ...]] = ContextVar("parts", default=())
 
 @contextmanager
 def heard_by(listener: Listener) -> Iterator[None]:
-    """Reports of solves in here go to the listener, after those that hear them already."""
+    """Sends the reports of all solves in the `with` block to the listener, after any outer listeners."""
     outer = _listener.get()
 
     def both(place: MakeWhereabouts) -> None:
@@ -65,9 +70,10 @@ def heard_by(listener: Listener) -> Iterator[None]:
 
 @contextmanager
 def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
-    """Reports in here are of a part of the whole, such as a branch; their words begin with its name.
+    """Marks the reports in the `with` block as part of a larger solve, such as a branch; `name` precedes each
+    text.
 
-    shares: of the whole work that are done when the part begins and when it ends, if they are known.
+    shares: fractions of the whole work done at the beginning and at the end of the part, None if unknown.
     """
     token = _parts.set((*_parts.get(), _Part(name, shares)))
     try:
@@ -77,14 +83,14 @@ def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]
 
 
 def report(place: MakeWhereabouts = Whereabouts) -> None:
-    """Says where the solve is, at a safe place; without words only that the place is safe."""
+    """Reports the position of the solve. Called without a position, it only marks a safe place to stop."""
     listener = _listener.get()
     if listener is not None:
         listener(lambda: _in_whole(place()))
 
 
 def _in_whole(place: Whereabouts) -> Whereabouts:
-    """The place in the whole of a place in the innermost part."""
+    """Converts a position within the innermost part into a position within the whole solve."""
     if not place.words:
         return place
     for outer in reversed(_parts.get()):

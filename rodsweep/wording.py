@@ -1,14 +1,16 @@
-"""Numbers of things in words, as the command line and `show` write them."""
+"""Counts, plurals and durations in words, for the command line and `show`."""
 
 SIBILANTS = ("s", "x", "z", "ch", "sh")
-"""Endings of a noun whose plural ends in es."""
+"""Endings of nouns whose plural ends in "es"."""
 
 LONGEST_IN_MS = 0.9995
-"""Seconds, which three digits round to a second, from which on a time is given in these."""
+"""Duration in seconds from which `duration` writes seconds. Three digits round a longer one to 1000 ms."""
 
 
 def counted(count: int, noun: str) -> str:
-    """A number of things: "1 branch", "2 branches"; a noun of several words ends in the one that changes."""
+    """A count with its noun: "1 branch", "2 branches". In a noun of several words only the last word
+    changes.
+    """
     return f"{int(count)} {noun if count == 1 else plural(noun)}"
 
 
@@ -20,20 +22,20 @@ def plural(noun: str) -> str:
 
 
 def is_or_are(count: int) -> str:
-    """The verb of a number of things."""
+    """ "is" for a count of one, else "are"."""
     return "is" if count == 1 else "are"
 
 
 def has_or_have(count: int) -> str:
-    """The verb of what a number of things have."""
+    """ "has" for a count of one, else "have"."""
     return "has" if count == 1 else "have"
 
 
 def some_of(count: int, whole: int, noun: str) -> str:
-    """So many of all things of a kind: "at " + some_of(2, 4, "row") is "at 2 of 4 rows"."""
+    """A part of a total: `"at " + some_of(2, 4, "row")` is "at 2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"
 
 
 def duration(seconds: float) -> str:
-    """A time to three digits: in milliseconds below a second."""
+    """A duration with three digits: in milliseconds below one second, else in seconds."""
     return f"{1e3 * seconds:.3g} ms" if seconds < LONGEST_IN_MS else f"{seconds:.3g} s"

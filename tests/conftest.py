@@ -1,4 +1,4 @@
-"""What tests share: the command as a user runs it, and the reference spectra."""
+"""Fixtures shared by the tests: the command as a user runs it, and reference spectra."""
 
 import compileall
 import gc

@@ -1,4 +1,4 @@
-"""What a result file contains, for comparing two."""
+"""Reads the contents of result files, to compare two files."""
 
 from pathlib import Path
 

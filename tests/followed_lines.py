@@ -1,4 +1,4 @@
-"""Lines through the space of rods, and how followed spectra are compared with those of single points."""
+"""Lines through the space of rods, and the comparison of followed spectra with single points."""
 
 from dataclasses import dataclass, field
 

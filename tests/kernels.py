@@ -1,10 +1,11 @@
-"""Runs the tests marked `kernel` under other OpenBLAS kernels than the one in use.
+"""Runs the tests marked `kernel` under OpenBLAS kernels different from the default.
 
     python tests/kernels.py [KERNEL...|another]
 
-OpenBLAS takes the kernel that OPENBLAS_CORETYPE names, even one that the processor cannot run: each is tried
-first, in a process of its own. Which one is in use by itself cannot be told from the processor: an older
-OpenBLAS takes Prescott on those that are newer than it. So `another` is the first that is not in use.
+OpenBLAS uses the kernel named by OPENBLAS_CORETYPE, even if the processor cannot run it; therefore each
+kernel is tried first in a process of its own. The default kernel cannot be inferred from the processor,
+because an old OpenBLAS falls back to Prescott on a newer processor. `another` selects the first kernel that
+is not the default.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Results of limit_cycle whose cycles are known in closed form: an arc that swings, with its energy."""
+"""Results of limit_cycle in closed form: a swinging arc with its energy."""
 
 from pathlib import Path
 

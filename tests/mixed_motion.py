@@ -1,4 +1,4 @@
-"""Motions of the rod in its mixed form: rate, Jacobian, energy and reaction, from the pieces of the form."""
+"""Motion of the rod in its mixed form: rate, Jacobian, energy and reaction, built from the form's parts."""
 
 import numpy as np
 

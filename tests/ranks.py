@@ -1,4 +1,4 @@
-"""The ranks of a run under mpiexec: which processes they are, whoever started them, and when they end."""
+"""The MPI ranks of a run: their processes, whichever process started them, and the moment they end."""
 
 import os
 import signal

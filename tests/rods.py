@@ -1,4 +1,4 @@
-"""Rods from lists of numbers."""
+"""Rods made from lists of numbers."""
 
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod

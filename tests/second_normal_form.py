@@ -1,8 +1,8 @@
-"""The normal form of a Hopf point by other equations, on other nodes, with third derivatives.
+"""Normal form of a Hopf point from independent equations, on different nodes, with third derivatives.
 
-The unknowns are the shape (x, y, theta) of the rod at Chebyshev's nodes, not stresses and velocities in the
-frame of the body; the equations have sines and cosines, are cubic and more, and their derivatives come from
-truncated power series. Finite k1, k2 and gamma3 > 0 only. Nothing of the program is imported.
+The unknowns are the shape (x, y, theta) of the rod at Chebyshev nodes, instead of stresses and velocities in
+the body's frame. The equations contain sines and cosines and terms of third and higher order; derivatives
+come from truncated power series. Only for finite k1, k2 and gamma3 > 0. Nothing is imported from rodsweep.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""What `rodsweep show` says, and numbers that several tests know of the demo."""
+"""Output of `rodsweep show`, and numbers of the demo used by several tests."""
 
 HOPF, STABLE_AGAIN = 49.7580049161915, 155.600159298791
 """Of configs/fig2c.yaml, 40-digit roots of D."""

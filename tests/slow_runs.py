@@ -1,4 +1,4 @@
-"""Runs that take their time, so that what a test does to them hits them at a counted point, not at a time."""
+"""Slow runs that tests can interrupt at a counted point, so that no test depends on timing."""
 
 from pathlib import Path
 from subprocess import Popen

@@ -1,4 +1,4 @@
-"""What only `make survey` runs: further rods beside those that every run of the tests takes."""
+"""Marker and number of random rods for the long tests that only `make survey` runs."""
 
 import os
 

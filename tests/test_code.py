@@ -1,4 +1,4 @@
-"""What all of the code keeps to, beyond what the linters see: its sources are read, nothing of it is run."""
+"""Rules for the source code beyond the linters'. The sources are read, not run."""
 
 import ast
 import re

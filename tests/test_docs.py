@@ -1,4 +1,4 @@
-"""README.md and docs/: links lead somewhere, commands and configs are accepted, tables are the code's."""
+"""README.md and docs/: links have targets, commands and configs are valid, tables equal the code's."""
 
 import importlib.util
 import re

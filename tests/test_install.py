@@ -1,4 +1,4 @@
-"""What the ways to install must agree on."""
+"""Agreement of the different ways to install rodsweep."""
 
 import re
 import tomllib

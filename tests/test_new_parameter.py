@@ -1,4 +1,4 @@
-"""A parameter that is one entry of the table is one everywhere, from the config to the figures' data."""
+"""A parameter added to the table alone works everywhere, from the config to the figures' data."""
 
 import subprocess
 import sys

@@ -1,6 +1,6 @@
-"""The configs of the paper's figures, coarsened: each gives the number that its head comment states.
+"""The configs of the paper's figures on coarser grids: each gives the number in its head comment.
 
-Every config is run as a user runs it, its figure is drawn, and its result is opened.
+Every config is run as by a user, its figure is drawn, and its result is opened.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Numbers in words: one thing and several, ranges, and numbers with their errors."""
+"""Counts, ranges and numbers with errors in words."""
 
 import numpy as np
 import pytest

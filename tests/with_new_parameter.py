@@ -1,4 +1,4 @@
-"""What `test_new_parameter` runs: the package whose table has a made-up factor of rotational drag."""
+"""Run by `test_new_parameter`: rodsweep with an invented factor of the rotational drag in its table."""
 
 # ruff: noqa: E402 - the table is changed before anything is imported that reads it
 

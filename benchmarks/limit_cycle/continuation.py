@@ -131,11 +131,11 @@ def introduction(point: Rod) -> str:
     return (
         f"{AUTO} (IPS = 2, ISP = 2, NWTN = 1, the exact Jacobian compiled with -O3) continues the cycles of "
         f"F, k1, k2, gamma3, gamma1 = {name_of(point)} with all multipliers up to this F, in {MANY - 1} "
-        f"steps of {STEP:.0%}, on one element of order p, from a cycle of rodsweep's; a cycle's time is the "
-        f"difference of this run and of one of {FEW} cycles, so that its start does not count. Errors are "
-        f"those of the last cycle. rodsweep's time is the mean of {STRETCH} cycles and includes the choice "
-        f"of its mesh and the estimate of its error, neither of which {AUTO} gives. Multipliers beyond "
-        f"{LARGE:g} in modulus, the trivial one among them: Gauss collocation adds some that the rod has not."
+        f"steps of {STEP:.0%}, on one element of order p, starting from a cycle of rodsweep. The time per "
+        f"cycle is the difference between this run and a run of {FEW} cycles, so that the start does not "
+        f"count. Errors are those of the last cycle. rodsweep's time is the mean of {STRETCH} cycles and "
+        f"includes the choice of the mesh and the error estimate; {AUTO} has neither. Multipliers are "
+        f"counted beyond {LARGE:g} in modulus, with the trivial one; Gauss collocation adds spurious ones."
     )
 
 
@@ -163,8 +163,8 @@ def ratio_table(measurements: Sequence[Measurement]) -> str:
         row |= {"auto": 1e3 * peer.seconds, "setting": peer.setting, "ratio": peer.seconds / own.seconds}
         rows.append(row)
     return (
-        "At equal error, each at its fastest setting above that reaches it; rodsweep's is the accuracy that "
-        "it is asked for.\n\n"
+        "At equal error: each method at its fastest setting in the table above that reaches the error. For "
+        "rodsweep, the setting is the requested accuracy.\n\n"
     ) + table(
         f"error | ms, rodsweep | at | ms, {AUTO} | at | times rodsweep's time",
         "{target:.0e} | {own:.1f} | {asked} | {auto:.1f} | {setting} | {ratio:.1f}",

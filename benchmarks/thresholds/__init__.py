@@ -10,18 +10,18 @@ from .continuation import BEYOND_HOPF, PYCONT, continuation_codes
 from .spectra_by_force import MARCH, MESH_ACCURACY, contenders
 
 SEARCHES = (
-    "The others search for the first one in 0 < F < 60 (140 for the narrow window of flutter, 74.83 to "
-    f"75.98), prove nothing, and are given a mesh that leaves an error of {MESH_ACCURACY:.0e} there. Grids "
-    "and steps: dense LAPACK (LU and geev) on rodsweep's pencil at every force; steps are of "
-    f"{MARCH:g} in F until a sign changes. Continuation codes follow u = 0 of du/dt = M(F) u, the same "
-    "pencil without the unknowns that carry no time derivative."
+    "The peers search for the first change in 0 < F < 60 (140 for the narrow window of flutter, 74.83 to "
+    f"75.98), prove nothing, and use a mesh with an error of {MESH_ACCURACY:.0e}. Grids and steps: dense "
+    f"LAPACK (LU and geev) on rodsweep's pencil at every force; steps are {MARCH:g} in F until a sign "
+    "changes. Continuation codes follow u = 0 of du/dt = M(F) u, the same pencil without the unknowns "
+    "without time derivative."
 )
 CODES = {
-    AUTO: f"{AUTO} starts at F = 0; its times include the start of its program, not its compilation.",
+    AUTO: f"{AUTO} starts at F = 0; the times include the start of the program, not the compilation.",
     PYCONT: (
-        f"{PYCONT} multiplies by M only. It is started where a pair leads already, and ended {BEYOND_HOPF:g} "
-        "beyond the Hopf point: from F = 0, through the onset, it is by chance right, off by percents or "
-        "without a result. Its first vectors are random, so that its numbers vary."
+        f"{PYCONT} multiplies by M only. It starts where a pair already leads, and ends {BEYOND_HOPF:g} "
+        "beyond the Hopf point. If started from F = 0, through the onset, its result is right by chance, "
+        "wrong by percents, or missing. The first vectors are random, and the results vary."
     ),
 }
 

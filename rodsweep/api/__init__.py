@@ -1,6 +1,6 @@
-"""The Python interface: what `import rodsweep as rs` offers, one rod or a sweep, answered in this process.
+"""The Python interface `import rodsweep as rs`: a rod or a sweep, solved in this process or on many ranks.
 
-It says in Python what a config says in YAML: keywords become the same tree of keys, go through the same
-validation to the same solvers, and what comes is the Dataset that xarray reads from the result file. The only
-importer of xarray. Its modules are loaded when a public name is first used, PETSc at the first solve.
+Keyword arguments become the same tree of keys as a YAML config, pass the same validation and reach the same
+solvers. The result equals the Dataset read by xarray from the result file. Only this package imports xarray.
+Modules are loaded when a public name is first used, PETSc at the first solve.
 """

@@ -1,4 +1,4 @@
-"""`rs.Arm`: an arm in SI units, which says when it flutters and answers every task of a rod."""
+"""`rs.Arm`: an arm in SI units, with its flutter range and all tasks of a rod."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -22,41 +22,43 @@ if TYPE_CHECKING:
 
 EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
 EXCLUSIVE = (tuple((load,) for load in LOADS), SECTION_SIDES)
-"""Quantities of which one set takes the place of the other."""
+"""Pairs of exclusive sets of quantities: setting one set removes the other."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
 class Arm(SlenderArm):
     """An arm in a viscous fluid, clamped at one end and pushed at its tip.
 
-    Quantities are text with a unit, pint's, or numbers in SI. Needed: length, young, viscosity, and either
-    radius (and inner_radius, for a tube) or width and height. pressure or force, or none: when it flutters
-    needs no load, and "1.2 of flutter" is one relative to the threshold with the likeliest drag.
+    A quantity is text with a unit, a pint quantity, or a number in SI units. Required are length, young,
+    viscosity, and either radius (with inner_radius for a tube) or width and height. The load is pressure or
+    force. `flutter` needs no load; "1.2 of flutter" is a load relative to the flutter threshold at the
+    likeliest drag.
 
-    Every task of a rod is a method of its name, with the options of the config as keywords; its Answer has SI
-    units beside the dimensionless ones. Asking starts PETSc; making an arm does not. Raises InputError for
-    what is no slender arm.
+    Every task of a rod is a method with the task's name and the options of the config as keywords. Its Answer
+    has SI units beside dimensionless ones. Calling a task starts PETSc; creating an arm does not. Raises
+    InputError if the quantities describe no slender arm.
     """
 
     __init__ = in_sentences(EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
     def flutter(self) -> "FlutterRange":
-        """Where it flutters and how fast in its plane of motion, over the range of its drag."""
+        """Flutter threshold and frequency in the arm's plane of motion, over the range of its drag."""
         from ..verdict.flutter import flutter_range
 
         return flutter_range(self)
 
     def report(self) -> "ArmReport":
-        """Verdict, numbers with formulas and sources, and what the model leaves out."""
+        """Verdict, numbers with formulas and sources, and effects neglected by the model."""
         from ..verdict.arm import report_on
 
         return report_on(self)
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
-        """The same arm with other quantities; a force takes the place of a pressure, width and height that
-        of a radius."""
+        """A copy with other quantities. A force replaces a pressure, and width and height replace a
+        radius.
+        """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE:
             for new, old in ((one, other), (other, one)):
@@ -66,44 +68,50 @@ class Arm(SlenderArm):
 
     @property
     def turned(self) -> "Arm":
-        """The arm that moves in the other plane of its rectangular section; itself where it is round."""
+        """The arm in the second plane of its rectangular section, width and height exchanged; a round arm
+        unchanged.
+        """
         return self if self.radius is not None else self.replace(width=self.height, height=self.width)
 
     @cached_property
     def loaded(self) -> "Arm":
-        """The arm with its load as a quantity where it is given relative to flutter; itself otherwise."""
+        """The arm with its load as a quantity; a load relative to flutter needs a solve for the flutter
+        threshold.
+        """
         return known_load(self)
 
     @in_sentences("arm.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
-        """The loads at which the arm starts to oscillate, flutters and is stable again; it needs none."""
+        """Loads at which the arm starts to oscillate, flutters, and becomes stable again. The arm needs no
+        load.
+        """
         return self._answer("thresholds", options)
 
     @in_sentences("arm.spectrum(modes=4)")
     def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
-        """The leading eigenvalues under its load."""
+        """The leading eigenvalues under the arm's load."""
         return self._answer("spectrum", options)
 
     @in_sentences("arm.modes(nodes=65)")
     def modes(self, **options: Unpack[OfModes]) -> Answer:
-        """The leading modes under its load, and the transient growth that they allow."""
+        """The leading modes under the arm's load, and their transient growth."""
         return self._answer("modes", options)
 
     @in_sentences("arm.cycle(harmonics=8)")
     def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
-        """How the arm beats under its load: period, amplitude, energy, Floquet multipliers."""
+        """The limit cycle under the arm's load: period, amplitude, energy, Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
     @in_sentences("arm.criticality(F_max=100)")
     def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
-        """On which side of every Hopf point its cycles are, and how they grow from there."""
+        """Criticality of every Hopf point, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
     @in_sentences('arm.branch(along="F")')
     def branch(self, **options: Unpack[OfBranch]) -> Answer:
-        """Its cycles, stable or not, followed from every Hopf point to the end."""
+        """The branches of cycles, stable or not, followed from every Hopf point to their ends."""
         return self._answer("branch", options)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
@@ -122,7 +130,7 @@ class Arm(SlenderArm):
 
     @property
     def _plane(self) -> str:
-        """What is said of a rectangle that gives way first in the plane that is not computed; else empty."""
+        """Warning for a rectangular section if it bends more easily out of the computed plane; else ""."""
         if not self.si.height > self.si.width:
             return ""
         return (
@@ -136,7 +144,7 @@ class Arm(SlenderArm):
 
     @property
     def _given(self) -> dict[str, Any]:
-        """The quantities that are given, by name."""
+        """The quantities given by the user, by name."""
         return {name: getattr(self, name) for name in self._names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:

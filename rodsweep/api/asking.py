@@ -1,4 +1,4 @@
-"""From the keywords of a call to the job that a config file with the same keys makes."""
+"""Conversion of a call's keywords into the job of a config file with the same keys."""
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
@@ -20,13 +20,14 @@ from .axes import plain
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 Tree = dict[str, Any]
-"""Keys and values as YAML would be read."""
+"""Keys and values as YAML would read them."""
 
 
 def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
-    """The keys of a config from keywords, each put into the section that has it, or one like it.
+    """Config tree from keywords: each key is put into the section that knows it, or knows the nearest name.
 
-    A whole section is taken too, so that what YAML has read can be given as keywords.
+    A whole section may be given as a mapping, as read from YAML. Raises InputError for a masked value, and
+    for a name without a near key.
     """
     tree: Tree = {"task": _plain("task", task)}
     if not isinstance(task, str) or task not in CONFIGS:
@@ -46,7 +47,7 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
 
 
 def _plain(key: str, value: Any) -> Any:
-    """A value without NumPy in it; InputError, which names the key, where it is masked."""
+    """A value with NumPy types converted to Python types; InputError, naming the key, for a masked value."""
     try:
         return plain(value)
     except ValueError as error:
@@ -54,7 +55,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _write_out_arm(task: str, tree: Tree) -> None:
-    """Puts the quantities of an `rs.Arm` in its place, its load where the task takes one."""
+    """Replaces an `rs.Arm` by its quantities. The load is included only if the task takes one."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
@@ -67,7 +68,7 @@ def _write_out_arm(task: str, tree: Tree) -> None:
 
 
 def known_load(arm: ArmKind) -> ArmKind:
-    """The arm with its load as a quantity; starts PETSc where it is given relative to flutter, and solves."""
+    """The arm with its load as a quantity. A load relative to flutter starts PETSc and solves for flutter."""
     if arm.share_of_flutter is None:
         return arm
     from ..verdict.planes import with_known_load
@@ -77,7 +78,7 @@ def known_load(arm: ArmKind) -> ArmKind:
 
 @signals_held
 def job_from(tree: Tree) -> Job:
-    """The job of a tree; InputError, in the words of the command line, for anything amiss."""
+    """The validated job of a config tree; InputError, in the words of the command line, for bad input."""
     config = validated(tree)
     job = job_of(Path(config.task), config, yaml_of(tree))
     size = job.points.count * job.layout.bytes_per_point
@@ -90,7 +91,7 @@ def job_from(tree: Tree) -> Job:
 
 
 def _sections(task: str) -> dict[str, Collection[str]]:
-    """The known keys of a task's sections, by the name of the section; those at the top by ""."""
+    """Known keys of each section of a task by the section's name; "" is the top level."""
     fields = CONFIGS[task].model_fields
     inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
     top = [name for name in Config.model_fields if name not in ("task", "parameters")]
@@ -98,12 +99,16 @@ def _sections(task: str) -> dict[str, Collection[str]]:
 
 
 def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
-    """The section that has a key."""
+    """Name of the section with a given key; None if no section has the key."""
     return next((section for section, known in sections.items() if name in known), None)
 
 
 def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The known key that an unknown one is most like; InputError with all where it is like none."""
+    """The known key nearest to an unknown one.
+
+    A quantity of an arm given outside its section yields any known key: validation then names the right
+    section. Raises InputError with a list of all keys if no key is near.
+    """
     known = [key for keys in sections.values() for key in keys]
     close = nearest(name, known)
     if not close and name not in ArmSection.model_fields:

@@ -1,4 +1,4 @@
-"""What Python has for the values of a config: ranges, arrays and paths, made plain as YAML would be read."""
+"""Python values for a config: ranges, arrays and paths, converted to the types that YAML would give."""
 
 import os
 from typing import Any, TypedDict
@@ -10,7 +10,7 @@ from ..errors import InputError
 
 
 class AxisRange(TypedDict):
-    """A range of values as a config has it."""
+    """A range of values in the form of a config."""
 
     start: float | str
     stop: float | str
@@ -20,21 +20,23 @@ class AxisRange(TypedDict):
 
 @in_sentences("rs.linspace(0, 10, num=11)")
 def linspace(start: float | str, stop: float | str, num: int) -> AxisRange:
-    """`num` values from start to stop, equally spaced: an axis of a sweep; of an arm also "2 kPa"."""
+    """`num` equally spaced values from start to stop, as an axis of a sweep; quantities of an arm such as "2
+    kPa" too.
+    """
     return _range(start, stop, num, "linear")
 
 
 @in_sentences("rs.logspace(10, 1e6, num=31)")
 def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
-    """`num` values from start to stop, in equal ratios: an axis of a sweep.
+    """`num` values from start to stop with equal ratios, as an axis of a sweep.
 
-    `start` and `stop` are values, as NumPy's `geomspace` takes them, not exponents.
+    `start` and `stop` are the end values, as for NumPy's `geomspace`, not exponents.
     """
     return _range(start, stop, num, "log")
 
 
 def _range(start: float | str, stop: float | str, num: int, spacing: str) -> AxisRange:
-    """A range; InputError where one of its numbers is masked."""
+    """A range in the form of a config; InputError for a masked value."""
     for name, value in (("start", start), ("stop", stop), ("num", num)):
         if np.ma.is_masked(value):
             raise InputError(f"{name} is masked, so it is no number")
@@ -42,10 +44,9 @@ def _range(start: float | str, stop: float | str, num: int, spacing: str) -> Axi
 
 
 def plain(value: Any) -> Any:
-    """A value without NumPy in it: arrays and tuples as lists, scalars as numbers, paths as text.
+    """A value in Python types: arrays and tuples become lists, NumPy scalars numbers, paths text.
 
-    Quantities of pint's, and arrays of them, become text with their unit. Raises ValueError for masked
-    values: what lies under a mask is no number.
+    pint quantities and arrays of them become text with their unit. Raises ValueError for masked values.
     """
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
@@ -53,7 +54,7 @@ def plain(value: Any) -> Any:
         return [plain(item) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    if hasattr(value, "to_base_units"):  # pint's, which NumPy would take the unit from
+    if hasattr(value, "to_base_units"):  # a pint quantity; np.asarray would drop its unit
         return _with_unit(plain(value.magnitude), f"{value.units:~C}")
     if np.ma.is_masked(value):
         raise ValueError("a value is masked, so it is no number; leave it out")
@@ -63,7 +64,7 @@ def plain(value: Any) -> Any:
 
 
 def _with_unit(value: Any, unit: str) -> Any:
-    """A number or a list of numbers, each as text with a unit; as it is where there is none."""
+    """Appends a unit to a number, or to each number of a list; without a unit the value is unchanged."""
     if isinstance(value, list):
         return [_with_unit(item, unit) for item in value]
     return f"{value!r} {unit}" if unit else value

@@ -1,4 +1,4 @@
-"""Results as xarray's Dataset: of what was solved in this process, or from a file; alike in both."""
+"""Results as xarray Datasets, the same from a file as from points solved in this process."""
 
 import json
 import os
@@ -30,16 +30,16 @@ ENGINE = "h5netcdf"
 @one_at_a_time
 @in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
-    """The Dataset of a result file, whole in memory; of a sweep that still runs, as far as it has come.
+    """Reads a whole result file into memory. For a running sweep, the points done so far are included.
 
-    Raises InputError where the file is no result, damaged, or changed by another program.
+    Raises InputError if the file is no result, is damaged, or was changed by another program.
     """
     path = file_path(path, 'rs.open("RESULT.h5")')
     return unfolded(path, lambda: _opened(path))
 
 
 def file_path(given: object, example: str) -> Path:
-    """The path of a file from what a user gives for it; InputError, with an example, where it is none."""
+    """Path of a file named by the user; InputError, with an example, if `given` is no file name."""
     if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
         raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
     if not name or "\0" in name:
@@ -65,7 +65,7 @@ def _opened(path: Path) -> xr.Dataset:
 
 
 def _selectable(data: xr.Dataset) -> xr.Dataset:
-    """The Dataset, in which what an arm has along a parameter can be selected by, as F by its pressure."""
+    """Makes the quantities of an arm selectable along an axis, such as F by pressure."""
     for name in ALONG:
         if name in data.coords and data[name].dims == (ALONG[name],) and name not in data.xindexes:
             data = data.set_xindex(name)
@@ -73,7 +73,7 @@ def _selectable(data: xr.Dataset) -> xr.Dataset:
 
 
 def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
-    """The Dataset with its variables in the order in which they are declared; HDF5 has the alphabet's."""
+    """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
     places = {
         name: place for place, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])
@@ -85,13 +85,16 @@ def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dat
 
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
-    """A whole file as xarray reads it; InputError where xarray makes other numbers or dimensions of it."""
+    """A whole file as read by xarray.
+
+    Raises InputError if xarray reads values or dimensions different from the file's checksums.
+    """
     sealed = json.loads(header.attributes[SEAL])["variables"]
     with reading(path):
         try:
             with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
-        except Exception as error:  # of attributes that other libraries have: whatever those raise on them
+        except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(reason_of(error)) from error
         found = json.loads(_sealed(data).attrs[SEAL])["variables"]
         for name, digest in sealed.items():
@@ -101,7 +104,7 @@ def _loaded(path: Path, header: Header) -> xr.Dataset:
 
 
 def _sealed(data: xr.Dataset) -> xr.Dataset:
-    """The Dataset with the seal by which its file, once xarray has written one, is known as whole."""
+    """Adds checksums, by which a file written from this Dataset by xarray is recognised as complete."""
     variables = {
         str(name): variable_digest(
             v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]
@@ -115,10 +118,10 @@ def _sealed(data: xr.Dataset) -> xr.Dataset:
 def dataset_of(
     plan: Plan, values: Mapping[str, np.ndarray], filled: tuple[Filled, ...], attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """The Dataset of solved points, as from a file of `plan`.
+    """The Dataset of solved points, as read from a file of `plan`.
 
-    values: the variables of the layout, each of the shape of the points and its own dimensions; filled: whole
-    variables beside them.
+    values: variables of the layout, shape (points, own dimensions). filled: additional variables of the whole
+    file.
     """
     coordinates = _coordinates(plan)
     variables = {}
@@ -143,14 +146,16 @@ def dataset_of(
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
-    """A Dataset as `show` and `plot` see a file; InputError if it is not a whole result."""
+    """A Dataset in the form read by `show` and `plot`; InputError if the result is not complete."""
     try:
         layout = layout_of(json.loads(data.attrs["config_resolved"]))
         status = data["status"]
         words = str(status.attrs["flag_meanings"]).split()
         flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))
     except (LookupError, ValueError, TypeError):
-        raise InputError("the data are no result of rodsweep, of which all variables are needed") from None
+        raise InputError(
+            "the data are not a complete rodsweep result: its variables and attributes are needed"
+        ) from None
     points = layout.dimensions(is_list="point" in data.dims)
     for variable in layout.variables:
         dimensions = (*points, *variable.extra)
@@ -166,7 +171,7 @@ def view_of(data: xr.Dataset, path: Path) -> View:
 
 
 def _coordinates(plan: Plan) -> dict[str, Any]:
-    """The coordinates of points and of extra dimensions."""
+    """Coordinates of the points and of the other dimensions."""
     points = plan.points
     found: dict[str, Any] = {}
     if not points.axes:
@@ -186,7 +191,7 @@ def _named(name: str) -> dict[str, Any]:
 
 
 def _described(variable: Variable) -> dict[str, Any]:
-    """The attributes of a variable."""
+    """Attributes of a variable."""
     described: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
     if variable.typed:
         described[TYPED] = variable.typed

@@ -1,19 +1,18 @@
-"""The keywords of a rod's tasks, for editors and type checkers: the keys of its options, and the accuracy.
+"""Keyword arguments of a rod's tasks, for editors and type checkers.
 
-Meanings, ranges and defaults are those of the config, `rodsweep.config`; a test holds these names against it.
+`rodsweep.config` defines meanings, ranges and defaults; a test compares these names with the config.
 """
 
 from typing import Literal, TypedDict
 
 
 class OfEveryTask(TypedDict, total=False):
-    """What every task can be told."""
+    """Options of every task."""
 
     accuracy: float
     title: str
     progress: bool | None
-    """Whether a display shows how far a long solve is; by default where a terminal or a notebook is. No key
-    of a config."""
+    """Whether to display progress; None displays it only in a terminal or a notebook. No config key."""
 
 
 class OfSpectrum(OfEveryTask, total=False):

@@ -1,4 +1,4 @@
-"""`rs.Rod`: one rod, which answers every task under its name."""
+"""`rs.Rod`: one rod, with every task as a method."""
 
 from collections.abc import Callable, Mapping
 from inspect import Parameter, Signature, signature
@@ -22,23 +22,22 @@ from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum,
 from .solving import solve_here
 
 REQUIRED = tuple(name for name, p in PARAMETERS.items() if p.default is None and name != "F")
-"""The parameters that every rod needs."""
+"""Parameters that every rod needs."""
 
 
 ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
 
 
 class SoftRod:
-    """A slender soft rod in a viscous fluid with a follower force at its tip, in units of length and k3.
+    """A slender soft rod in a viscous fluid with a follower force at its tip, in units of its length and k3.
 
-    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which find
-    it. k1: stretch stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid one. gamma3: rotational drag,
-    gamma2 L^2. gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, which has the values that are not
-    given.
+    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which find it. k1: stretch
+    stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid rod. gamma3: rotational drag, gamma2 L^2.
+    gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not given.
 
-    Every task is a method of its name. It takes the options of the config as keywords, with the same
-    defaults, and returns an `Answer`. Raises InputError, in the command line's words, for values that are not
-    allowed.
+    Every task is a method with the task's name. It takes the options of the config as keywords, with the same
+    defaults, and returns an `Answer`. Raises InputError, with the command line's message, for values outside
+    their range.
     """
 
     __slots__ = ("_values",)
@@ -62,51 +61,53 @@ class SoftRod:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """The values by name."""
+        """The parameters' values by name."""
         return dict(self._values)
 
     @in_sentences("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
-        """The same rod with other values of some parameters."""
+        """A copy with new values of some parameters."""
         values: dict[str, Any] = self._values | changed
         return SoftRod(**values)
 
     @in_sentences("rod.spectrum(modes=4)")
     def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
-        """The leading eigenvalues, growth_rate + i frequency in 1/tau2: `modes` of them, by default 4."""
+        """The `modes` leading eigenvalues (4 by default), growth_rate + i frequency in 1/tau2."""
         return self._answer("spectrum", options)
 
     @in_sentences("rod.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
-        """The forces at which the rod starts to oscillate, flutters and is stable again, up to `F_max`."""
+        """Forces up to `F_max` at which the rod starts to oscillate, flutters, and becomes stable again."""
         return self._answer("thresholds", options)
 
     @in_sentences("rod.modes(nodes=65)")
     def modes(self, **options: Unpack[OfModes]) -> Answer:
-        """The leading modes with their adjoints, and the transient growth that they allow."""
+        """The leading modes with adjoint modes, and the transient growth."""
         return self._answer("modes", options)
 
     @in_sentences("rod.cycle(harmonics=8)")
     def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
-        """How the rod beats: period, amplitude, energy and Floquet multipliers of its limit cycle."""
+        """The limit cycle of the rod: period, amplitude, energy and Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
     @in_sentences("rod.criticality(F_max=100)")
     def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
-        """On which side of every Hopf point up to `F_max` its cycles are, and how they grow from there."""
+        """Criticality of every Hopf point up to `F_max`, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
     @in_sentences('rod.branch(along="F")')
     def branch(self, **options: Unpack[OfBranch]) -> Answer:
-        """Its cycles, stable or not, followed in the parameter `along` from every Hopf point to the end."""
+        """The branches of cycles, stable or not, followed in `along` from every Hopf point to their ends."""
         return self._answer("branch", options)
 
-    if not TYPE_CHECKING:  # where a misspelt task shall be seen
+    if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
-            """Any other task, which needs no words of its own."""
+            """A method for every task of one rod without a method of its own; AttributeError for unknown
+            names.
+            """
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
@@ -114,7 +115,7 @@ class SoftRod:
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         if CONFIGS[task].of_several_rods:
-            raise InputError(f"{task} is of several rods; ask rs.sweep({task!r}, ...) with two axes")
+            raise InputError(f"{task} is a task of several rods; use rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
                 raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
@@ -141,7 +142,7 @@ class SoftRod:
 
 
 def _of_arm(arm: object) -> dict[str, Any]:
-    """The parameters of an arm; no F of an arm without load."""
+    """Rod parameters of an arm, without F for an arm without load."""
     if not isinstance(arm, SlenderArm):
         raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
     known = known_load(arm)
@@ -150,7 +151,7 @@ def _of_arm(arm: object) -> dict[str, Any]:
 
 
 def _number(name: str, value: Any) -> float:
-    """A value of a parameter; InputError if it is no number."""
+    """Value of a parameter as a float; InputError if it is no number."""
     try:
         return as_number(plain(value))
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Every point of a job, one after another in this process, without files and without other ranks."""
+"""Solves all points of a job one after another in this process, without files and without ranks."""
 
 import socket
 from collections.abc import Iterator, Sequence
@@ -28,18 +28,18 @@ from .answers.showing import Display, display, listener
 from .dataset import dataset_of
 
 _warm: set[str] = set()
-"""Tasks that have been solved in this process."""
+"""Tasks warmed up in this process: compilation happens once."""
 
 
 @solving
 def solve_here(
     job: Job, note: Note | None = None, progress: bool | None = None
 ) -> tuple[xr.Dataset, list[str]]:
-    """(the Dataset of all points, what each outcome has to say of points that are solved alone).
+    """(Dataset of all points, message of each point solved on its own).
 
-    note: what is done about an exception that no solver foresees, whose point then fails; without it the
-    exception is raised. progress: whether a display is shown. Raises InputError and EnvironmentLacks where
-    this process cannot solve.
+    note: called with an exception that no solver foresees; the point then fails. Without `note` the exception
+    is raised. progress: whether to display progress. Raises InputError and EnvironmentIncomplete if this
+    process cannot solve.
     """
     shown = display(progress, job.points.count, job.name)
     require_solvers()
@@ -50,12 +50,12 @@ def solve_here(
     if job.config.task not in _warm:
         solver.warm_up()
         _warm.add(job.config.task)
-    with _blas().limit(limits=1, user_api="blas"):  # as the command does: threads add in another order
+    with _blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
         shown(0)
         try:
             values, messages = _solved(job, solver, plan, shown)
             joint = _joint(solver.together, _view(job, plan, values), shown) if solver.together else ()
-        except BaseException:  # in the middle of a solve, also by Ctrl-C
+        except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             forget_all()
             raise
         finally:
@@ -66,7 +66,7 @@ def solve_here(
 
 
 def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[str, np.ndarray], list[str]]:
-    """(the variables of the layout, each of the points' shape and its own; what points alone had to say)."""
+    """(variables of the layout, shape (points, own dimensions); messages of points solved on their own)."""
     count, layout = job.points.count, plan.layout
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
     messages = [""] * count
@@ -89,7 +89,7 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
 
 
 def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
-    """What all points together give."""
+    """Variables that all points together determine."""
     units, results = together.units(view), dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
         with heard_by(listener(shown, units.where(wanted[0]))):
@@ -98,7 +98,7 @@ def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
 
 
 def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
-    """Every index with its outcome, along the chains where points start one from the other."""
+    """Every point's index with its outcome; along a chain each point starts from the previous solution."""
     done = 0
 
     def place() -> RankListener:
@@ -121,7 +121,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
 
 
 def _view(job: Job, plan: Plan, values: dict[str, np.ndarray]) -> View:
-    """The solved points as a file would show them."""
+    """The solved points in the form in which `show` reads a file."""
     columns = dict(job.points.axes) if job.points.axes else {"point": job.points.columns[0]}
     columns |= plan.coordinates
     columns |= {variable.name: array for variable, array in plan.quantities}
@@ -146,5 +146,5 @@ def _kernels() -> str:
 
 @cache
 def _blas() -> ThreadpoolController:
-    """The BLAS libraries of this process, once PETSc has loaded its own."""
+    """The BLAS libraries of this process; call it after PETSc has loaded a BLAS."""
     return ThreadpoolController()

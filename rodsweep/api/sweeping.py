@@ -15,7 +15,7 @@ import xarray as xr
 
 from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
-from ..errors import EnvironmentLacks, InputError
+from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import described, log_file
 from .answers.showing import Display, display
 from .asking import Tree, job_from, tree_of
@@ -23,11 +23,12 @@ from .dataset import open_result
 from .solving import solve_here
 
 COMPUTED = (0, 1)
-"""Exit statuses of a run that is whole, whatever its points ended with."""
-REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentLacks}
-"""What the other exit statuses mean."""
+"""Exit statuses of a complete run: all points succeeded, or some did not."""
+REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
+"""Exception for each exit status of a refused run."""
 MOST_QUOTED = 2000
-"""Characters quoted of a run's standard error: enough for its last exception or a launcher's reason."""
+"""Maximum length, in characters, of a quoted standard error: enough for its last exception or a launcher's
+reason."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -39,20 +40,19 @@ def sweep(
     progress: bool | None = None,
     **keywords: Any,
 ) -> xr.Dataset:
-    """The Dataset of a task over its points: the same as from the file of `rodsweep run`.
+    """The Dataset of a task over its points, equal to the file of `rodsweep run`.
 
-    keywords: the keys of a config without their sections. Parameters are a number, a list or array of
-    increasing values, `linspace(...)` or `logspace(...)`; `points` is the name of a CSV file instead, `arm`
-    an `Arm` or a mapping of its quantities, whose load is left out where the task finds it.
-    `accuracy`, `title` and the options of the task follow; what is not given has the config's default.
+    keywords: the keys of a config, without sections. A parameter is a number, a list or array of increasing
+    values, `linspace(...)` or `logspace(...)`. `points` is the name of a CSV file with the parameters
+    instead. `arm` is an `Arm` or a mapping of its quantities; tasks that find the load ignore the arm's load.
+    `accuracy`, `title` and the options of the task may follow. Omitted keys have the config's defaults.
 
-    ranks: by default the points are solved in this process; otherwise by the command on so many ranks.
-    strict: whether an exception that is a bug of rodsweep is raised. By default its point has the status
-    `failed`, a RuntimeWarning has the traceback, and the other points are solved.
-    progress: whether a display shows how far the sweep is, and where a long point is; by default where a
-    terminal or a notebook is.
+    ranks: number of MPI ranks, which `rodsweep run` starts; by default the points are solved in this process.
+    strict: whether an unforeseen exception, a bug of rodsweep, is raised. By default the point has the status
+    `failed`, a RuntimeWarning has the traceback, and the other points are solved. progress: whether to
+    display the progress of the sweep and of a long point; by default only in a terminal or a notebook.
 
-    Raises InputError for what the command would refuse, in its words, and EnvironmentLacks where the machine
+    Raises InputError for bad input, with the command line's message, and EnvironmentIncomplete if the machine
     lacks something. A point that fails keeps its status.
     """
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
@@ -65,7 +65,7 @@ def sweep(
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
-    """Warns of an exception that no solver foresees."""
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
     points = (
         f"point {indices[0] + 1}" if len(indices) == 1 else f"points {indices[0] + 1} to {indices[-1] + 1}"
     )
@@ -77,7 +77,7 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
 
 
 def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
-    """The Dataset that `rodsweep run` makes on so many ranks, in a directory that is then removed."""
+    """The Dataset made by `rodsweep run` on `ranks` ranks in a temporary directory."""
     points = tree["parameters"].get("points")
     if points is not None:
         tree = tree | {"parameters": {"points": str(Path(points).absolute())}}
@@ -89,7 +89,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
         try:
             status, told = _run_shown(words, place, shown)
         except OSError as error:
-            raise EnvironmentLacks(f"{words[0]} cannot be started: {error.strerror}") from None
+            raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPUTED:
             raise _failure(words[0], status, told, begun=output.exists())
         if (log := log_file(output)).exists():
@@ -99,7 +99,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
 
 def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
     """Runs a command in a directory and shows its progress; returns its exit status and standard error."""
-    # The environment as this process got it: MPI, once started in here, adds to the one in C.
+    # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
         words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
@@ -120,20 +120,25 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
 
 
 def _failure(launcher: str, status: int, told: str, begun: bool) -> Exception:
-    """The exception for a run that is not whole; begun: whether its ranks came as far as to make a file."""
+    """Exception for an incomplete run; begun: whether the ranks created the result file."""
     lines = [line for line in told.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return REFUSED.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
     if begun or "Traceback" in told:
         return RuntimeError(told[-MOST_QUOTED:])
     said = " ".join(told.split()) or f"exit status {status}"
-    return EnvironmentLacks(f"{launcher} did not start the ranks: {said[-MOST_QUOTED:]}")
+    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {said[-MOST_QUOTED:]}")
 
 
 def _mpiexec() -> str:
-    """The launcher that was installed beside this Python, or the machine's."""
+    """Path of the launcher beside this Python, or else on the search path.
+
+    Raises EnvironmentIncomplete if no launcher is found.
+    """
     beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     found = beside or shutil.which("mpiexec")
     if found is None:
-        raise EnvironmentLacks("mpiexec is not found, which ranks need; `make install` provides it")
+        raise EnvironmentIncomplete(
+            "mpiexec, which starts the ranks, is not found; `make install` provides it"
+        )
     return found

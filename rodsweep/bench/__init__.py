@@ -1,4 +1,4 @@
-"""Speed against error of rodsweep itself, all methods timed in turn in one run.
+"""Speed against error of rodsweep itself; all methods are timed in turn in one run.
 
-What rodsweep is timed beside is not here: `rodsweep.bench.peers` takes it from a folder outside the package.
+The peers of rodsweep are in a folder outside the package, from which `rodsweep.bench.peers` imports them.
 """

@@ -1,4 +1,4 @@
-"""Where and when a benchmark ran, and with which versions of what."""
+"""Processor, date and versions of a benchmark."""
 
 import platform
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ def machine() -> dict[str, str]:
 
 
 def where_and_when(peers: Mapping[str, str]) -> str:
-    """The machine, the date and the versions, of the peers too, in one line."""
+    """Machine, date and versions, including the peers' versions, in one line."""
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
     where = ", ".join(f"{name} {its}" for name, its in (shown | dict(peers)).items())

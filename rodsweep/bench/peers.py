@@ -1,10 +1,10 @@
-"""The peers: other codes that a study times beside rodsweep, from the folder `benchmarks` of a checkout.
+"""The peers: other codes timed beside rodsweep, from the folder `benchmarks` of a checkout.
 
 The folder is a Python package that is not installed with rodsweep. It offers
 
     versions() -> dict[str, str]
 
-the versions of the peers that are installed, and, for each study with peers, a module of its name with
+with the versions of the installed peers, and, for each study with peers, a module named like the study with
 
     peers(quick: bool, place: Path) -> Peers
 
@@ -23,18 +23,18 @@ from ..errors import InputError
 from .study import Contender, Measurement
 
 PACKAGE = "benchmarks"
-"""The folder's name in a checkout, and its name as a Python package wherever it lies."""
+"""Name of the folder in a checkout; also its package name if the folder is elsewhere."""
 CHECKOUT = Path(__file__).parents[2]
-"""Beside pyproject.toml, where rodsweep runs from a checkout."""
+"""Folder that contains pyproject.toml, if rodsweep runs from a checkout."""
 LEFT_OUT = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
-"""The peers by the study in which they take part, for those who have no folder of peers."""
+"""Names of the peers by study, for users without the folder of peers."""
 
 Section = Callable[[int], tuple[list[str], list[Measurement]]]
-"""A comparison with tables of its own: from the number of rounds to blocks of text and measurements."""
+"""A comparison with its own tables: from the number of rounds to (blocks of text, measurements)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +42,8 @@ class Peers:
     """The peers of one study.
 
     contenders: by the name of the race, each method's settings from the coarsest to the finest; the study
-    says which races it has, and what the contenders of each are run on. sections: further comparisons.
-    notes: sentences on the contenders, for the introduction. skipped: a sentence for each peer that is not
-    installed.
+    defines the races and their cases. sections: further comparisons. notes: sentences on the contenders, for
+    the introduction. skipped: a sentence for each peer that is not installed.
     """
 
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
@@ -53,7 +52,7 @@ class Peers:
     skipped: Sequence[str] = ()
 
     def of(self, race: str) -> list[Contender]:
-        """The contenders of one race; none where no peer takes part."""
+        """Contenders of one race; empty if no peer takes part."""
         return list(self.contenders.get(race, ()))
 
 
@@ -61,9 +60,9 @@ NO_PEERS = Peers()
 
 
 def peer_package(directory: Path | None) -> ModuleType | None:
-    """The package in a folder of peers; of a checkout without one named, its own; None where there is none.
+    """The package in a folder of peers, by default the checkout's own; None without a checkout.
 
-    Raises InputError where a directory that is named holds no peers.
+    Raises InputError if the named directory has no peers.
     """
     if directory is not None:
         return _loaded(directory)
@@ -90,7 +89,7 @@ def _loaded(directory: Path) -> ModuleType:
 
 
 def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
-    """The peers of a study that are installed; programs are compiled in the directory `place`."""
+    """The installed peers of a study; programs are compiled in the directory `place`."""
     module = f"{PACKAGE}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
@@ -99,7 +98,7 @@ def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -
 
 
 def left_out(studies: Sequence[str]) -> str:
-    """One sentence: the peers that studies do without, and how to get them; empty where they have none."""
+    """Sentence on the peers missing from the studies and on how to get them; "" if none are missing."""
     missing = "; ".join(f"{name}: {LEFT_OUT[name]}" for name in studies if name in LEFT_OUT)
     return missing and (
         f"The peers are left out ({missing}): they are in the folder `{PACKAGE}` of a checkout of rodsweep, "

@@ -1,4 +1,4 @@
-"""What a benchmark gives: methods timed in turn on cases, their errors, and tables of them in Markdown."""
+"""Results of a benchmark: methods timed in turn on cases, their errors, and tables in Markdown."""
 
 import resource
 import time
@@ -18,14 +18,14 @@ from ..results.file.measurements import Table
 Outcome = TypeVar("Outcome")
 
 SHORT = 0.02
-"""Seconds below which the time of a run depends on how the run before it has left the caches."""
+"""Duration in seconds below which the time of a run depends on the caches left by the previous run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting: `run` takes a case. Slow ones are timed once.
+    """A method at one setting; `run` takes a case. Slow contenders are timed once.
 
-    group: methods of one kind, which a figure gives one colour.
+    group: methods with the same group have one colour in the figure.
     """
 
     method: str
@@ -37,10 +37,11 @@ class Contender:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A method at one setting on one case: median seconds of one run, and its relative error.
+    """A method at one setting on one case: median seconds of a run, and its relative error.
 
-    The error is nan where none applies and inf where the method failed: `failure` says how. least_seconds: of
-    all rounds, which other loads on the machine disturb less; extra: other numbers, by name.
+    The error is nan if no error applies, and inf if the method failed; `failure` is the reason.
+    least_seconds: minimum over all rounds, less sensitive to further loads on the machine. extra: further
+    numbers by name.
     """
 
     case: str
@@ -56,9 +57,10 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """One benchmark, done. unit: what a run is, as in "ms a point"; target: the error to be reached.
+    """Result of one benchmark.
 
-    undrawn: measurements that the figure leaves out.
+    unit: meaning of a run, as in "ms a point". target: the error to be reached. undrawn: measurements without
+    a curve in the figure.
     """
 
     name: str
@@ -70,7 +72,7 @@ class Study:
 
     @property
     def drawable(self) -> bool:
-        """Whether there is an error to draw against time."""
+        """Whether any error can be drawn against time."""
         return any(isfinite(m.error) for m in self.measurements)
 
     def draw(self, output: Path) -> None:
@@ -94,7 +96,7 @@ def columns_of(measurements: Sequence[Measurement]) -> Table:
 
 
 class Timed(NamedTuple, Generic[Outcome]):
-    """What a run gave the first time, and the processor seconds that it took, each time."""
+    """Result of the first run, and processor seconds of every timed run."""
 
     outcome: Outcome
     seconds: tuple[float, ...]
@@ -105,10 +107,10 @@ class Timed(NamedTuple, Generic[Outcome]):
 
 
 def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[Timed[Outcome]]:
-    """Times all runs in turn, each in as many rounds as `rounds` says.
+    """Times all runs in turn; rounds: number of timed rounds of each run.
 
-    The first time loads and compiles, and counts for runs with no round only. Short runs are made twice in a
-    row, the second timed, so that none finds the caches as another has left them.
+    The first run loads and compiles, and counts only for runs without rounds. A short run is made twice in a
+    row and the second one is timed, so that the caches do not depend on the previous method.
     """
     first = [_timed(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
@@ -120,7 +122,7 @@ def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[T
 
 
 def in_turn(rounds: Sequence[int]) -> Iterator[int]:
-    """Which run is next, round after round, so that a slow spell of the machine hits all alike."""
+    """Indices of the runs in the order of timing: round by round, so that slow spells affect all methods."""
     for turn in range(max(rounds)):
         yield from (i for i, most in enumerate(rounds) if turn < most)
 
@@ -132,13 +134,15 @@ def _timed(run: Callable[[], Outcome]) -> Timed[Outcome]:
 
 
 def processor_seconds() -> float:
-    """Of this process and of the programs that it has run; others on the machine do not count."""
+    """Processor seconds of this process and of the programs started by it, without the rest of the
+    machine.
+    """
     programs = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + programs.ru_utime + programs.ru_stime
 
 
 def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
-    """What a method gives on a case, or the error, of whatever kind, with which it gives up."""
+    """Result of a method on a case, or the exception raised by it."""
     try:
         with np.errstate(all="ignore"):
             return run(case)
@@ -147,7 +151,7 @@ def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
 
 
 class Entry(NamedTuple):
-    """A case by its name, and what judges: the error, and other fields, of the Measurement of an outcome."""
+    """A case with its name; judge: error and other fields of the Measurement of an outcome."""
 
     name: str
     case: Any
@@ -157,12 +161,12 @@ class Entry(NamedTuple):
 def contest(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
-    """All contenders on one case."""
+    """Measurements of all contenders on one case."""
     return tournament([Entry(name, case, judge)], contenders, rounds)
 
 
 def tournament(entries: Sequence[Entry], contenders: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """All contenders on all cases, all of them in turn."""
+    """Measurements of all contenders on all cases, timed in turn."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(failsafe, contender.run, entry.case) for entry, contender in pairs]
     raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
@@ -176,7 +180,7 @@ def tournament(entries: Sequence[Entry], contenders: Sequence[Contender], rounds
 
 
 def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str, ...], list[Measurement]]:
-    """Measurements with the same fields of these names together, in the order in which they appear."""
+    """Measurements grouped by the values of the named fields, in order of appearance."""
     groups: dict[tuple[str, ...], list[Measurement]] = {}
     for m in measurements:
         groups.setdefault(tuple(getattr(m, name) for name in names), []).append(m)
@@ -184,12 +188,12 @@ def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str,
 
 
 def every_nth_setting(contenders: Iterable[Contender], stride: int) -> list[Contender]:
-    """Of each method the first of so many settings, the first of the next, ..., as a quick run takes them."""
+    """Every n-th setting of each method, beginning with the first, for a quick run."""
     return [contender for settings in by_method(contenders).values() for contender in settings[::stride]]
 
 
 def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
-    """The settings of each method, in their order."""
+    """Settings of each method, in their order."""
     methods: dict[str, list[Contender]] = {}
     for contender in contenders:
         methods.setdefault(contender.method, []).append(contender)
@@ -197,20 +201,20 @@ def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
 
 
 def middle(values: Iterable[float]) -> float:
-    """The median of those that are numbers; nan if none is."""
+    """Median of the values without nan; nan if all are nan."""
     numbers = [value for value in values if not isnan(value)]
     return float(median(numbers)) if numbers else nan
 
 
 class Shown(float):
-    """A number that is written as nothing where it is nan."""
+    """A number that is printed as "" if it is nan."""
 
     def __format__(self, form: str) -> str:
         return "" if isnan(self) else super().__format__(form)
 
 
 def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
-    """A table: its head, and the line that each row fills in, as in "{method} | {seconds:.2f}"."""
+    """Table in Markdown from its head and the format of a row, such as "{method} | {seconds:.2f}"."""
     lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
     for row in rows:
         cells = {k: Shown(value) if isinstance(value, int | float) else value for k, value in row.items()}
@@ -219,5 +223,5 @@ def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
 
 
 def plural(count: int, noun: str) -> str:
-    """As in "1 round", "2 rounds"."""
+    """A count with a regular noun: "1 round", "2 rounds"."""
     return f"{count} {noun}{'s' * (count != 1)}"

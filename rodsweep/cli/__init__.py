@@ -1,10 +1,9 @@
 """The command `rodsweep`: run, merge, snapshot, check, show, plot, export, schema, arm, bench.
 
-It joins the packages.
+It joins the packages and reads the arguments and environment variables.
 
-Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
-input, 3 when the machine lacks something, 70 for a bug, 75 when a run was asked to stop and wants to be
-continued.
+Exit status: 0 if every point succeeded, 1 if the run is complete but some point failed, 2 for bad input, 3 if
+the machine lacks something, 70 for a bug, 75 if a run was asked to stop and can be continued.
 """
 
 import errno
@@ -15,7 +14,7 @@ import traceback
 from contextlib import suppress
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
-# This has to be said before NumPy is imported.
+# BLAS reads these variables when NumPy is imported.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
@@ -29,23 +28,23 @@ from .launchers import speaks  # noqa: E402 - after the environment is set
 __all__ = ["commands", "main"]
 
 LONGEST_MESSAGE = 350
-"""Characters of a refusal."""
+"""Maximum length of an error message, in characters."""
 
 
 def _one_line(message: str) -> str:
-    """A message in one line of bounded length: what it quotes may be as long as a user likes."""
+    """A message in one line of limited length, because quoted values may be arbitrarily long."""
     line = printable(" ".join(message.split()))
     return line if len(line) <= LONGEST_MESSAGE else f"{line[: LONGEST_MESSAGE - 100]} ... {line[-90:]}"
 
 
 def main() -> None:
-    """Runs the command line; every refusal is one sentence on standard error."""
+    """Runs the command line; every error is reported as one sentence on standard error."""
     code, message = 0, ""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a file's name may be any bytes
     if not speaks() and "run" not in sys.argv[1:2]:
-        sys.exit(0)  # under a launcher one rank shows or draws, and the others have nothing to add
+        sys.exit(0)  # under a launcher one rank prints or draws; the others have nothing to do
     try:
         commands.main(standalone_mode=False)
     except click.exceptions.Abort:
@@ -56,7 +55,7 @@ def main() -> None:
         code, message = 3, error.format_message()
     except Refusal as error:
         code, message = error.exit_status, str(error)
-    except OSError as error:  # a name too long, a directory that may not be looked into
+    except OSError as error:  # such as a name that is too long, or a directory without permission
         if error.filename is None and error.errno not in (errno.ENOSPC, errno.EIO):
             raise
         code = 2 if error.errno in (errno.ENAMETOOLONG, errno.ELOOP) else 3
@@ -67,14 +66,16 @@ def main() -> None:
         traceback.print_exc()
         code, message = BUG_STATUS, "this is a bug; please report it with the lines above"
     if message and speaks():
-        with suppress(OSError):  # both streams may go into one log on one full disk
+        with suppress(OSError):  # standard error may also be on the full disk
             click.echo(f"rodsweep: {_one_line(message)}", err=True)
     _drop_what_cannot_be_written()
     sys.exit(code)
 
 
 def _drop_what_cannot_be_written() -> None:
-    """Gives what cannot be flushed /dev/null: Python flushes at exit, and would end with 120."""
+    """Redirects streams that cannot be flushed to /dev/null: otherwise Python's own flush at exit returns
+    status 120.
+    """
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -1,4 +1,4 @@
-"""The options of the command `arm` that are quantities with units."""
+"""Options of the command `arm` for quantities with units."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,11 +13,11 @@ REMARKS = {
     "fluid_density": ", for the Reynolds number; by default 1000 kg/m^3",
     "density_difference": ", for its weight",
 }
-"""What `--help` says of a quantity beside its meaning."""
+"""Remarks that follow a quantity's meaning in `--help`."""
 
 
 def arm_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds them to a command, in their order."""
+    """Adds the options of all quantities to a command."""
     for name in reversed(UNITS):
         meaning = QUANTITIES[name].meaning
         told = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."

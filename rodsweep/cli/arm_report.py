@@ -1,4 +1,4 @@
-"""The command `arm`: an arm in SI units, its numbers and its verdict, printed."""
+"""The command `arm`: prints the numbers and the verdict of an arm in SI units."""
 
 from rich.console import Console
 
@@ -6,11 +6,11 @@ from ..errors import InputError
 from ..model.arm.quantities import UNITS
 
 STYLES = {"headline": "bold", "warning": "yellow"}
-"""How lines of a report look."""
+"""Styles of the printed lines by their kind."""
 
 
 def describe_arm(given: dict[str, str | None], poisson: float) -> None:
-    """Prints the report on an arm. InputError, naming the option, where a quantity is none."""
+    """Prints the report on an arm; InputError, naming the option, for an invalid quantity."""
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import report_on
 
@@ -25,6 +25,6 @@ def describe_arm(given: dict[str, str | None], poisson: float) -> None:
 
 
 def _as_option(sentence: str) -> str:
-    """A sentence whose first word is a quantity, with the name of its option."""
+    """A sentence that begins with a quantity's name, with the name of the option instead."""
     name = next((name for name in UNITS if sentence.startswith(name)), "")
     return name.replace("_", "-") + sentence[len(name) :]

@@ -1,4 +1,4 @@
-"""What the ranks of a run compute before its file is created: the variables that need no point."""
+"""Variables computed by all ranks before the result file is created, because they depend on no point."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,7 +11,7 @@ from ..tasks.protocol import Task
 
 
 def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
-    """The plan with its constants, which all ranks have shared; None where a stop came before they were."""
+    """The plan with its constants, computed by all ranks together; None if a stop signal came first."""
     skipped = False
 
     def unless_stopped(work: Callable[[Any], Any], item: Any) -> Any:

@@ -7,24 +7,23 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from ..errors import EnvironmentLacks
+from ..errors import EnvironmentIncomplete
 
 MEASURED = (sys.executable, "-m", f"{__package__}.measured")
-"""What starts the command that the benchmark of the sweep measures."""
+"""Command line of the runs that the benchmark of the sweep measures."""
 HEADING = """# Performance
 
-Speed against error: what this tool takes, on one machine, in one run of `rodsweep bench`, beside its peers,
-which one would use otherwise; they are in the folder `benchmarks` of a checkout. Times are of the processor,
-those of `sweep` of the clock; every method is run in turn with all others, round after round, and the
-medians are shown. So compare methods within a table rather than times between machines, and look at the
-error beside each time: a method is faster only where it is as accurate. Every number is in an HDF5 file
-beside the text, with all settings."""
+Speed against error of rodsweep, measured on one machine in one run of `rodsweep bench`. The peers, which a
+user might choose instead, are in the folder `benchmarks` of a checkout. Times are processor times, but clock
+times in `sweep`. All methods run in turn, round after round; the tables show medians. Compare methods within
+a table, not times between machines, and read each time together with its error: a method is faster only at
+equal accuracy. An HDF5 file beside the text has every number with all settings."""
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
     """Runs one benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png.
 
-    directory: the folder of peers, None for that of the checkout that rodsweep runs from.
+    directory: folder of the peers; None for the folder `benchmarks` of the running checkout.
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
@@ -35,7 +34,9 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         from ..bench.sweep.study import sweep_study
         from ..bench.thresholds.study import thresholds_study
     except ModuleNotFoundError as error:
-        raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
+        raise EnvironmentIncomplete(
+            f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
+        ) from None
     from ..results.file.measurements import write_measurements
 
     studies: dict[str, Callable[[bool, Peers], Study]] = {

@@ -1,4 +1,4 @@
-"""What `rodsweep check` prints: the points, what is modelled and what is left out, and the cost."""
+"""Output of `rodsweep check`: the points, what is modelled and what is neglected, and the cost."""
 
 from dataclasses import replace
 
@@ -50,7 +50,9 @@ def describe_job(job: Job) -> None:
 
 
 def _arm_lines(job: Job) -> list[str]:
-    """The parameters that are made of an arm, its unit of time, and what is known of it before the run."""
+    """Lines on an arm: its quantities, its parameters and unit of time, and the validity of the model at
+    rest.
+    """
     arm = job.config.parameters.arm
     assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
@@ -68,7 +70,7 @@ def _arm_lines(job: Job) -> list[str]:
 
 
 def _wall_lines(arm: ArmSection) -> list[str]:
-    """A warning where tubes have thin walls."""
+    """Warning for tubes with thin walls; empty if all walls are thick enough."""
     if arm.inner_radius is None:
         return []
     names = ("length", "radius", "inner_radius", "poisson")
@@ -83,7 +85,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
 
 
 def _uncovered_lines(points: Points) -> list[str]:
-    """How many different rods there are, how many points no rod covers, and why."""
+    """Lines on the number of different rods, and on points without a rod, with the reasons."""
     lines, rods = list[str](), same_rods(points)
     if rods is not None:
         there = rods if points.covered is None else rods[points.covered == SLENDER]

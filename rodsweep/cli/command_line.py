@@ -1,4 +1,4 @@
-"""What the command `rodsweep` takes: each of its commands with options, and what does the work."""
+"""Commands and options of `rodsweep`."""
 
 import sys
 from pathlib import Path
@@ -24,7 +24,7 @@ overrides_option = click.option(
 @click.pass_context
 def commands(context: click.Context) -> None:
     """Spectra, thresholds, phase diagrams, modes, limit cycles and their branches of soft rods in a fluid."""
-    if context.invoked_subcommand is None:  # as click does, but with all lines and with every release of it
+    if context.invoked_subcommand is None:  # click's own help differs between its releases
         click.echo(context.get_help(), err=True)
         sys.exit(2)
 
@@ -37,13 +37,13 @@ def commands(context: click.Context) -> None:
 @click.option("--extend", is_flag=True, help="Add to a result file whose config this one contains.")
 @click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
 @click.option("--strict", is_flag=True, help="End the run at the first exception that is a bug.")
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but what is amiss; show no progress.")
+@click.option("-q", "--quiet", is_flag=True, help="Print problems only; show no progress.")
 def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: str, **options: bool) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
     from ..sweep.stop import StopRequest
 
     stop = StopRequest(acknowledges=not rank_variables())
-    stop.listen()  # before everything that takes time: a warning may come early
+    stop.listen()  # first: a launcher's warning signal may come before slow imports are done
     from ..sweep.points.shards import shard_of
     from .run.options import RunOptions
     from .run.running import run_config
@@ -73,14 +73,14 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
         sys.exit(CONTINUE)
     if not merged.finished:
-        click.echo(f"`rodsweep run CONFIG -o {output}` adds what only all points together give")
+        click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that all points together determine")
 
 
 @commands.command()
 @click.argument("file", type=FILE)
 @click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
-    """Write what is done of the result FILE so far, without disturbing the run that computes it."""
+    """Write the points of the result FILE that are done so far, without disturbing the run."""
     from ..results.file.recent import take_snapshot
 
     output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
@@ -92,7 +92,7 @@ def snapshot(file: Path, output: Path | None) -> None:
 @click.argument("config", type=FILE)
 @overrides_option
 def check(config: Path, overrides: tuple[str, ...]) -> None:
-    """Validate CONFIG and say what it would compute, at what cost, without computing."""
+    """Validate CONFIG and print the points, the modelled effects and the expected cost, without computing."""
     from ..tasks.running.job import make_job
     from .checking import describe_job
 
@@ -101,11 +101,9 @@ def check(config: Path, overrides: tuple[str, ...]) -> None:
 
 @commands.command()
 @click.argument("file", type=FILE)
-@click.option(
-    "--statuses", is_flag=True, help="List every status that the task knows, not only those present."
-)
+@click.option("--statuses", is_flag=True, help="List all statuses of the task, not only those present.")
 def show(file: Path, statuses: bool) -> None:
-    """Print what the result FILE says: its numbers or their headline, statuses, accuracy, cost."""
+    """Print a summary of the result FILE: headline numbers, statuses, accuracy, cost."""
     from ..post.summary import show_summary
     from ..results.file.view import read_view
 
@@ -123,13 +121,13 @@ def show(file: Path, statuses: bool) -> None:
 @click.option(
     "--roots",
     type=click.Choice(["rightmost", "smallest", "all"]),
-    help="Which roots of spectra: all that are stored, or two to follow, the smallest in magnitude, as the "
-    "paper does, or the rightmost; by default those that change places with others less often.",
+    help="Roots of spectra to draw: all stored roots, or two roots of each point: the rightmost, or the "
+    "smallest in magnitude, as in the paper; by default the choice whose curves swap places less often.",
 )
 @click.option(
     "--what",
     type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
-    help="Which figure of limit_cycle, or, lines and map, of thresholds; by default what the file suggests.",
+    help="Figure of limit_cycle, or (lines, map) of thresholds; by default the figure that suits the file.",
 )
 @click.option(
     "--point",
@@ -137,22 +135,22 @@ def show(file: Path, statuses: bool) -> None:
     type=int,
     multiple=True,
     metavar="N",
-    help="Which points of limit_cycle, from 1; up to 3 times.",
+    help="Points of limit_cycle to draw, from 1; up to 3 times.",
 )
 @click.option(
     "--at",
     "at",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Draw the points with this value of a parameter, as k1=150, or of a listed arm, as 'length=12 cm'.",
+    help="Draw only points with this value of a parameter, as k1=150, or of an arm, as 'length=12 cm'.",
 )
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
     "--width",
     metavar="WIDTH",
-    help="Of a journal's column, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
+    help="Width of the figure, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
 )
-@click.option("--style", metavar="STYLE", help="A style of matplotlib's, by its name or file.")
+@click.option("--style", metavar="STYLE", help="Name or file of a matplotlib style.")
 def plot(
     files: tuple[Path, ...],
     output: Path | None,
@@ -177,7 +175,7 @@ def plot(
 
 
 def _values(at: tuple[str, ...]) -> dict[str, str]:
-    """The values of `--at NAME=VALUE` by name; InputError for what has not this form."""
+    """Values of `--at NAME=VALUE` by name; InputError for text of another form."""
     found = {}
     for text in at:
         name, equals, value = text.partition("=")
@@ -190,14 +188,14 @@ def _values(at: tuple[str, ...]) -> dict[str, str]:
 @commands.command()
 @click.argument("file", type=FILE)
 @click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
-@click.option("--table", metavar="NAME", help="Which table: points, or a list of the task's, as crossings.")
-@click.option("--columns", metavar="A,B,C", help="Which columns, in their order; by default all.")
+@click.option("--table", metavar="NAME", help="Table to write: points, or a list such as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Columns to write, in this order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
-@click.option("--replace", is_flag=True, help="Write over a file that is there already.")
+@click.option("--replace", is_flag=True, help="Overwrite an existing file.")
 def export(
     file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
 ) -> None:
-    """Write a table of the result FILE as CSV: a row a point, or a row an item of a list."""
+    """Write a table of the result FILE as CSV: one row per point, or per item of a list."""
     from ..post.export import Request
     from ..post.export import export as export_view
     from ..results.file.view import read_view
@@ -226,10 +224,10 @@ def schema() -> None:
     "--peers",
     "directory",
     type=FILE,
-    help="Folder of what is timed beside rodsweep; by default `benchmarks` of the checkout that is run.",
+    help="Folder of the peers timed beside rodsweep; by default `benchmarks` of the running checkout.",
 )
 def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:
-    """Time WHAT (by default all), its peers beside it where they are there, and state every error."""
+    """Time WHAT (by default all) beside its available peers, and state the error of every result."""
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")
@@ -243,7 +241,7 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 @arm_options
 @click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
 def arm(poisson: float, **quantities: str | None) -> None:
-    """Say when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
+    """Print when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
     from .arm_report import describe_arm
 
     describe_arm(quantities, poisson)

@@ -1,4 +1,4 @@
-"""Names of files on the command line: what links lead to, default names, and endings."""
+"""File names on the command line: targets of links, default names, and endings."""
 
 import errno
 import os
@@ -11,7 +11,7 @@ RESULTS = (".h5", ".hdf5", ".nc")
 
 
 def result_file(path: Path) -> Path:
-    """The file for results that a name means; InputError for a directory or another ending."""
+    """The result file of a given name, links resolved; InputError for a directory or another ending."""
     endings = ", ".join(RESULTS)
     if path.is_dir() or not path.name:
         raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
@@ -21,16 +21,16 @@ def result_file(path: Path) -> Path:
 
 
 def beside(file: Path, ending: str) -> Path:
-    """The name of a file with another ending; InputError for a directory, which has none."""
+    """A file name beside `file`: its stem with another ending; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
     return file.with_name(file.stem + ending)
 
 
 def followed(path: Path) -> Path:
-    """What a link leads to, which has the journal and the lock; another path as it is.
+    """Target of a link, where the journal and the lock of a result are; all paths but links unchanged.
 
-    InputError for a link that leads to itself, in whose place nothing may be put.
+    InputError for a link that leads to itself and cannot be replaced.
     """
     if not path.is_symlink():
         return path

@@ -1,14 +1,14 @@
-"""The rank of a process before MPI is started, from what launchers say."""
+"""Rank of a process before MPI is started, from the environment variables of launchers."""
 
 import os
 
 
 def rank_variables() -> list[str]:
-    """The rank of this process as each launcher tells it; nothing where there is none."""
+    """Values of the launchers' rank variables in the environment; empty without a launcher."""
     names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
     return [os.environ[name] for name in names if name in os.environ]
 
 
 def speaks() -> bool:
-    """Whether this process is the one that talks, before MPI has been started."""
+    """Whether this process prints messages before MPI is started: rank 0, or a process without a launcher."""
     return next(iter(rank_variables()), "0") == "0"

@@ -1,8 +1,8 @@
-"""The command as `rodsweep bench sweep` starts it: it notes each rank's memory, and can do without solving.
+"""The command as started by `rodsweep bench sweep`: notes each rank's memory, and can skip all solves.
 
     python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
-runs `rodsweep WORDS...`. DIRECTORY and KIND are what `rodsweep.bench.sweep.launch` says.
+runs `rodsweep WORDS...`. `rodsweep.bench.sweep.launch` explains DIRECTORY and KIND.
 """
 
 import os
@@ -23,14 +23,16 @@ from . import main
 from .launchers import speaks
 
 OUTCOMES = 4096
-"""That the points take in turn: more than any compression looks back."""
+"""Number of random outcomes, taken by the points in turn. Compression algorithms do not look back this
+far."""
 
 
 @dataclass(frozen=True, slots=True)
 class InstantSpectra(SpectrumTask):
-    """The task spectrum with random outcomes from a table, so that all time is the sweep's own.
+    """The task spectrum with random outcomes from a table: all measured time belongs to the sweep.
 
-    killed: where the rank that gets the last point notes its memory before it is killed there.
+    killed: directory in which the rank of the last point notes its memory before being killed; None to
+    finish.
     """
 
     killed: Path | None = None
@@ -66,14 +68,15 @@ class InstantSpectra(SpectrumTask):
 
 
 def note_memory(directory: Path) -> None:
-    """Leaves this rank's peak memory so far."""
+    """Writes the peak memory of this rank so far into the directory."""
     (directory / f"{FIRST_RANK if speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:
-    """Bytes that this process has held at most.
+    """Peak memory of this process in bytes.
 
-    What getrusage says would also count what the process that started this one held: it outlives exec.
+    `getrusage` would include the peak of the parent process, because the value survives exec. It is used only
+    if /proc is missing.
     """
     try:
         lines = Path("/proc/self/status").read_text().splitlines()
@@ -83,7 +86,7 @@ def peak_memory() -> int:
 
 
 def run_measured() -> None:
-    """Runs the command that the arguments ask for."""
+    """Runs the command given by the arguments."""
     directory, kind, *words = sys.argv[1:]
     notes = Path(directory)
     if kind != SOLVED:

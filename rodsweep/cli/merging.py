@@ -1,4 +1,4 @@
-"""`rodsweep merge`: the plan of a file that others are joined to, and what is said of it."""
+"""The command `merge`: merges result files and prints a summary."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from ..wording import counted
 
 
 def merge_files(output: Path, paths: tuple[Path, ...]) -> MergeResult:
-    """Merges result files into `output` and says what came of it."""
+    """Merges result files into `output` and prints the number of points and missing points."""
     merged = merge(output, paths, plan_without_solver)
     click.echo(
         f"{output}: {merged.points} points from {counted(len(paths), 'file')}, {merged.missing} missing"

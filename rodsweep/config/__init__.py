@@ -1,4 +1,4 @@
-"""What the user asks for: YAML to a validated, frozen `Config`. Knows the names of parameters, no physics."""
+"""Reads a YAML config and validates it into a frozen `Config`. Knows the parameters' names, no physics."""
 
 from .document.reading import load_config
 from .schema import Config

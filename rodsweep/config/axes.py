@@ -1,4 +1,4 @@
-"""The section `parameters` of a config: axes, an arm or a file of points, for the parameters of the model."""
+"""The section `parameters` of a config: one axis per parameter, an arm, or a file of points."""
 
 import math
 from typing import Annotated, Any, ClassVar
@@ -15,7 +15,7 @@ DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not N
 
 
 def _section(base: type[Strict], names: tuple[str, ...], kind: Any) -> Any:
-    """The section `base` with a key for each of the names, none of which need be given."""
+    """Subclass of `base` with an additional optional key for each name."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
@@ -24,29 +24,33 @@ LinearAxes: Any = _section(Strict, LINEAR_PARAMETERS, Values)
 
 
 class Axes(LinearAxes):
-    """Axes, one for each parameter of a grid, or the name of a CSV file that lists points."""
+    """Axes of the parameters of a grid, the name of a CSV file that lists points, or an arm."""
 
     points: Annotated[Text | None, Field(min_length=1, description="the name of a CSV file")] = None
-    """A list of points instead of axes; the header names the parameters."""
+    """CSV file with a list of points, instead of axes. Its header names the parameters."""
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
-    """An arm in SI units; a parameter that is given beside it replaces the arm's."""
+    """An arm in SI units. A parameter given beside it replaces the arm's value."""
 
     of_arm: ClassVar[tuple[str, ...]] = LINEAR_PARAMETERS
-    """The parameters for which the arm gives values."""
+    """Parameters whose values an arm provides."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are rows of a phase diagram, which need a grid of parameters."""
 
     @model_validator(mode="before")
     @classmethod
     def _with_defaults(cls, given: Any) -> Any:
-        """A grid need not name what has a default; a file of points has a column for it, an arm its own."""
+        """Adds defaults of parameters to a grid. Files of points have columns, and arms have their own
+        values.
+        """
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """The axes of a grid of parameters, by name, those of the arm among them; of others the given."""
+        """Axes of a grid of parameters by name, including those made from an arm; else only the given
+        axes.
+        """
         if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
@@ -54,17 +58,17 @@ class Axes(LinearAxes):
 
     @property
     def given_axes(self) -> dict[str, Axis]:
-        """The axes that are given by name."""
+        """Axes given by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, Axis)}
 
     @property
     def is_list(self) -> bool:
-        """Whether the points are a list from a file."""
+        """Whether the points are listed in a file."""
         return self.points is not None
 
     @property
     def over(self) -> tuple[str, ...]:
-        """The axes of a grid over an arm's own quantities; none where the points are of another kind."""
+        """Axes of a grid over an arm's quantities; empty for points of another kind."""
         if self.arm is None:
             return ()
         given = self.arm.given | self.given_axes
@@ -72,7 +76,7 @@ class Axes(LinearAxes):
 
     @property
     def alone(self) -> dict[str, int]:
-        """How many values each parameter has along an axis that moves no other."""
+        """Number of values of each parameter along an axis that changes no other parameter."""
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes
@@ -80,7 +84,7 @@ class Axes(LinearAxes):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The parameters that have no axis but one number for the whole sweep, by name."""
+        """Parameters with one number for the whole sweep instead of an axis, by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, float)}
 
     @property
@@ -88,7 +92,7 @@ class Axes(LinearAxes):
         return {name: getattr(self, name, None) for name in NONLINEAR_PARAMETERS}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
-        """ValueError unless all axes `names` are given or, where that is allowed, a file of points."""
+        """Raises ValueError unless all axes `names`, an arm or, if allowed, a file of points is given."""
         if self.points is not None and self.arm is not None:
             raise ValueError("parameters.points and parameters.arm are both given; give one of them")
         if self.points is not None and self.axes:
@@ -103,7 +107,7 @@ class Axes(LinearAxes):
             raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
 
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
-        """ValueError unless the arm, with what is given beside it, makes points."""
+        """Raises ValueError unless the arm, together with the parameters beside it, defines points."""
         arm.refuse_unfit()
         arm.refuse_misuse(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
@@ -119,21 +123,21 @@ AllAxes: Any = _section(Axes, BEYOND_LINEAR, Values)
 
 
 class LinearParameters(AxesAndNumbers):
-    """The parameters of the linear problem; one that only the nonlinear rod has is one number or none."""
+    """Parameters of the linear problem. A parameter of the nonlinear rod only may be one number."""
 
 
 class DiagramParameters(LinearParameters):
-    """The parameters of a phase diagram."""
+    """Parameters of a phase diagram."""
 
     in_diagram: ClassVar[bool] = True
 
 
 class NonlinearParameters(AllAxes):
-    """The parameters of the nonlinear rod."""
+    """Parameters of the nonlinear rod."""
 
     of_arm: ClassVar[tuple[str, ...]] = NONLINEAR_PARAMETERS
 
 
 def words(names: tuple[str, ...], last: str) -> str:
-    """The names, one or more, as a list in a sentence."""
+    """Names in a sentence: "a, b and c" with `last` = "and"."""
     return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

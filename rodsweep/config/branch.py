@@ -1,4 +1,4 @@
-"""The keys of the task branch: cycles followed in one parameter from the Hopf points where they are born."""
+"""Config of the task branch: branches of cycles followed in one parameter from their Hopf points."""
 
 from collections.abc import Mapping
 from math import inf, isfinite
@@ -12,22 +12,23 @@ from .schema import Config
 from .values import Number, Strict
 
 FOLLOWED = LINEAR_PARAMETERS
-"""Parameters along which branches are followed: Hopf points do not feel gamma1."""
+"""Parameters along which branches can be followed; gamma1 is excluded because Hopf points do not depend on
+it."""
 
 
 class BranchOptions(Strict):
-    """Along which parameter the cycles of each rod are followed, how far, and what is kept."""
+    """Parameter and range of the branches, and the number of cycles and special points that are stored."""
 
     along: Literal[FOLLOWED] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
-    """The parameter that is followed; the others are axes."""
+    """Parameter along which branches are followed. All other parameters are axes."""
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
-    """Least value of that parameter; a branch that reaches it ends there."""
+    """Smallest value of the parameter `along`; a branch ends there."""
     stop: Annotated[Number, Field(gt=-inf, lt=inf)] = 200.0
-    """Largest value; F ends just below k1 where that is less."""
+    """Largest value of the parameter `along`. F ends just below k1 if k1 is smaller."""
     cycles: Annotated[int, Field(ge=1, le=100_000)] = 500
-    """The most cycles that are stored for a rod, of all its branches."""
+    """Maximum number of stored cycles per rod, over all branches."""
     special: Annotated[int, Field(ge=1, le=10_000)] = 64
-    """The most special points that are stored for a rod."""
+    """Maximum number of stored special points per rod."""
     certify: bool = True
     """Confirm by winding numbers between the Hopf points that none is missing."""
 
@@ -46,13 +47,15 @@ class BranchOptions(Strict):
 
 
 class BranchConfig(Config):
-    """Cycles followed through folds, stable or not, from every Hopf point of a rod to where they end."""
+    """Cycles, stable or not, followed through folds from every Hopf point of a rod to the ends of their
+    branches.
+    """
 
     task: Literal["branch"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
-    """Relative error of each cycle's period and largest y. Special points are located to it or to 1e-9,
-    whichever is less; the file holds estimates of all."""
+    """Relative error of each cycle's period and largest y. Special points are located to the smaller of
+    `accuracy` and 1e-9. The file holds error estimates of all."""
     branch: BranchOptions = BranchOptions()
 
     others_may_be_needed: ClassVar[bool] = True
@@ -68,7 +71,9 @@ class BranchConfig(Config):
     @model_validator(mode="before")
     @classmethod
     def _followed_has_no_default(cls, given: Any) -> Any:
-        """The parameter that is followed has no value, unless one is given, which is refused."""
+        """Removes the default of the followed parameter, which has no value of its own; a given value is
+        refused.
+        """
         sections = given if isinstance(given, dict) else {}
         options, parameters = sections.get("branch"), sections.get("parameters")
         along = options.get("along") if isinstance(options, dict) else None

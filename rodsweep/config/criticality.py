@@ -1,4 +1,4 @@
-"""The keys of the task criticality: Hopf points of the straight rod, and the cycles that are born there."""
+"""Config of the task criticality: Hopf points of the straight rod, and the cycles born there."""
 
 from collections.abc import Mapping
 from math import inf
@@ -13,24 +13,24 @@ from .values import Number, Strict
 
 
 class CriticalityOptions(Strict):
-    """What the task criticality computes for each rod."""
+    """Range of the search, and the number of Hopf points that are stored."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
-    """The search for Hopf points ends here, or just below k1 where that is less."""
+    """Largest force of the search for Hopf points, which ends just below k1 if k1 is smaller."""
     crossings: Crossings = 16
-    """The most Hopf points that are stored."""
+    """Maximum number of stored Hopf points."""
     certify: bool = True
     """Confirm by winding numbers between the Hopf points that none is missing."""
 
 
 class CriticalityConfig(Config):
-    """On which side of every Hopf point of a rod the cycles are that are born there, and how they grow."""
+    """Criticality of every Hopf point of a rod, and how amplitude and frequency of its cycles grow."""
 
     task: Literal["criticality"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each Hopf point, of the slope of its eigenvalue and of its Landau coefficient. The
-    amplitude coefficient and the frequency slope follow from them; the file holds estimates of all."""
+    amplitude coefficient and the frequency slope follow from these; the file holds error estimates of all."""
     criticality: CriticalityOptions = CriticalityOptions()
 
     @classmethod

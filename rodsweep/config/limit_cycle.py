@@ -1,4 +1,4 @@
-"""The keys of the task limit_cycle: the nonlinear rod, whose axial drag is a parameter like the others."""
+"""Config of the task limit_cycle: the nonlinear rod, including its axial drag gamma1."""
 
 from typing import Annotated, Any, Literal
 
@@ -15,48 +15,50 @@ Along = Literal[(*NONLINEAR_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[vali
 
 
 class LimitCycleOptions(Strict):
-    """From where each point starts, how long it may take, and what is stored of its cycle."""
+    """Start of each point, limits of its computation, and stored data of its cycle."""
 
     method: Literal["collocation", "integration"] = "collocation"
-    """Cycles by collocation in time, with their multipliers, or by time integration alone, without."""
+    """Cycles by collocation in time, with multipliers, or by time integration alone, without multipliers."""
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
-    """Tip deflection of the leading mode from which a point starts, in L."""
+    """Tip deflection of the leading mode at the start of a point, in L."""
     start: Literal["mode", "neighbour", "hopf"] = "mode"
-    """From where each point starts: the leading mode, its neighbour's cycle, or the Hopf point."""
+    """Start of each point: the leading mode, a neighbour's cycle, or the Hopf point."""
     along: Along = LONGEST
-    """The parameter along which neighbours follow each other, or the arm's quantity that moves it; longest is
-    the one with most points."""
+    """Parameter along which neighbours follow each other, or a quantity of the arm that changes only this
+    parameter; `longest` is the parameter with most values."""
     direction: Literal["up", "down"] = "up"
-    """Whether that parameter grows or falls from a point to the next."""
+    """Whether the parameter `along` increases or decreases from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
-    """Harmonics of the tip's y that are stored."""
+    """Number of stored harmonics of the tip's y."""
     samples: Annotated[int, Field(ge=0, le=100_000)] = 0
-    """Times over a period at which the tip and the energy are stored; 0 stores none."""
+    """Times per period at which the tip and the energy are stored; 0 stores none."""
     shapes: Annotated[int, Field(ge=0, le=10_000)] = 0
-    """Times over a period at which the shape of the rod is stored; 0 stores none."""
+    """Times per period at which the shape of the rod is stored; 0 stores none."""
     nodes: Nodes = 33
-    """Lobatto nodes on which shapes are given."""
+    """Number of Lobatto nodes of each shape."""
     transient: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Times from the start to the cycle at which the tip of the real motion is stored; 0 stores none."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
-    """Periods after which a point that is not settled is given up."""
+    """Maximum number of periods; an unsettled point is then given up."""
     time: Literal["tau2", "tau1"] = "tau2"
-    """tau1 adds the period in units of tau1; all else stays in tau2."""
+    """Unit of time; tau1 adds the period in units of tau1, and all else stays in tau2."""
 
 
 class LimitCycleConfig(Config):
-    """The limit cycle of the nonlinear rod at every point, or that there is none."""
+    """The limit cycle of the nonlinear rod at every point, or the fact that none exists."""
 
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
-    """Relative error of the period and of the tip's largest y. The tip's other extrema, in units of that, may
-    be off by a hundred times as much; the file holds estimates of all."""
+    """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
+    hundred times larger, in units of the largest y. The file holds error estimates of all."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
     @property
     def along(self) -> str:
-        """The parameter along which neighbours follow each other: the first of those with most points."""
+        """Parameter along which neighbours follow each other: by default the first parameter with most
+        values.
+        """
         sizes, given = self.parameters.alone, self.limit_cycle.along
         if given == LONGEST:
             return max(sizes, key=lambda name: sizes[name], default=given)
@@ -98,8 +100,8 @@ class LimitCycleConfig(Config):
             )
         if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.alone:
             raise ValueError(
-                f"limit_cycle.start: neighbour needs several values of what moves one parameter only, along "
-                f"which neighbours follow each other, and parameters.arm has axes over "
+                f"limit_cycle.start: neighbour needs several values of a quantity that changes one parameter "
+                f"only, along which neighbours follow each other, and parameters.arm has axes over "
                 f"{' and '.join(self.parameters.over)}; give several of "
                 f"{words((*AXIS_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )

@@ -1,4 +1,4 @@
-"""The keys of the task modes."""
+"""Config of the task modes."""
 
 from typing import Literal
 
@@ -9,20 +9,22 @@ from .values import Strict
 
 
 class ModesOptions(Strict):
-    """What the task modes computes at each point."""
+    """Number of modes at each point, their nodes, and whether transient growth is computed."""
 
     modes: Modes = 2
-    """Leading modes at each point."""
+    """Number of leading modes at each point."""
     nodes: Nodes = 65
-    """Lobatto nodes on which the modes are given."""
+    """Number of Lobatto nodes of each mode."""
     growth: bool = True
-    """Whether the numerical abscissa and the transient growth are computed."""
+    """Compute the numerical abscissa and the transient growth."""
     certify: bool = True
     """Prove by the winding number that no leading mode is missing."""
 
 
 class ModesConfig(LinearConfig):
-    """The leading modes at every point, with their adjoints, and what non-normality makes of them."""
+    """The leading modes at every point, with their adjoints and the transient growth of the non-normal
+    operator.
+    """
 
     task: Literal["modes"]
     modes: ModesOptions = ModesOptions()

@@ -1,4 +1,4 @@
-"""The keys of the task phase_diagram."""
+"""Config of the task phase_diagram."""
 
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal
@@ -18,27 +18,27 @@ class BautinAlong(LinearAxes):
 
 
 class PhaseDiagramOptions(Strict):
-    """What the task phase_diagram computes along each row."""
+    """Options for the rows of a phase diagram and for the curves between them."""
 
     crossings: Crossings = 16
-    """The most crossings that are stored for a row."""
+    """Maximum number of stored crossings per row."""
     certify: bool = True
     """Confirm by winding numbers between the changes, and certify every spectrum."""
     curves: bool = True
-    """Whether the boundaries between the rows are followed as curves."""
+    """Follow the boundaries between the rows as curves."""
     criticality: bool = False
-    """Whether Hopf curves tell on which side cycles are born, and where that changes; needs `curves`."""
+    """Compute the criticality along Hopf curves, and where it changes; needs `curves`."""
     cycles: bool = False
-    """Whether the cycles of each row are followed, for the stable states and, with `curves`, their folds."""
+    """Follow the cycles of each row, for the stable states and, with `curves`, the curves of their folds."""
     bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
         None
     )
-    """A third parameter with values, over which generalised Hopf points are followed as curves; needs
+    """A third parameter with values, over which curves of generalised Hopf points are followed; needs
     `criticality`."""
 
     @property
     def third(self) -> tuple[str, Axis] | None:
-        """The third parameter and its values, if one is given."""
+        """The third parameter and its values, None if not given."""
         given = [(name, getattr(self.bautin_along, name, None)) for name in LINEAR_PARAMETERS]
         return next(((name, axis) for name, axis in given if axis is not None), None)
 
@@ -61,7 +61,7 @@ class PhaseDiagramOptions(Strict):
 
 
 class PhaseDiagramConfig(LinearConfig):
-    """What the rod does over two parameters, row by row: a row is a line in the first of the two."""
+    """States of the rod over two parameters, row by row; a row is a line in the first parameter."""
 
     task: Literal["phase_diagram"]
     parameters: DiagramParameters
@@ -73,7 +73,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def plane(self) -> tuple[str, ...]:
-        """(line axis, row axis): the parameters with more than one value, in their usual order."""
+        """(line axis, row axis): the parameters with more than one value, in the order of
+        LINEAR_PARAMETERS.
+        """
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
     @property
@@ -82,7 +84,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def gamma1(self) -> float:
-        """The axial drag, which only the criticality and cycles feel: as given, the arm's, or the default."""
+        """The axial drag, on which only criticality and cycles depend: the given value, the arm's, or the
+        default.
+        """
         if "gamma1" in self.parameters.numbers:
             return self.parameters.numbers["gamma1"]
         if self.parameters.arm is not None:
@@ -91,11 +95,11 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """With the values along every row; and, where curves are drawn, whether an axis is one of ratios."""
+        """Adds the values along every row and, if curves are drawn, which axes are logarithmic."""
         meant, axes, line = super().meaning, self.parameters.axes, self.plane[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
         meant |= {"parameters": meant["parameters"] | asked}
-        # Rows do not feel the criticality, which belongs to the curves; gamma1 they feel by their cycles.
+        # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
         asked_of_curves = meant["phase_diagram"].pop("criticality")
         meant["phase_diagram"].pop("bautin_along", None)
         meant["parameters"].pop("gamma1", None)
@@ -115,8 +119,9 @@ class PhaseDiagramConfig(LinearConfig):
         options = self.phase_diagram
         if options.criticality and not options.curves:
             raise ValueError(
-                "phase_diagram.criticality is true but phase_diagram.curves is false; it is told along the "
-                "curves: set phase_diagram.curves: true or remove phase_diagram.criticality"
+                "phase_diagram.criticality is true but phase_diagram.curves is false; criticality is "
+                "computed along the curves: set phase_diagram.curves: true or remove "
+                "phase_diagram.criticality"
             )
         if "gamma1" in self.parameters.numbers and not (options.criticality or options.cycles):
             raise ValueError(

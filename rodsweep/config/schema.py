@@ -1,7 +1,6 @@
-"""The keys that the config of every task has, and those of the options that several tasks have.
+"""Keys common to the configs of all tasks, and keys shared by the options of several tasks.
 
-Ranges that are physics (F < k1, positive stiffness) are not checked here but where points are made; here is
-form only.
+Only the form is checked here. Physical ranges (F < k1, positive stiffness) are checked where points are made.
 """
 
 from collections.abc import Mapping
@@ -19,40 +18,40 @@ Crossings = Annotated[int, Field(ge=1, le=1000)]
 
 
 class Config(Strict):
-    """What the config of every task has."""
+    """Keys and properties of the config of every task."""
 
     title: Annotated[Text, Field(max_length=200)] = ""
-    """The name of the run, as `check` and `show` print it."""
+    """Name of the run, printed by `check` and `show`."""
     task: str
     parameters: Axes
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode."""
 
     into_crushed: ClassVar[bool] = False
-    """Whether a grid may reach into the crushed rods, because they are one of the task's answers."""
+    """Whether a grid may contain crushed rods, because they are one of the task's states."""
 
     others_may_be_needed: ClassVar[bool] = False
-    """Whether its options decide which parameters it needs."""
+    """Whether the options of the task decide which parameters are needed."""
     of_several_rods: ClassVar[bool] = False
-    """Whether a single rod makes nothing of the task."""
+    """Whether the task needs several rods."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The parameters that make a point of the sweep."""
+        """Parameters of a point of the sweep."""
         return self.taken_of_a_rod({})
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """The parameters that the task, with these options, takes of a rod that has all of them."""
+        """Parameters of a rod that the task uses with these options."""
         return NONLINEAR_PARAMETERS
 
     @property
     def unused(self) -> dict[str, str]:
-        """The options that nothing uses in this config, each with the setting that would."""
+        """Options without effect in this config, by name, with the setting required for an effect."""
         return {}
 
     def refuse_unused(self) -> None:
-        """ValueError where an option is given that nothing uses."""
+        """Raises ValueError if an option without effect is given."""
         for option, remedy in self.unused.items():
             if option in getattr(self, self.task).model_fields_set:
                 raise ValueError(
@@ -61,35 +60,35 @@ class Config(Strict):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """What is asked of every point, JSON-compatible: all that changes a number, but for the points.
+        """All settings on which the results depend, except the points, as JSON-compatible values.
 
-        `together`, where it is there, changes only what all points together give.
-        Two configs with equal meanings and equal points ask for the same, however they are written.
+        The key `together`, if present, changes only variables determined by all points together. Two configs
+        with equal meanings and equal points give the same results.
         """
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
         numbers = dict(self.parameters.numbers)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
         if self.parameters.arm is None:
             return meant
-        if self.parameters.over:  # whose axes do not tell what has one value
+        if self.parameters.over:  # the grid's axes do not contain parameters with one value
             given = self.parameters.given_axes
             beside = {name: float(given[name].array()[0]) if name in given else None for name in self.names}
             meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.over}
         return meant | {"arm": self.parameters.arm.meaning}
 
     def refuse_found(self, name: str, why: str) -> None:
-        """ValueError, which says why, where a parameter is given that the task itself finds."""
+        """Raises ValueError, with the reason, if a parameter is given that the task finds."""
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
 
 
 class LinearConfig(Config):
-    """What the configs of the linear problem share."""
+    """Common part of the configs of the linear problem."""
 
     parameters: LinearParameters
 
     beyond: ClassVar[tuple[str, ...]] = ()
-    """Parameters that only the nonlinear rod has and yet the task can use."""
+    """Parameters of the nonlinear rod only that the task can still use."""
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

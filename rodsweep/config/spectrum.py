@@ -1,4 +1,4 @@
-"""The keys of the task spectrum."""
+"""Config of the task spectrum."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
@@ -11,18 +11,18 @@ from .values import Strict
 
 
 class SpectrumOptions(Strict):
-    """What the task spectrum computes at each point."""
+    """Number of eigenvalues at each point, the method, and stored data of their modes."""
 
     modes: Modes = 4
-    """Leading modes at each point."""
+    """Number of leading eigenvalues at each point."""
     method: Literal["determinant", "krylov_schur"] = "determinant"
-    """Eigenvalues as roots of D, or by Krylov-Schur on two meshes alone, which proves nothing."""
+    """Eigenvalues as roots of D, or by Krylov-Schur on two meshes, which proves nothing."""
     certify: bool = True
-    """Prove by the winding number that none of them is missing."""
+    """Prove by the winding number of D that no eigenvalue is missing."""
     vectors: bool = False
-    """Store (Y, Theta), scaled to Y(1) = 1, to about `accuracy`."""
+    """Store (Y, Theta), scaled to Y(1) = 1, with an error of about `accuracy`."""
     nodes: Nodes = 33
-    """Lobatto nodes on which (Y, Theta) are given, where `vectors` asks for them."""
+    """Number of Lobatto nodes of (Y, Theta); used if `vectors` is true."""
     follow: bool = True
     """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
     longitudinal: bool = False
@@ -50,12 +50,14 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def certifies(self) -> bool:
-        """Whether the winding number of D is to prove that no mode is missing."""
+        """Whether the winding number of D must prove that no mode is missing."""
         return self.spectrum.certify and self.spectrum.method == "determinant"
 
     @property
     def follows(self) -> bool:
-        """Whether eigenvalues are followed; vectors are the mesh's, and it takes a count to miss none."""
+        """Whether eigenvalues are followed along an axis: vectors come from the mesh, and only a count
+        reveals a miss.
+        """
         return self.spectrum.follow and self._could_follow
 
     @property
@@ -65,7 +67,7 @@ class SpectrumConfig(LinearConfig):
     @property
     def meaning(self) -> dict[str, Any]:
         meant = super().meaning
-        if "follow" in meant["spectrum"] and not self._could_follow:  # then it makes no difference
+        if "follow" in meant["spectrum"] and not self._could_follow:  # `follow` then has no effect
             meant["spectrum"]["follow"] = True
         return meant
 

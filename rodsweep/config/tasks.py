@@ -1,4 +1,4 @@
-"""The config of every task, by its name; the section of a task's options has that name too."""
+"""Config class of every task by name. The section with the task's options has the same name."""
 
 from typing import Any
 

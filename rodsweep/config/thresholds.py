@@ -1,4 +1,4 @@
-"""The keys of the task thresholds."""
+"""Config of the task thresholds."""
 
 from collections.abc import Mapping
 from math import inf
@@ -12,18 +12,18 @@ from .values import Number, Strict
 
 
 class ThresholdsOptions(Strict):
-    """What the task thresholds computes for each rod."""
+    """Range of the search, and the number of crossings that are stored."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
-    """The search ends here, or just below k1 where that is less."""
+    """Largest force of the search, which ends just below k1 if k1 is smaller."""
     crossings: Crossings = 16
-    """The most crossings that are stored."""
+    """Maximum number of stored crossings."""
     certify: bool = True
     """Confirm by winding numbers between the changes, and certify every spectrum."""
 
 
 class ThresholdsConfig(LinearConfig):
-    """The forces at which the spectrum of every rod changes its kind."""
+    """Forces at which the number or kind of the unstable eigenvalues of a rod changes."""
 
     task: Literal["thresholds"]
     thresholds: ThresholdsOptions = ThresholdsOptions()

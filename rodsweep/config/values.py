@@ -1,4 +1,4 @@
-"""What a value in a config may be: a number, text, or the axis of a parameter. Knows no key, no physics."""
+"""Values in a config: numbers, text, and axes of parameters. Knows no keys and no physics."""
 
 from math import inf, isinf, isnan
 from typing import Annotated, Any, Literal
@@ -9,11 +9,11 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSeriali
 from ..arrays import Array
 
 MOST_VALUES = 1_000_000_000
-"""Values on one axis."""
+"""Maximum number of values on one axis."""
 
 
 class Strict(BaseModel):
-    """A section of the config: unknown keys are refused, types are not guessed, values are frozen."""
+    """Section of the config: unknown keys are refused, types are not converted, values are frozen."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -34,7 +34,7 @@ def as_number(value: Any) -> float:
 
 
 def overflows(text: str) -> bool:
-    """Whether a text is a decimal number, such as 1e400, that a float cannot hold."""
+    """Whether a text is a decimal number too large for a float, such as 1e400."""
     try:
         return any(c.isdigit() for c in text) and not text.lstrip("+-").isdigit() and isinf(float(text))
     except ValueError:
@@ -42,16 +42,18 @@ def overflows(text: str) -> bool:
 
 
 def short(value: Any) -> str:
-    """`value` as the user may recognise it, cut to a line of 60 characters."""
+    """`repr` of a value, cut to 60 characters."""
     try:
         text = repr(value)
-    except (ValueError, RecursionError):  # an integer of thousands of digits, a tree that is too deep
+    except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
         return f"a {type(value).__name__} too large to be shown"
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 def named(name: object, most: int = 200) -> str:
-    """A key, a file or what others say, as it is where it can be printed; without its middle if long."""
+    """A name for a message: `repr` if it is not printable, shortened in the middle beyond `most`
+    characters.
+    """
     text = str(name)
     if not text.isprintable():
         text = repr(text)
@@ -59,12 +61,12 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """A text of several lines whose control characters, which a terminal would obey, are `\\x1b` and such."""
+    """Text with its control characters escaped as `\\x1b` and such, because a terminal would obey them."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
 def as_text(value: Any) -> Any:
-    """Text without control characters or lone surrogates, which no file name and no title needs."""
+    """The value; ValueError for text with control characters or lone surrogates."""
     if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
         raise ValueError(f"{short(value)} has characters that cannot be printed")
     return value
@@ -76,11 +78,11 @@ Number = Annotated[
     BeforeValidator(as_number),
     PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
 ]
-"""A number, which JSON has only if it is finite."""
+"""A number. JSON stores infinite numbers as text."""
 
 
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
-"""A number of an axis as a JSON schema."""
+"""JSON schema of a number on an axis."""
 AXIS_SCHEMA: dict[str, Any] = {
     "description": "a number, a list in increasing order, or a range",
     "anyOf": [
@@ -99,11 +101,11 @@ AXIS_SCHEMA: dict[str, Any] = {
         },
     ],
 }
-"""What `as_axis` takes, as a JSON schema."""
+"""JSON schema of the values taken by `as_axis`."""
 
 
 DIGITS_OF_QUANTITY = 15
-"""Digits of a quantity in SI units: as many as conversion leaves of what was typed."""
+"""Significant digits of a quantity in SI units; unit conversion changes the 16th digit."""
 
 
 class Axis(Strict):
@@ -111,7 +113,7 @@ class Axis(Strict):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, *_: Any) -> dict[str, Any]:
-        """What the user writes, not what is made of it."""
+        """JSON schema of the user's forms, not of this class."""
         return AXIS_SCHEMA
 
     values: tuple[Number, ...] | None = None
@@ -120,9 +122,9 @@ class Axis(Strict):
     num: int = 0
     spacing: Literal["linear", "log"] = "linear"
     factor: Annotated[float, Field(exclude=True)] = 1.0
-    """What the values of a range are multiplied by: of a quantity in SI, what it makes of a parameter."""
+    """Multiplier of all values of a range, such as the ratio of the parameter F to a pressure in Pa."""
     written: Annotated[Any, Field(exclude=True)] = None
-    """What the user wrote, where that has units."""
+    """The user's own form, for values with units; else None."""
 
     @property
     def size(self) -> int:
@@ -130,7 +132,7 @@ class Axis(Strict):
 
     @property
     def logarithmic(self) -> bool:
-        """Whether the axis is meant in ratios: by its spacing, or a list over more than a decade."""
+        """Whether the axis is logarithmic: by its spacing, or as a list over more than a decade."""
         if self.values is None:
             return self.spacing == "log"
         finite = [value for value in self.values if value < inf]
@@ -138,24 +140,24 @@ class Axis(Strict):
 
     @property
     def resolved(self) -> dict[str, Any]:
-        """Its keys and values, JSON-compatible, with the ends of a range as they are."""
+        """Keys and values, JSON-compatible, with the factor applied to the ends of a range."""
         tree = self.model_dump(mode="json", exclude_none=True)
         ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
         return tree | {name: self.factor * value for name, value in ends.items()}
 
     def scaled(self, scale: float) -> "Axis":
-        """The axis with all values multiplied."""
+        """The axis with all values multiplied by a number."""
         if self.values is not None:
             return Axis(values=tuple(scale * value for value in self.values))
-        # The factor is kept apart, so that a longer range has the same values.
+        # The ends stay unscaled, so that a longer range contains exactly the same values.
         return self.model_copy(update={"factor": scale * self.factor})
 
     def agrees(self, other: "Axis") -> bool:
-        """Whether the two have the same values, but for rounding."""
+        """Whether two axes have the same values within rounding."""
         return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
 
     def array(self) -> Array:
-        """The values, increasing, shape (size,)."""
+        """Values in increasing order, shape (size,)."""
         if self.values is not None:
             values = np.array(self.values)
         elif self.spacing == "log":
@@ -164,7 +166,7 @@ class Axis(Strict):
             values = self.factor * np.linspace(self.start, self.stop, self.num, dtype=np.float64)
         if self.written is None:
             return values
-        # 10 cm between 4 cm and 12 cm is 0.1 m, as whoever looks for it writes, and not 0.09999999999999999.
+        # Rounded, so that 10 cm between 4 cm and 12 cm is 0.1 m, as a user would type, and not 0.099999...
         return np.array([float(f"{value:.{DIGITS_OF_QUANTITY}g}") for value in values.tolist()])
 
 
@@ -210,7 +212,7 @@ def _range(value: dict) -> Axis:
 
 
 def axis_of(resolved: dict[str, Any]) -> Axis:
-    """The axis that a resolved config holds; ValueError or TypeError if it is none."""
+    """The axis in a resolved config; ValueError or TypeError if it is none."""
     values = resolved.get("values")
     return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_number, values))}))
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import EnvironmentLacks, InputError
+from ..errors import EnvironmentIncomplete, InputError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -35,7 +35,7 @@ def registry() -> "UnitRegistry":
     try:
         from pint import UnitRegistry
     except ModuleNotFoundError:
-        raise EnvironmentLacks("units need pint: pip install pint") from None
+        raise EnvironmentIncomplete("units need pint: pip install pint") from None
     return UnitRegistry()
 
 

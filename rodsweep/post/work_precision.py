@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from ..errors import EnvironmentLacks
+from ..errors import EnvironmentIncomplete
 from ..results.file.measurements import Table
 from .figures.style import FIRST, SECOND, STYLE, THIRD
 
@@ -65,7 +65,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
         try:
             figure.savefig(output)
         except OSError as error:
-            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
+            raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror}") from error
 
 
 def _looks(groups: dict[str, str]) -> dict[str, dict]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import BUG_STATUS, EnvironmentLacks, Refusal
+from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -24,7 +24,7 @@ class Team:
         try:
             from mpi4py import MPI
         except ImportError as error:
-            raise EnvironmentLacks(
+            raise EnvironmentIncomplete(
                 f"mpi4py cannot be imported ({error}); `make install` provides it"
             ) from error
         self.MPI = MPI
@@ -32,7 +32,9 @@ class Team:
         self.rank: int = self.comm.Get_rank()
         self.size: int = self.comm.Get_size()
         if self.size > 1 and MPI.Query_thread() < MPI.THREAD_MULTIPLE:
-            raise EnvironmentLacks("this MPI was started without MPI_THREAD_MULTIPLE, which rodsweep needs")
+            raise EnvironmentIncomplete(
+                "this MPI was started without MPI_THREAD_MULTIPLE, which rodsweep needs"
+            )
 
     @property
     def first(self) -> bool:

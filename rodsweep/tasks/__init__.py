@@ -1,7 +1,7 @@
-"""What each task brings to the generic parts of the command line: one module per task.
+"""One module per task: connects config and points with solver and variables.
 
-A new task needs a module of its name here, in `rodsweep.config`, `rodsweep.results.layouts`,
-`rodsweep.post.summary` and `rodsweep.post.figures`, each with an entry in the registry of its package.
+A new task needs a module of the same name here, in `rodsweep.config`, `rodsweep.results.layouts`,
+`rodsweep.post.summary` and `rodsweep.post.figures`, and an entry in the registry of each package.
 """
 
 from collections.abc import Callable
@@ -26,4 +26,5 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "criticality": CriticalityTask,
     "branch": BranchTask,
 }
-"""How a task is made of its config and points; InputError for what only the task can know to be wrong."""
+"""Constructors of the tasks from config and points. Raise InputError for errors only the task can
+recognise."""

@@ -1,4 +1,4 @@
-"""The task branch: the cycles of every rod, followed in one parameter from its Hopf points."""
+"""The task branch: the branches of cycles of every rod, followed in one parameter from its Hopf points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class BranchTask(NonlinearTask):
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
-        """The parameters of the rods, (points,) each, and the ends of the one that is followed, (2,)."""
+        """Parameters of the rods, (points,) each, and the ends of the followed parameter, (2,)."""
         options = self.config.branch
         return self.points.of_rods | {options.along: np.array([options.start, options.stop])}
 
@@ -70,7 +70,7 @@ class BranchTask(NonlinearTask):
 
 
 def record(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
-    """All branches of a rod as the variables of the file; points, special: rooms of the two lists."""
+    """All branches of a rod as variables of the file; points, special: lengths of the two lists."""
     cycles = [
         _cycle(point, along) | {"branch": number}
         for number, curve in enumerate(result.curves, 1)
@@ -98,7 +98,9 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
 
 
 def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
-    """The number of the branch that meets another at a symmetry breaking, by branch and place on it."""
+    """Meeting branches at symmetry breakings: {(branch, place of its special point): number of the second
+    branch}.
+    """
     numbers = {}
     for number, curve in enumerate(curves, 1):
         ends = ((curve.breaking, 0), (curve.meets, len(curve.special) - 1))
@@ -110,7 +112,7 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
 
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
-    """A cycle of a branch by the names of its variables."""
+    """A cycle of a branch as variables of the file."""
     own = {f"branch_{along}": "at", f"branch_{along}_error": "at_error", "unstable_multipliers": "unstable"}
     variables = [v for v in followed_variables(along) if v.name != "branch"]
     return recorded(variables, point, point.measures, point.errors, names=own)
@@ -120,11 +122,11 @@ OTHERWISE = {
     "special_tip_y_max_error": "size_error",
     "special_amplitude_coefficient_error": "coefficient_error",
 }
-"""Fields of a special point that are not called as their variables."""
+"""Fields of a special point whose names differ from their variables."""
 
 
 def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
-    """A special point by the names of its variables. start: place of its branch's first cycle."""
+    """A special point as variables of the file. start: index of the first cycle of its branch."""
     beside = {
         "special_point": start + point.after + 1 if point.after >= 0 else 0,
         "special_reason": int(point.reason or 0),

@@ -55,7 +55,7 @@ class CriticalityTask(NonlinearTask):
 
 
 def record(result: "Criticality", most: int) -> dict[str, Any]:
-    """A Criticality as the variables of the file."""
+    """The result of a rod as variables of the file; most: length of the list of Hopf points."""
     search = search_record(result, most, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]

@@ -1,4 +1,4 @@
-"""Shapes and samples of cycles that a file holds without them: solved once more, for a figure."""
+"""Shapes and samples of cycles for a figure of a file without them: the cycles are solved again."""
 
 import json
 from collections.abc import Sequence
@@ -9,21 +9,23 @@ from typing import Any
 import numpy as np
 
 from ..config.document.reading import validated, yaml_of
-from ..errors import EnvironmentLacks, InputError
+from ..errors import EnvironmentIncomplete, InputError
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
 from .running.job import Job, job_of
 
-SHAPES, SAMPLES = 48, 256
-"""Times over a period at which the shapes are solved, as an animation needs them, and the energies."""
+SHAPES = 48
+"""Times per period at which shapes are solved; an animation needs about 50 frames."""
+SAMPLES = 256
+"""Times per period at which tip and energy are solved."""
 SAME_PERIOD = 100
-"""Estimated errors by which the periods of one cycle, solved twice, may differ."""
+"""Maximum difference of the periods of a cycle solved twice, in units of their estimated errors."""
 
 
 def with_shapes(view: View, numbers: Sequence[int]) -> View:
-    """The file with shapes and samples of the cycles of points, numbered from 1; NaN at all other points.
+    """The file with shapes and samples of the cycles at the given points, numbered from 1; NaN at all others.
 
-    InputError where a point, solved again, comes to another cycle, as from another start it may.
+    InputError if a point solved again has another cycle, as is possible from a different start.
     """
     shape = view.variables["status"].shape
     added: dict[str, np.ndarray] = {}
@@ -38,13 +40,13 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
 
 
 def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
-    """The job of one point and the variables of its cycle."""
+    """The job of one point, and the variables of its cycle."""
     job = _job(view, number)
     try:
         solver = job.solver()
         solver.warm_up()
         record = solver.record(0, solver.solve(0))
-    except EnvironmentLacks as lack:
+    except EnvironmentIncomplete as lack:
         raise InputError(
             f"{view.path} holds no shapes of cycles, and none can be solved here: {lack}; run with "
             "limit_cycle.shapes > 0, which stores them"
@@ -60,7 +62,7 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
 
 
 def _job(view: View, number: int) -> Job:
-    """One point of the file by the file's own config, but started on its own."""
+    """Job of one point of the file, with the file's config, but independent of its neighbours."""
     config = json.loads(view.attributes["config_resolved"])
     stored = config["limit_cycle"]
     options = {"shapes": SHAPES, "samples": SAMPLES, "harmonics": stored["harmonics"], "start": "hopf"}

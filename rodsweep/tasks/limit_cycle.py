@@ -1,4 +1,6 @@
-"""The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
+"""The task limit_cycle: the beating of the nonlinear rod at every point, or its return to the straight
+rod.
+"""
 
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -33,10 +35,10 @@ if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
 OF_THE_SWEEP = ("method", "along", "direction", "time")
-"""Options that say by which method, how points follow each other and what the file adds; a cycle is asked for
-all others."""
+"""Options for the method, the order of the points and the units of the file; a cycle is solved for all other
+options."""
 MULTIPLIERS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
-"""Fields of a cycle that are not called as their variables."""
+"""Names of variables by the field of a cycle, where the two names differ."""
 FINITE_STIFFNESS = Range(isfinite, "a finite number")
 POSITIVE_DRAG = Range(lambda value: value > 0, "a number above 0")
 
@@ -55,7 +57,7 @@ class LimitCycleTask(Task):
 
     @property
     def chains(self) -> Chains | None:
-        """The chains in which points start one from the other, where they do."""
+        """Chains of points, each started from its neighbour's cycle; None without chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -63,7 +65,9 @@ class LimitCycleTask(Task):
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Times of samples, shapes and transients in their units; where along the rod shapes are given."""
+        """Times of samples, shapes and transients in their units; material coordinates of the nodes of
+        shapes.
+        """
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
         times = {name: np.arange(count) / count for name, count in extents.items() if count}
@@ -72,7 +76,7 @@ class LimitCycleTask(Task):
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
     def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
-        """The Hopf points of the lines on which the points lie."""
+        """Hopf points of the lines through the points."""
         lines = hopf_lines_of(self.points)
         if lines:
             require_solvers()
@@ -111,7 +115,7 @@ class LimitCycleTask(Task):
         ]
 
     def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> Part:
-        """Whether something is stored only where it is asked for, and how much that is."""
+        """Part on variables that are stored only on request, with their number and memory."""
         options = self.config.limit_cycle
         each: int = getattr(options, option)
         if not each:
@@ -153,14 +157,14 @@ class LimitCycleTask(Task):
         )
 
     def _request(self) -> "CycleRequest":
-        """What is asked of every cycle."""
+        """Request for every cycle."""
         from ..solve.cycle.limit_cycle import CycleRequest
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         return CycleRequest(accuracy=self.config.accuracy, **options)
 
     def _integration(self) -> Solver:
-        """How points are solved by time integration alone."""
+        """Solver of the points by time integration alone."""
         from ..solve.cycle.limit_cycle import warm_up
         from ..solve.cycle.marched import solve_by_integration
         from ..solve.cycle.status import MarchedStatus
@@ -174,7 +178,7 @@ class LimitCycleTask(Task):
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
-        """A Cycle as the variables of the file, which are its fields and those of its measures and errors."""
+        """A Cycle as variables of the file: fields, measures and errors."""
         options = self.config.limit_cycle
         found = cycle.multipliers
         stored = _Stored(np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found)
@@ -191,12 +195,12 @@ class LimitCycleTask(Task):
 
 
 class _Stored(NamedTuple):
-    """The Floquet multipliers of a cycle as the file has them, complex, (STORED_MULTIPLIERS,)."""
+    """The Floquet multipliers of a cycle as stored, complex, (STORED_MULTIPLIERS,)."""
 
     multipliers: Complex
 
 
 def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
-    """Variables with their arrays, NaN where there are none."""
+    """Arrays by the names of their variables; NaN if the cycle has no such arrays."""
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

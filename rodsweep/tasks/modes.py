@@ -1,4 +1,6 @@
-"""The task modes: the leading modes with their adjoints, and what non-normality makes of them."""
+"""The task modes: the leading modes with their adjoints, and the transient growth of the non-normal
+operator.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -31,11 +33,11 @@ class ModesTask(ProvedTask):
     not_proved: ClassVar[str] = "modes may be missed"
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """The material coordinate of the modes' nodes, shape (nodes,)."""
+        """Material coordinates of the modes' nodes, shape (nodes,)."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Where the rods change along F."""
+        """Forces at which the rods change their stability."""
         return force_changes(self.points, values)
 
     def headline(self) -> str:
@@ -76,7 +78,7 @@ class ModesTask(ProvedTask):
 
 
 def record(result: "Modes", growth: bool) -> dict[str, Any]:
-    """Modes as the variables of the file."""
+    """Modes as variables of the file; growth: whether transient growth was computed."""
     vectors = result.vectors
     values = recorded(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
     values |= recorded(MODE_NUMBERS, vectors)

@@ -1,4 +1,4 @@
-"""What `check` says in the same words of every rod, and what the tasks of the linear problem share."""
+"""The output of `check` common to all tasks, and the common base of tasks with a certificate."""
 
 from abc import abstractmethod
 from collections.abc import Mapping
@@ -15,27 +15,27 @@ from .protocol import Part, Task
 
 @dataclass(frozen=True, slots=True)
 class ProvedTask(Task):
-    """A task that may be proved complete; what it asks for stands between what rods can do and what not."""
+    """A task whose completeness can be proved by a certificate."""
 
     not_proved: ClassVar[str]
-    """What may happen without a certificate."""
+    """Consequence of a missing certificate."""
     left_out: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",
     )
-    """What no option of the task models, and why."""
+    """(effects that no option of the task models, reason)."""
 
     @abstractmethod
     def asked(self) -> list[Part]:
-        """What the task's options ask for."""
+        """Parts that the task's options ask for."""
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
-        """The values of the parameters that the task's rods have, each of any shape."""
+        """Values of the parameters of the task's rods, each of any shape."""
         return self.points.of_rods | self.coordinates()
 
     def certificate(self) -> tuple[bool, str]:
-        """Whether completeness is proved, and by what, or why not."""
+        """(whether completeness is proved, the proof or the reason for its absence)."""
         task = self.config.task
         if getattr(self.config, task).certify:
             return True, "winding number of D"
@@ -53,7 +53,7 @@ class ProvedTask(Task):
 
 @dataclass(frozen=True, slots=True)
 class NonlinearTask(ProvedTask):
-    """A task of cycles next to or on branches, which Hopf points of the straight rod begin."""
+    """A task of cycles near Hopf points, or on branches from Hopf points."""
 
     not_proved: ClassVar[str] = "Hopf points may be missed"
     left_out: ClassVar[tuple[str, str]] = (
@@ -72,7 +72,7 @@ def count_of(points: Points) -> str:
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """Which of the rod's parts the values of k1, k2 and gamma3 make move, each of any shape."""
+    """Parts of the rod that move for the given values of k1, k2 and gamma3, each of any shape."""
     dragged = bool((columns["gamma3"] > 0).any())
     return [
         *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),

@@ -1,4 +1,4 @@
-"""The task phase_diagram: what the rod does over two parameters, row by row."""
+"""The task phase_diagram: states of the rod over two parameters, row by row."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PhaseDiagramTask(ProvedTask):
-    """A phase diagram; its points are the rows, each a line of values of the first of its two parameters."""
+    """A phase diagram. Its points are the rows; each row is a line of values of the first parameter."""
 
     config: PhaseDiagramConfig
 
@@ -35,7 +35,7 @@ class PhaseDiagramTask(ProvedTask):
         return self.config.parameters.axes[self.config.plane[0]].array()
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """The values along every row, shape (values,)."""
+        """The values along every row, shape (values,), by the name of their parameter."""
         return {self.config.plane[0]: self.line}
 
     def headline(self) -> str:
@@ -67,7 +67,7 @@ class PhaseDiagramTask(ProvedTask):
         ]
 
     def parts(self) -> list[Part]:
-        """As of a linear task, but for the cycles, which are motions of the nonlinear rod."""
+        """Parts of a linear task; with cycles, the nonlinear motion too."""
         linear = ProvedTask.parts(self)
         if not self.config.phase_diagram.cycles:
             return linear
@@ -102,11 +102,13 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def rod(self, index: int) -> Rod:
-        """One of the rods of a row: with its force 0 or its k1 inf where that varies along the row."""
+        """A rod of a row. The parameter that varies along the row is at a neutral value: F = 0, or k1 =
+        inf.
+        """
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":
-        """What is asked of every row."""
+        """Request for every row."""
         from ..solve.changes.rows import RowRequest
 
         options = self.config.phase_diagram
@@ -115,7 +117,7 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def _with_cycles(self, request: "RowRequest") -> Solver:
-        """How rows with their cycles are solved."""
+        """Solver of rows with their cycles."""
         from ..solve.branch.branches import warm_up
         from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
@@ -139,6 +141,6 @@ class PhaseDiagramTask(ProvedTask):
 
 
 def record(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
-    """A row as the variables of the file."""
+    """A row as variables of the file; line: the row's parameter, most: length of the list of crossings."""
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
     return classes | search_record(result.changes, most, line, "crossing_at") | {"seconds": result.seconds}

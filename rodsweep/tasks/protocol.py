@@ -1,4 +1,4 @@
-"""What a task is, for `check` and `run`: neither knows more of it than is said here."""
+"""Interface between a task and the commands `check` and `run`, which know no further details of a task."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -16,67 +16,71 @@ from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
 
 Arrays = dict[str, np.ndarray]
-"""The result of a unit of work."""
+"""Result of a unit of work, arrays by name."""
 InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
-"""From items and a function to its values in their order: how work is shared among ranks."""
+"""Maps a function over items, in their order, possibly sharing the work among ranks."""
 Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
-"""From an index, what its solve starts from and the solve to (outcome, state for the neighbour): what is done
-around the solve of a point."""
+"""Wraps the solve of a point: takes its index, its starting state and the solve, returns (outcome, state for
+the neighbour)."""
 Part = tuple[str, bool, str]
-"""(what, whether it is modelled, why): a row of what `check` prints."""
+"""(part, whether it is modelled, reason): a row of the table printed by `check`."""
 
 
 class Units(Protocol):
-    """Work on all points in units; which are wanted may depend on results. Sent to all ranks."""
+    """Work on all points, divided into units. The object is sent to all ranks; the wanted units may depend on
+    results.
+    """
 
     def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Units whose results are needed next, then some that may be; none once all are there."""
+        """Units still wanted: the ones needed next come first; empty once all results are known."""
 
     def where(self, unit: int) -> str:
-        """What a unit is, in words."""
+        """Name of a unit in words."""
 
 
 class AllPoints(Protocol):
-    """What only all points together give. On every rank."""
+    """Variables that need all points, such as curves. The object exists on every rank."""
 
     def units(self, view: View) -> Any:
-        """Its work in `Units`, from the file with all points; None where there is none in units."""
+        """The work as `Units`, from the file with all points; None if nothing is done in units."""
 
     def starts(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
-        """What this rank has that spares others the beginning of units."""
+        """Starting data for units, kept on this rank and useful to every rank."""
 
     def take(self, starts: Mapping[int, Any]) -> None:
-        """Takes what another rank has."""
+        """Keeps starting data from another rank."""
 
     def solve(self, units: Any, unit: int) -> Arrays:
-        """The result of a unit."""
+        """Result of a unit."""
 
     def nothing(self) -> Arrays:
-        """The result of a unit whose solver raised what nobody foresaw."""
+        """Result of a unit whose solver raised an unforeseen exception."""
 
     def variables(self, view: View, units: Any, results: Mapping[int, Arrays]) -> Sequence[Filled]:
-        """Variables of the file, with the results of all units that were wanted. On the first rank."""
+        """Variables of the file from the results of all wanted units; called on the first rank."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solver:
-    """What every rank of a run does with a point; `solve` gives an outcome with status and message."""
+    """Functions by which every rank solves points; `solve` returns an outcome with status and message."""
 
     statuses: Sequence[PointStatus]
     warm_up: Callable[[], object]
-    """Loads what is compiled and created at first use, so that no point pays for it."""
+    """Triggers compilation and fills caches before any point is timed."""
     solve: Callable[[int], Any]
     record: Callable[[int, Any], dict[str, Any]]
-    """An index and its outcome as the variables of the file."""
+    """Converts an index and its outcome into variables of the file."""
     together: AllPoints | None = None
-    """What only all points together give, where there is such."""
+    """Variables that need all points; None for tasks without joint variables."""
     chained: ChainedWork | None = None
-    """Where points start one from the other: how they are solved, instead of by `solve`."""
+    """Replaces `solve` if points start from their neighbour's solution."""
     stretched: tuple[Stretches, SolveStretch] | None = None
-    """Where neighbours are solved together: how, from their flat indices, instead of by `solve`."""
+    """Replaces `solve` if neighbours are solved together, from their flat indices."""
 
     def within(self, around: Around, together: SolveStretch | None = None, **changed: Any) -> "Solver":
-        """The solver with something `around` the solve of every point, and `together` for stretches."""
+        """The solver with `around` wrapped about the solve of every point, and with `together` for
+        stretches.
+        """
         chained, stretched = self.chained, self.stretched
         if chained is not None:
             step = chained.solve_from
@@ -93,55 +97,55 @@ class Solver:
 
 
 def alone(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
-    """The work on all items, on this rank."""
+    """Applies the work to all items on this rank."""
     return [work(item) for item in items]
 
 
 @dataclass(frozen=True, slots=True)
 class Task(ABC):
-    """One task on its points: sent to all ranks, and without PETSc until its solver is asked for."""
+    """A task with its points. It is sent to all ranks and starts PETSc only when `solver` is called."""
 
     config: Any
-    """Of the task's own kind."""
+    """The config, of the task's own class."""
     points: Points
 
     @property
     def chains(self) -> Chains | None:
-        """The chains in which points start one from the other, where they do."""
+        """Chains of points, each started from its neighbour's solution; None without chains."""
         return None
 
     @property
     def stretches(self) -> Stretches | None:
-        """The stretches of neighbours that are solved together, where they are."""
+        """Stretches of neighbours solved together; None without stretches."""
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Values of the layout's extra dimensions that have some, shape (extent,)."""
+        """Coordinates of extra dimensions of the layout, shape (extent,), by name."""
         return {}
 
     def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
-        """Variables that are known before any point is solved. in_order: shares what takes time."""
+        """Variables that depend on no point. in_order: shares slow work among ranks."""
         return ()
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Variables that all points together give at once, without units of work.
+        """Variables computed from all points at once, without units of work.
 
-        values: the variables of the points by name, of their shape and their own, to be read by slices.
+        values: variables of the points by name, shape (points, own dimensions), readable by slices.
         """
         return ()
 
     @abstractmethod
     def headline(self) -> str:
-        """How many points there are, and what is asked of each."""
+        """One line: the number of points and the request for each point."""
 
     @abstractmethod
     def parts(self) -> list[Part]:
-        """What is modelled and what is left out."""
+        """Modelled and neglected parts."""
 
     @abstractmethod
     def cost(self) -> Estimate:
-        """What the run will cost."""
+        """Estimated cost of the run."""
 
     @abstractmethod
     def solver(self) -> Solver:
-        """Starts PETSc, which only a valid config is worth."""
+        """The solver of the points; starts PETSc."""

@@ -42,7 +42,7 @@ class SpectrumTask(ProvedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """The stretches along which eigenvalues are followed, where they are."""
+        """Stretches of neighbours along which eigenvalues are followed; None without stretches."""
         return (
             stretches_along_longest_axis(self.points.shape, self.points.moved)
             if self.config.follows
@@ -50,11 +50,11 @@ class SpectrumTask(ProvedTask):
         )
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
+        """Material coordinates of the vectors' nodes, shape (nodes,); empty without vectors."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
-        """The longitudinal rates, where they are asked for: along k1 on a grid, along the points else."""
+        """Longitudinal growth rates, if requested: along k1 on a grid, otherwise along the points."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:
             return ()
@@ -65,7 +65,7 @@ class SpectrumTask(ProvedTask):
         return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Where the rods change along F."""
+        """Forces at which the rods change their stability."""
         return force_changes(self.points, values)
 
     def headline(self) -> str:
@@ -118,7 +118,7 @@ class SpectrumTask(ProvedTask):
         )
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
-        """What comes of the points of a stretch."""
+        """Results for the points of a stretch."""
         from ..determinant.parameter_path import Path
         from ..solve.spectrum.status import SpectrumStatus
         from ..solve.spectrum.stretch import Stretch, solve_stretch
@@ -137,7 +137,7 @@ class SpectrumTask(ProvedTask):
 
 
 def record(result: "Spectrum") -> dict[str, Any]:
-    """The spectrum of one point, or of several, as the variables of the file."""
+    """The spectrum of one point, or of several, as variables of the file."""
     values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):

@@ -1,4 +1,4 @@
-"""The task thresholds: the forces at which the spectrum of every rod changes its kind."""
+"""The task thresholds: the forces at which the number or kind of unstable modes changes."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
 
 EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Crossings of which the first one is a threshold, and what the file has of it beside F."""
+"""Crossings whose first occurrence is a threshold, each with the variable stored beside its F."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class ThresholdsTask(ProvedTask):
 
 
 def record(result: "Thresholds", most: int) -> dict[str, Any]:
-    """Thresholds as the variables of the file."""
+    """The thresholds of a rod as variables of the file; most: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
     for kind, number in EVENTS.items():
         place = CROSSING_KINDS.index(kind)
@@ -67,7 +67,9 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
 
 
 def search_record(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
-    """The variables of a search along `line`: at most `most` crossings, whose place is the variable `at`."""
+    """Variables of a search along `line`: at most `most` crossings; `at`: name of the variable with their
+    places.
+    """
     found, variables = result.transitions, crossing_variables(line, at)
     rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]
     return listed(variables, rows, most) | {

@@ -1,1 +1,1 @@
-"""What the solvers' numbers mean for an arm: thresholds over its range of drag, a verdict in sentences."""
+"""Verdict on an arm from the solvers' numbers: thresholds over its range of drag, and sentences."""

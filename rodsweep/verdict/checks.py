@@ -1,4 +1,4 @@
-"""Checks of the neglected effects for one arm: plain sentences, some of them warnings."""
+"""Checks of the neglected effects for one arm: plain sentences, some with a warning."""
 
 from dataclasses import dataclass
 from math import isnan

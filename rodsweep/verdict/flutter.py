@@ -17,7 +17,7 @@ REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossin
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlutterForces:
-    """Thresholds of an arm with one drag. Forces in k3/L^2, frequencies in Hz; None without such a change."""
+    """Thresholds of an arm with one drag. Forces in k3/L^2, frequencies in Hz; None without a change."""
 
     tau2: float
     """Time scale, in s."""
@@ -83,7 +83,7 @@ class FlutterRange:
 
 
 def span_of(values: list[float | None]) -> Span | None:
-    """Smallest and largest value that is not None; None if every value is None."""
+    """Smallest and largest number in a list of numbers and None; None without a number."""
     known = [value for value in values if value is not None]
     return Span(min(known), max(known), len(known) == len(values)) if known else None
 

@@ -22,7 +22,7 @@ def digits(value: float) -> str:
 
 
 def rounded(low: float, high: float) -> str:
-    """A range to three digits; one number if both ends round to the same digits."""
+    """A range to three digits, as one number if both ends round to equal digits."""
     ends = [digits(low), digits(high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 

@@ -17,7 +17,7 @@ A = TypeVar("A", bound=SlenderArm)
 
 @dataclass(frozen=True, slots=True)
 class PlaneOfMotion:
-    """An arm that moves in one plane, with its thresholds in this plane."""
+    """An arm that moves in one plane, and its thresholds."""
 
     arm: SlenderArm
     """The arm, with its height in the plane of motion."""
@@ -49,7 +49,7 @@ class Planes:
 
 
 def planes_of(arm: SlenderArm) -> Planes:
-    """Both planes of a rectangle, or one plane if all are equivalent; solves for the thresholds."""
+    """Both planes of a rectangle, or one plane if all planes are equivalent; solves for the thresholds."""
     if arm.radius is not None or arm.si.width == arm.si.height:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
     other = turned(arm)

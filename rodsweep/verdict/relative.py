@@ -22,8 +22,8 @@ FARTHEST = 1000.0
 NEAR = 200.0
 """Largest force of a first search, in k3/L^2, which takes half of the time; few arms flutter beyond."""
 DIGITS = 10
-"""Digits of the reference threshold: more than the data of an arm have, and few enough to agree on all
-machines, so that a run that is resumed on another machine has the same points."""
+"""Digits of the reference threshold: more than the data of an arm have, and few enough for equal results on
+all machines. Hence a run resumed on a different machine has the same points."""
 
 
 def turned(arm: A) -> A:
@@ -47,9 +47,9 @@ def _in_its_plane(arm: SlenderArm) -> float:
 
 @cache
 def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
-    """The smallest F at which a pair of modes becomes unstable, to DIGITS digits; inf if none up to FARTHEST.
+    """Smallest F at which a pair of modes becomes unstable, to DIGITS digits; inf if none up to FARTHEST.
 
-    InputError where the covering cannot exclude a smaller one.
+    InputError if the covering cannot exclude a smaller F.
     """
     path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
     for end in (NEAR, FARTHEST):

@@ -87,7 +87,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensionless(arm: SlenderArm) -> list[NumberRow]:
-    """Rows of the dimensionless parameters, as the other commands take them."""
+    """Rows of the dimensionless parameters, as in the keys of a config."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [

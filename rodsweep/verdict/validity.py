@@ -79,8 +79,8 @@ def viscosity_factor(effects: tuple[Effect, ...]) -> float:
 def thickness_factor(arm: SlenderArm) -> float:
     """Largest factor on all sides of the section at which inertia is within its limit in the same fluid.
 
-    Solves for the thresholds of the thinner arms. NaN if they do not flutter, or if the model does not apply
-    to the thinner arm for another reason, such as its weight.
+    Solves for the thresholds of thinner arms. NaN if the arm does not flutter, or if the model does not apply
+    to the thinner arm for a further reason, such as weight.
     """
     factor = 1.0
     for _ in range(THINNING_STEPS):

@@ -28,7 +28,7 @@ from rodsweep.post.figures.request import KINDS, ROOTS
 NAMES = [
     "Answer",
     "Arm",
-    "EnvironmentLacks",
+    "EnvironmentIncomplete",
     "InputError",
     "Picture",
     "Rod",
@@ -177,7 +177,9 @@ def test_ranks_that_no_mpiexec_starts_are_refused_in_a_sentence(tmp_path, monkey
         (tmp_path / "mpiexec").chmod(0o755)
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(rs.EnvironmentLacks, match="mpiexec (is not found|cannot be started|did not start)"):
+    with pytest.raises(
+        rs.EnvironmentIncomplete, match="mpiexec.* (is not found|cannot be started|did not start)"
+    ):
         rs.sweep("spectrum", **ROD, ranks=2)
 
 
@@ -306,7 +308,10 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         ),
         (lambda: rs.Rod(**ROD).spectrum(mods=3), "unknown key spectrum.mods; did you mean modes?"),
         (lambda: rs.Rod(**ROD).spectrum(F=3), "F belongs to the rod: rod.replace(F=...) is another one"),
-        (lambda: rs.Rod(**ROD).phase_diagram(), "phase_diagram is of several rods; ask rs.sweep('phase_diag"),
+        (
+            lambda: rs.Rod(**ROD).phase_diagram(),
+            "phase_diagram is a task of several rods; use rs.sweep('phase_diag",
+        ),
         (lambda: rs.Rod(30, 1e4), "30 has no name; write it as in rs.Rod(F=30, k1="),
         (lambda: rs.Rod(**ROD).spectrum(4), "4 has no name; write it as in rod.spectrum(modes=4)"),
         (lambda: rs.Rod(**ROD).replace(3), "3 has no name; write it as in rod.replace(F=40)"),
@@ -364,7 +369,7 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
     assert (tmp_path / "d.svg").exists()
     with pytest.raises(rs.InputError, match="not whole: F_onset"):
         rs.plot(data.isel(k2=0))
-    with pytest.raises(rs.InputError, match="no result of rodsweep"):
+    with pytest.raises(rs.InputError, match="not a complete rodsweep result"):
         rs.plot(xr.Dataset())
 
 

@@ -25,7 +25,7 @@ from rodsweep.bench.sweep.launch import (
 )
 from rodsweep.bench.sweep.study import APART, growth_table, instant_table, measured, sweep_study
 from rodsweep.cli.benching import MEASURED
-from rodsweep.errors import EnvironmentLacks
+from rodsweep.errors import EnvironmentIncomplete
 
 FEW_MEGABYTES = 4.0
 MOST_BYTES = 100
@@ -111,7 +111,7 @@ def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
 def test_a_run_that_fails_is_told(tmp_path):
     case = spectrum_case(tmp_path / "grid", "no solver", 8, "instant")
     (case.directories[0] / "c.yaml").write_text("task: spectrum\n")
-    with pytest.raises(EnvironmentLacks, match="parameters"):
+    with pytest.raises(EnvironmentIncomplete, match="parameters"):
         run(case, 1)
 
 

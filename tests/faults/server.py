@@ -209,7 +209,7 @@ def load(solving: bool, configs: list[str]) -> None:
     import rodsweep.post.figures
     import rodsweep.post.summary
     import rodsweep.tasks.cycle_shapes  # noqa: F401
-    from rodsweep.errors import EnvironmentLacks
+    from rodsweep.errors import EnvironmentIncomplete
     from rodsweep.sweep.team import Team
     from rodsweep.tasks.running.job import make_job
 
@@ -218,7 +218,7 @@ def load(solving: bool, configs: list[str]) -> None:
         job.task.cost()
         if solving:
             Team()
-            with suppress(EnvironmentLacks):
+            with suppress(EnvironmentIncomplete):
                 job.task.solver().warm_up()
     if solving:
         draw()

@@ -14,7 +14,7 @@ from matplotlib.text import Annotation
 from PIL import Image
 
 from rodsweep.discretization.elements.periodic import derivative, resampled
-from rodsweep.errors import EnvironmentLacks, InputError
+from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.branches import branches_of
@@ -227,7 +227,7 @@ def test_animation_has_a_frame_for_each_shape_and_repeats_for_ever(tmp_path):
 
 def test_mp4_without_ffmpeg_says_what_is_missing(tmp_path, monkeypatch):
     monkeypatch.setattr(writers, "is_available", lambda name: False)
-    with pytest.raises(EnvironmentLacks, match=r"needs ffmpeg.* a \.gif does not"):
+    with pytest.raises(EnvironmentIncomplete, match=r"needs ffmpeg.* a \.gif does not"):
         draw(two_cycles(), tmp_path / "f.mp4")
     assert not (tmp_path / "f.mp4").exists()
 

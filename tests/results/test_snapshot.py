@@ -9,7 +9,7 @@ from ranks import kill, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
 from rodsweep.api.dataset import open_result
-from rodsweep.errors import EnvironmentLacks
+from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.results.file import recent
 from rodsweep.results.file.recent import take_snapshot, unfolded
 from rodsweep.results.file.view import read_view
@@ -121,7 +121,7 @@ def test_file_that_never_stays_is_given_up(tmp_path):
     path = tmp_path / "a.h5"
     path.write_bytes(b"")
     journal_directory(path).mkdir()
-    with pytest.raises(EnvironmentLacks, match="keeps replacing it"):
+    with pytest.raises(EnvironmentIncomplete, match="keeps replacing it"):
         unfolded(path, lambda: path.write_bytes(path.read_bytes() + b" "))
 
 

@@ -1,4 +1,4 @@
-"""What a task says of one rod: numbers and words by name, and lists that hold what was found."""
+"""Result of a task for one rod: variables as attributes, lists as pandas DataFrames."""
 
 import json
 from collections.abc import Sequence
@@ -20,30 +20,31 @@ from .frames import frame_of, series_of
 from .printing import Printed, html_of, text_of
 
 EIGENVALUE = ("growth_rate", "frequency")
-"""Real and imaginary part of an eigenvalue."""
+"""Names of the real and the imaginary part of an eigenvalue."""
 
 
 class Answer:
     """The variables of a task for one rod, and its lists.
 
-    A variable is an attribute: a number, a word, True or False, and None for a count that is not known; along
-    a list an array of as many items as were found. A list as a whole, such as `modes`, `crossings` or
-    `cycles`, is a pandas DataFrame with a row an item, numbered from 1. `data` is the xarray.Dataset, which
-    has room for a fixed number of items as the file has; `whole` has the rod's parameters as dimensions of
-    length 1, as the file of a sweep has.
+    Every variable is an attribute. A variable of the rod is a number, a word, True or False; an unknown count
+    is None. A variable of a list is an array with one entry per item found. A whole list, such as `modes`,
+    `crossings` or `cycles`, is a pandas DataFrame with one row per item, numbered from 1.
+
+    `data` is the xarray.Dataset of the rod, with lists of a fixed length, as in the result file. `whole` also
+    has the rod's parameters as dimensions of length 1, as in the file of a sweep.
     """
 
     def __init__(self, rod: str, whole: xr.Dataset, message: str):
         self.rod, self.whole, self.message = rod, whole, message
         self.config: dict[str, Any] = json.loads(whole.attrs["config_resolved"])
-        """The config that gives this answer, with all defaults."""
+        """The complete config of this answer, defaults included."""
         points = ("point",) if "point" in whole.dims else layout_of(self.config).parameters
         self.data = whole.isel(dict.fromkeys(points, 0))
         self._tables = Tables(view_of(whole, Path(rod)))
 
     @property
     def status(self) -> StrEnum:
-        """How the solve ended, as a word; the words that there are are the members of its class."""
+        """Outcome of the solve as a word. All possible words of the task are the members of its class."""
         flags = self.data["status"].attrs
         values = [int(value) for value in np.atleast_1d(flags["flag_values"])]
         words = str(flags["flag_meanings"]).split()
@@ -53,7 +54,7 @@ class Answer:
 
     @property
     def sentence(self) -> str:
-        """What the status means."""
+        """Meaning of the status, in one sentence."""
         lines = str(self.data.attrs["status_sentences"]).splitlines()
         return dict(line.split(": ", 1) for line in lines).get(self.status, "")
 
@@ -64,12 +65,12 @@ class Answer:
 
     @property
     def meanings(self) -> dict[str, str]:
-        """What every variable is, by name."""
+        """Description of every variable, by name."""
         return {str(name): array.attrs["long_name"] for name, array in self.data.data_vars.items()}
 
     @property
     def lists(self) -> tuple[str, ...]:
-        """The names of the lists, each an attribute."""
+        """Names of the lists. Every list is an attribute of the answer."""
         return self._tables.contents.tables[1:]
 
     def __getattr__(self, name: str) -> Any:
@@ -93,7 +94,7 @@ class Answer:
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")
 
     def _along(self, table: str, name: str) -> np.ndarray:
-        """A variable or a coordinate of a list: an array with the list's dimensions, as long as it is."""
+        """A variable or a coordinate of a list: an array with the list's dimensions, as long as the list."""
         dimensions = self._tables.contents.dimensions(table)
         (column,) = (column for column in self._tables.items(table) if column.name == name)
         if name in dimensions[1:]:
@@ -103,7 +104,7 @@ class Answer:
         return values[:: prod(inner)] if name == dimensions[0] else values.reshape(-1, *inner)
 
     def _names(self) -> list[str]:
-        """What can be asked for: variables and lists."""
+        """Names of all variables and lists, for messages and completion."""
         extra = ["eigenvalues"] if EIGENVALUE[0] in self.data else []
         return [*map(str, self.data.data_vars), *self.lists, *extra]
 
@@ -121,7 +122,7 @@ class Answer:
         own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
         own.sort(key=_is_dimensionless)
         lists = {name: _units_first(tables.items(name)) for name in self.lists}
-        if int(self.data["status"]) != 0:  # another answer than the one hoped for, as a rod at rest
+        if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
         totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
@@ -137,42 +138,42 @@ class Answer:
 
 
 NOT_PRINTED = ("status", "seconds")
-"""Variables without a row: the status is in the heading, the time is of no rod but of a machine."""
+"""Variables without a row of their own: the heading has the status, and the time depends on the machine."""
 SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
-"""Units of what is stored of an arm beside the units of the rod."""
+"""SI units, by which variables of an arm are recognised beside variables in units of the rod."""
 TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
-"""Variables that count all items of a list, stored or not."""
+"""Variables with the total number of items of a list, stored or not, by the name of the list."""
 IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
-"""Lists that are printed, all that was found of them; of the others the number of rows is."""
+"""Lists printed in full. Of every other list only the number of rows is printed."""
 
 
 @cache
 def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
-    """The statuses of a task as words."""
-    made: Any = StrEnum  # of members that only the result knows
+    """The `StrEnum` of all statuses of a task."""
+    made: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
     found = made("Status", {word: word for word in words})
     found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
     return cast(type[StrEnum], found)
 
 
 def _rows_beyond(name: str, columns: Sequence[Column]) -> int:
-    """How many rows a list has that is not printed."""
+    """Number of rows of a list that is not printed in full; 0 for a printed list."""
     return 0 if name in IN_FULL else len(columns[0].values)
 
 
 def _is_dimensionless(column: Column) -> bool:
-    """Whether a column is in units of the rod; of an arm what is in SI units comes first."""
+    """Whether a column is in units of the rod. Columns in SI units are printed first."""
     return column.unit not in SI_UNITS
 
 
 def _units_first(columns: Sequence[Column]) -> tuple[Column, ...]:
-    """The number of the items, what is in SI units, and the others, each in their order."""
+    """Columns in printing order: item number, columns in SI units, all others."""
     first, *others = columns
     return (first, *sorted(others, key=_is_dimensionless))
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:
-    """The only value of a column; None for a word or a count where there is none, NaN for a real number."""
+    """The only value of a column. A missing word or count is None, a missing real number is NaN."""
     if column.absent[0] and column.values.dtype.kind != "f":
         return None
     value = series_of(column)[0]
@@ -180,10 +181,10 @@ def _scalar(column: Column) -> float | int | bool | str | None:
 
 
 def _lacks_counts(column: Column) -> bool:
-    """Whether some items of a column have no count, and are no words."""
+    """Whether a column has integers, no words, and at least one missing value."""
     return column.values.dtype.kind in "iu" and bool(column.absent.any()) and not column.words
 
 
 def _with_nan(column: Column) -> np.ndarray:
-    """Counts as real numbers, NaN where one is not known."""
+    """A column of counts as real numbers, NaN for missing values."""
     return np.where(column.absent, np.nan, column.values)

@@ -1,4 +1,4 @@
-"""A table of a result as a pandas DataFrame: words where the file has numbers, nothing for nothing."""
+"""Tables of a result as pandas DataFrames: words instead of codes, missing values instead of fill values."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -10,9 +10,9 @@ from ...post.tables.columns import Column
 
 
 def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFrame:
-    """A DataFrame of columns; its attributes `units` and `meanings` say by name what each is.
+    """A DataFrame with one column per `Column`; `frame.attrs` has `units` and `meanings` by name.
 
-    index: a column that numbers the rows, from 1.
+    index: name of the column that numbers the rows from 1, None for pandas' own numbering from 0.
     """
     columns = tuple(columns)
     frame = pd.DataFrame({column.name: series_of(column) for column in columns})
@@ -22,7 +22,7 @@ def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFram
 
 
 def series_of(column: Column) -> Any:
-    """The values of a column as pandas has them: words or None, truths, numbers, counts or <NA>."""
+    """Values of a column for pandas: words or None, booleans, numbers, integers or <NA>."""
     if column.is_boolean:
         return column.values.astype(bool)
     if column.words:
@@ -35,5 +35,5 @@ def series_of(column: Column) -> Any:
 
 
 def words_of(column: Column) -> list[str | None]:
-    """The words of a column, None where it has none."""
+    """Values of a column in words, None where a value is missing."""
     return [text or None for text in column.text()]

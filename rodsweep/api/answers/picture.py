@@ -27,7 +27,7 @@ Drawable = xr.Dataset | Answer | str | Path
 
 
 class Looks(TypedDict, total=False):
-    """How a figure looks, as the options of `rodsweep plot` say."""
+    """Appearance of a figure: the options `--title`, `--width` and `--style` of `rodsweep plot`."""
 
     title: bool
     width: str | None
@@ -35,7 +35,10 @@ class Looks(TypedDict, total=False):
 
 
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """InputError for the first choice, by name, that is given and none of those that there are."""
+    """Raises InputError for the first argument with a value outside its choices.
+
+    choices: (given value or None, allowed values) of each argument, by name.
+    """
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
@@ -43,21 +46,21 @@ def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure, which a notebook shows; `save` draws it into a file of any format that `plot` knows.
+    """A figure. Notebooks display it; `save` writes a file in any format of `rodsweep plot`.
 
-    `figure()` gives it to matplotlib, for own data in its panels.
+    `figure()` returns the matplotlib figure, for adding data to its panels.
     """
 
     views: Sequence[View] = field(repr=False)
     choices: dict[str, Any]
     shown: str
-    """What the figure shows, in a sentence."""
+    """Description of the figure in one sentence."""
     image: bytes = field(repr=False)
-    """The PNG, or the GIF of an animation."""
+    """The rendered figure, PNG, or GIF for an animation."""
 
     @one_at_a_time
     def save(self, path: str | Path) -> str:
-        """Draws the figure into a file (.png, .pdf, .svg); returns a sentence about it."""
+        """Draws the figure into a file (.png, .pdf, .svg) and returns a sentence about it."""
         return draw(self.views, Path(path), **self.choices)
 
     @one_at_a_time
@@ -73,7 +76,7 @@ class Picture:
 
     @property
     def is_film(self) -> bool:
-        """Whether it is an animation."""
+        """Whether the figure is an animation."""
         return not self.image.startswith(b"\x89PNG")
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
@@ -93,11 +96,10 @@ def plot(
     at: Mapping[str, float | str] = MappingProxyType({}),
     **look: Unpack[Looks],
 ) -> Picture:
-    """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles
-    or of lines of spectra.
+    """Draws the figure for the task of `data`: a Dataset, an Answer or a result file.
 
-    output: a file to write too. The choices are the options of `rodsweep plot`. Raises InputError where there
-    is nothing that a figure could show.
+    Several limit cycles, or several lines of spectra, are drawn into one figure. output: file to write. The
+    remaining arguments are the options of `rodsweep plot`. Raises InputError if there is nothing to draw.
     """
     for name in look:
         if name not in Looks.__annotations__:

@@ -1,4 +1,4 @@
-"""How the answer for one rod looks in a terminal and in a notebook: its numbers, then its lists in full."""
+"""Layout of an answer in a terminal and in a notebook: first the numbers, then the lists in full."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,11 +7,12 @@ from html import escape
 from ...post.tables.columns import Column
 
 DIGITS = 8
-"""Significant digits that are shown; the values have all of theirs."""
+"""Significant digits printed; the stored values keep full precision."""
 ERROR_DIGITS = 2
-"""The same of errors, which are estimates."""
+"""Significant digits of error estimates."""
 WIDTH = 110
-"""Columns of a terminal that a list may take before it is turned: its items side by side."""
+"""Maximum width, in characters, of a list printed with one item per line. A wider list gets one line per
+variable, with the items side by side, if this is narrower."""
 YES_NO = ("no", "yes")
 
 Line = tuple[str, ...]
@@ -19,11 +20,11 @@ Line = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Printed:
-    """What is shown of an answer.
+    """Content of a printed answer.
 
-    numbers: columns of one row; absent: names of variables that this rod has none of; lists: by name, columns
-    of which the first numbers the items; named: lists that are too long to be shown, with their rows; totals:
-    how many items there are of lists, stored or not, or were asked for.
+    numbers: columns with one row. absent: variables without a value for this rod. lists: columns by the name
+    of the list; the first column numbers the items. named: lists not printed, with their number of rows.
+    totals: number of items of a list, stored or not; of modes the number requested.
     """
 
     heading: str
@@ -36,7 +37,7 @@ class Printed:
 
     @property
     def ends(self) -> Iterator[str]:
-        """What is said below the tables."""
+        """Lines below the tables: lists that are not printed, and variables without a value."""
         if self.named:
             yield "; ".join(f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.named.items())
         if self.absent:
@@ -53,7 +54,7 @@ def text_of(printed: Printed) -> str:
 
 
 def html_of(printed: Printed) -> str:
-    """The same as HTML."""
+    """An answer as HTML, with the content of `text_of`."""
     parts = [f"<p><b>{escape(printed.heading)}</b><br>{escape(printed.told)}</p>"]
     heads = (("variable", "value", "unit", "meaning"),)
     parts.append(_html_table(heads, _number_lines(printed.numbers)))
@@ -65,7 +66,7 @@ def html_of(printed: Printed) -> str:
 
 
 def _title(name: str, columns: Sequence[Column], total: int) -> str:
-    """The name of a list, how many items it has, and of how many where these are more."""
+    """Heading of a list: name and number of items, and the total if this is larger."""
     count = len(columns[0].values)
     return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (
         f", {columns[0].meaning}" if count > 1 else ""
@@ -73,12 +74,15 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
 
 
 def _number_lines(columns: Sequence[Column]) -> list[Line]:
-    """(name, value, unit, meaning) of columns of one row."""
+    """(name, value, unit, meaning) of columns with one row."""
     return [(c.name, *_texts(c), _unit(c), c.meaning) for c in columns]
 
 
 def _narrowest(columns: Sequence[Column]) -> list[Line]:
-    """The lines of a list: an item a line where that fits, else a variable a line, if there are few items."""
+    """Lines of a list; empty for an empty list.
+
+    One item per line if this fits `WIDTH` or is the narrower layout, otherwise one variable per line.
+    """
     if not len(columns[0].values):
         return []
     there = [column for column in columns if not column.absent.all()]
@@ -88,13 +92,13 @@ def _narrowest(columns: Sequence[Column]) -> list[Line]:
 
 
 def _upright(columns: Sequence[Column]) -> list[Line]:
-    """The names, the units, and then an item a line."""
+    """Lines of a list with one item per line, below a line of names and a line of units."""
     heads = [tuple(c.name for c in columns), tuple(map(_unit, columns))]
     return [*heads, *zip(*map(_texts, columns), strict=True)]
 
 
 def _texts(column: Column) -> list[str]:
-    """The values of a column as they are shown: numbers with few digits, words, nothing for nothing."""
+    """Values of a column as printed: words, rounded numbers, and "" for missing values."""
     if column.is_boolean:
         return [YES_NO[int(value)] for value in column.values]
     if column.words or column.values.dtype.kind != "f":
@@ -113,12 +117,12 @@ def _width(lines: Sequence[Line]) -> int:
 
 
 def widths_of(lines: Sequence[Line]) -> list[int]:
-    """The width of every column of lines of cells."""
+    """Width of every column, in characters, of lines of cells."""
     return [max(map(len, cells)) for cells in zip(*lines, strict=True)]
 
 
 def _aligned(lines: Sequence[Line]) -> str:
-    """Lines of cells as text in columns."""
+    """Lines of cells as text in aligned columns."""
     widths = widths_of(lines)
     rows = ("  ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)).rstrip() for line in lines)
     return "\n".join(rows)

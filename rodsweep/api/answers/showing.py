@@ -1,4 +1,4 @@
-"""What Python shows of a solve that takes its time: a bar where a terminal or a notebook is."""
+"""Progress display of a long solve in Python: a bar in a terminal or in a notebook."""
 
 import sys
 
@@ -11,9 +11,9 @@ Display = ProgressReporter | Silent
 
 
 def display(progress: bool | None, total: int | None, title: str) -> Display:
-    """The display of so many points; it appears after a second.
+    """Progress display for `total` points, which appears after a second.
 
-    progress: whether there is one; None means where a terminal or a notebook is. InputError for others.
+    progress: True or False; None displays only in a terminal or a notebook. InputError for any other type.
     """
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
@@ -22,7 +22,9 @@ def display(progress: bool | None, total: int | None, title: str) -> Display:
 
 
 def listener(shown: Display, name: str) -> RankListener:
-    """What shows where a solve of a name is. It stops nothing: Ctrl-C is an exception of Python's."""
+    """Listener that displays the position of the solve `name`. No solve is stopped: Ctrl-C raises
+    KeyboardInterrupt.
+    """
     return RankListener(
         NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name
     )

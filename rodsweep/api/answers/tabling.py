@@ -1,4 +1,4 @@
-"""`rs.table`: a table of a result as a pandas DataFrame, what `rodsweep export` writes as CSV."""
+"""`rs.table`: a table of a result as a pandas DataFrame, equal to the CSV of `rodsweep export`."""
 
 import os
 from collections.abc import Sequence
@@ -25,11 +25,12 @@ Result = xr.Dataset | Answer | str | Path
 @one_at_a_time
 @in_sentences(EXAMPLE)
 def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ()) -> pd.DataFrame:
-    """A table of a result with a row an item: each with its parameters, words for what a file has as numbers.
+    """A table of a result with one row per item. Each row has the item's parameters; codes are given as
+    words.
 
-    name: `points`, or a list of the task such as `modes`, `crossings` or `branches`; by default the one with
-    the columns, or the first of the task. columns: by default all. `frame.attrs` has units and meanings.
-    Raises InputError for a name that there is not.
+    name: `points`, or a list of the task such as `modes`, `crossings` or `branches`. The default is the table
+    with the requested columns, or the task's first table. columns: names of columns, by default all.
+    `frame.attrs` has `units` and `meanings`. Raises InputError for unknown names.
     """
     if name is not None and not isinstance(name, str):
         raise InputError(f"name = {short(name)} is not the name of a table; write it as in {EXAMPLE}")
@@ -40,7 +41,7 @@ def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ())
 
 
 def view_for(data: Any, example: str) -> View:
-    """A result as figures and tables see it; InputError, with an example, where it is none."""
+    """A result as figures and tables read it; InputError, with an example, if `data` is no result."""
     if isinstance(data, str | os.PathLike):
         return read_view(file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):

@@ -1,1 +1,1 @@
-"""Cycles timed beside other time integrators, and beside waiting."""
+"""Limit cycles: rodsweep timed beside other time integrators, and beside waiting for the cycle."""

@@ -1,7 +1,7 @@
-"""What follows a cycle in time: a leg of the motion, families of integrators, and rodsweep's own by PETSc.
+"""Time integration of a cycle: the piece of motion, families of integrators, and PETSc's integrator.
 
-All see the same compiled rate and exact Jacobian of a beam, and one `tolerance`: of each component of z, in
-units of its largest.
+All integrators use the same compiled rate and exact Jacobian of a beam. `tolerance` is the error of each
+component of z, in units of the component's largest value.
 """
 
 from collections.abc import Callable
@@ -16,12 +16,13 @@ from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender
 
 TIGHT = 3e-7
-"""Tolerance below which Newton's errors would show in those of ARKIMEX 5 with the default's test."""
+"""Tolerance below which Newton's default convergence test would limit the accuracy of ARKIMEX 5."""
 TIGHT_NEWTON = 0.03
+"""Convergence tolerance of Newton's method below TIGHT, as a fraction of the integrator's tolerance."""
 
 
 class Leg(NamedTuple):
-    """What an integrator is run on: a beam from its state z, shape (unknowns,), for a duration in tau2."""
+    """Task of an integrator: a beam, its state z at the start, shape (unknowns,), and a duration in tau2."""
 
     beam: Beam
     z: Array
@@ -29,14 +30,14 @@ class Leg(NamedTuple):
 
 
 Integration = Callable[[float, Leg], Trajectory]
-"""(tolerance, leg) to the run; raises ArithmeticError where the integration fails."""
+"""Runs an integrator, (tolerance, leg) -> trajectory; raises ArithmeticError if the integration fails."""
 
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """An integrator and the tolerances, from the loosest, at which it is worth running.
+    """An integrator and the tolerances, from the loosest, at which it is run.
 
-    waiting: those, from the loosest, at which one may wait for a cycle; none where one would not.
+    waiting: tolerances, from the loosest, for waiting until a cycle is reached; empty to leave waiting out.
     """
 
     name: str
@@ -45,11 +46,11 @@ class Family:
     waiting: tuple[float, ...] = ()
 
     def followers(self) -> list[Contender]:
-        """What follows a cycle."""
+        """Contenders for following a cycle."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
     def waiters(self) -> list[Contender]:
-        """What waits for a cycle."""
+        """Contenders for waiting until a cycle is reached."""
         return [self._at(tolerance) for tolerance in self.waiting]
 
     def _at(self, tolerance: float) -> Contender:
@@ -58,7 +59,7 @@ class Family:
 
 
 def by_petsc(family: str, variant: str, tolerance: float, leg: Leg) -> Trajectory:
-    """PETSc TS, as the task limit_cycle uses it, with one of its schemes."""
+    """PETSc TS as in the task limit_cycle, with a choice of scheme."""
     newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(leg.beam.mesh, scheme).run(leg.beam, leg.z, leg.duration)
@@ -68,7 +69,7 @@ def by_petsc(family: str, variant: str, tolerance: float, leg: Leg) -> Trajector
 
 
 CAREFUL = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
-"""Tolerances at which one may wait for a cycle."""
+"""Tolerances for waiting until a cycle is reached."""
 DEFAULT = Family(
     "ARKIMEX 5 (default)",
     partial(by_petsc, "arkimex", "5"),

@@ -1,6 +1,6 @@
-"""The limit-cycle benchmark: a settled cycle followed, waited for, and solved.
+"""The limit-cycle benchmark: a settled cycle followed in time, waited for, and solved.
 
-Its races FOLLOWING and WAITING are run on a `Leg` and give a `Trajectory`; each method's settings are
+The races FOLLOWING and WAITING run on a `Leg` and give a `Trajectory`. The settings of each method are
 tolerances, from the loosest.
 """
 
@@ -50,14 +50,14 @@ ROUNDS, QUICK_ROUNDS = 9, 1
 FOLLOWING, WAITING = "following", "waiting"
 DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
 NEAR_HOPF = 27.43
-"""A force 0.003 above the Hopf point."""
+"""Force 0.003 above the Hopf point, where waiting takes very long."""
 SOLVE, WAITS = "solve_cycle", "waiting, "
 PERIODS_OF_WAIT = 15
-"""Of one who only waits."""
+"""Length, in periods, of a run that waits for a cycle."""
 
 
 def limit_cycle_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: work and precision, the ways to a settled cycle, and what peers add."""
+    """Runs the benchmark: work and precision, the ways to a settled cycle, and the peers' sections."""
     warm_up()
     rounds, stride = (QUICK_ROUNDS, 2) if quick else (ROUNDS, 1)
     at = reference()
@@ -80,19 +80,20 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
 
 
 def introduction(rounds: int) -> str:
-    """What is measured."""
+    """Description of the measurements for the report."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
         f"The settled cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
         f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order {CYCLE_ORDER}, "
         f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled rate and Jacobian; the "
-        "tolerance is per component of the state, in units of its largest. Errors of period and largest tip "
-        f"y are relative and rms over 5 returns. Times are medians of {plural(rounds, 'interleaved round')}."
+        "tolerance is per component of the state, in units of the component's largest value. Errors of the "
+        "period and of the largest tip y are relative and rms over 5 returns. Times are medians of "
+        f"{plural(rounds, 'interleaved round')}."
     )
 
 
 def work_table(measurements: Sequence[Measurement]) -> str:
-    """All methods at all tolerances."""
+    """Table of all methods at all tolerances."""
     nothing = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
     return table(
         "method | tolerance | steps a period | ms a period | error of period | error of amplitude",
@@ -107,7 +108,7 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 
 
 def target_table(measurements: Sequence[Measurement]) -> str:
-    """All methods at equal error."""
+    """Table of all methods at equal error."""
     at = {}
     for (method,), own in grouped(measurements, "method").items():
         errors = [m.error for m in own]
@@ -119,8 +120,8 @@ def target_table(measurements: Sequence[Measurement]) -> str:
         for method, (median, least) in at.items()
     ]
     return (
-        f"At error {TARGET:.0e}, the larger of the two, interpolated; the last column by the least times of "
-        "all rounds, which other loads disturb less:\n\n"
+        f"At an error of {TARGET:.0e}, the larger of the two errors, interpolated. The last column uses the "
+        "minimum times over all rounds, which depend less on the load of the machine:\n\n"
     ) + table(
         "method | ms a period | times the default's time | by the least times",
         "{method} | {ms:.2f} | {ratio:.2f} | {by_least:.2f}",
@@ -129,9 +130,10 @@ def target_table(measurements: Sequence[Measurement]) -> str:
 
 
 def time_at(target: float, errors: Sequence[float], times: Sequence[float]) -> float:
-    """Time of one method at an error, interpolated in the logarithms; nan if out of reach.
+    """Time of a method at a given error, interpolated in logarithms; nan if the error is not reached.
 
-    Between the last setting above the target and the next: a tolerance that is lucky once does not count.
+    The interpolation uses the last setting above the target and its successor, so that an accidentally small
+    error of a loose tolerance does not count.
     """
     above = [k for k, error in enumerate(errors) if not error <= target]
     if not above or above[-1] + 1 == len(errors) or not isfinite(errors[above[-1]]):
@@ -143,10 +145,10 @@ def time_at(target: float, errors: Sequence[float], times: Sequence[float]) -> f
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """One way to a settled cycle: returns waited for, and the error of what it gives.
+    """One way to a settled cycle, with the number of returns waited for and the error of the result.
 
-    setting: the tolerance. run: what takes the time, or a part of it, of which the whole is `times` as much.
-    failed: looser tolerances at which the integration itself failed.
+    setting: the tolerance. run: the timed run, which takes 1/times of the whole time. failed: looser
+    tolerances at which the integration failed.
     """
 
     force: float
@@ -160,11 +162,11 @@ class Wait:
 
     @property
     def settled(self) -> bool:
-        """Whether the way led to the cycle."""
+        """Whether the cycle was reached."""
         return isfinite(self.returns)
 
     def row(self, timed: Timed) -> dict[str, str | float]:
-        """A line of the table."""
+        """Row of the table."""
         about = "about " if self.times != 1 else ""
         return {
             "force": self.force,
@@ -177,7 +179,7 @@ class Wait:
 
 
 def settling(at: Reference, every: Sequence[Contender], rounds: int) -> str:
-    """All ways at F = 50 and next to the Hopf point; a table."""
+    """Table of all ways to the cycle at F = 50 and near the Hopf point."""
     waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
     cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
@@ -188,14 +190,14 @@ def settling(at: Reference, every: Sequence[Contender], rounds: int) -> str:
 
 
 def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
-    """What each way took."""
+    """Table of the times of all ways."""
     return (
-        f"To the settled cycle from a start of {AMPLITUDE:g} L, settled where two successive returns agree "
-        f"to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles and leaves no larger error; who "
-        "waits is given this tolerance. solve_cycle is asked for the same, and its time includes its choice "
-        f"of mesh and its proof of stability. At F = {NEAR_HOPF:g} waiting is estimated, from below: "
-        f"ln({SETTLED_WITHIN:.0e})/ln(largest multiplier) periods, at the milliseconds that one takes there; "
-        "the errors are then solve_cycle's estimate and the aim.\n\n"
+        f"From a start of {AMPLITUDE:g} L to the settled cycle. Waiting ends when two successive returns "
+        f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
+        "user is assumed to know this tolerance. solve_cycle has the same accuracy, and its time includes the "
+        f"choice of mesh and the proof of stability. At F = {NEAR_HOPF:g} the number of periods is estimated "
+        f"from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the time per "
+        "period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
     ) + table(
         "F | way | tolerance | returns | ms | error left",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
@@ -208,7 +210,7 @@ def _error(at: Reference, period: float, height: float) -> float:
 
 
 def _waited(at: Reference, settings: Sequence[Contender]) -> Wait:
-    """Waiting at the loosest tolerance at which two successive returns come to agree and are right."""
+    """Waiting at the loosest tolerance at which two successive returns agree and are accurate."""
     leg = Leg(at.beam, AMPLITUDE * leading_mode(at.beam).z.real, PERIODS_OF_WAIT * at.period)
     way = WAITS + settings[0].method
     failed: tuple[str, ...] = ()
@@ -230,7 +232,7 @@ def _waited(at: Reference, settings: Sequence[Contender]) -> Wait:
 
 
 def _near_hopf(settled: Sequence[Contender]) -> list[Wait]:
-    """Next to the Hopf point, where waiting is estimated from the largest multiplier."""
+    """Ways near the Hopf point; the number of periods of waiting is estimated from the largest multiplier."""
     cycle = cycle_at(NEAR_HOPF)
     leg = Leg(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)

@@ -1,7 +1,7 @@
-"""What a point of a sweep costs: the cycle of a rod from that of a neighbour, and from a cold start.
+"""Cost of a point of a sweep: the cycle of a rod started from a neighbour's cycle, and from a cold start.
 
-A point is what the task limit_cycle makes of it: mesh, Newton's method, all multipliers, the verdict and the
-estimate of its error. The errors are against the same cycle on meshes that leave 1e-11.
+A point includes all work of the task limit_cycle: mesh, Newton's method, all multipliers, the verdict and the
+error estimate. Errors are measured against the same cycle on meshes with errors of 1e-11.
 """
 
 from collections.abc import Sequence
@@ -33,27 +33,29 @@ RODS = (
     Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
 )
-"""Cycles near and far from their Hopf point, of stiff rods and of one that its force shortens by a half."""
+"""Rods with cycles near and far from their Hopf points, stiff rods, and a rod shortened to half by its
+force."""
 QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01
-"""Of the axis from one point to the next, a factor."""
-BEFORE, STRETCH = 6, 22
-"""Points of the sweep before those that are timed: its mesh is chosen by then; and those that are timed, as
-many as one calibration of the mesh's errors is for, it included."""
+"""Ratio of the parameter from one point of the sweep to the next."""
+BEFORE = 6
+"""Number of points solved before the timed points, so that the mesh is already chosen."""
+STRETCH = 22
+"""Number of timed points: one calibration of the mesh errors, and all points served by it."""
 ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
 SWEEP, COLD = "sweep over ", "cold, "
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
-"""Starts without a neighbour, as the request names them."""
+"""Starts without a neighbour, by their values of the option `start`."""
 NOTHING = dict.fromkeys(
     ("period_error", "amplitude_error", "estimate", "multipliers", "order", "intervals", "stages"), nan
 )
-"""The columns of a point that failed."""
+"""Columns of a failed point."""
 
 
 @dataclass(frozen=True, eq=False)
 class ExactCycle:
-    """A cycle on a mesh that leaves REFERENCE_ACCURACY; period in tau2, the tip's largest y in L."""
+    """A cycle on a mesh with errors of REFERENCE_ACCURACY; period in tau2, largest y of the tip in L."""
 
     orbit: Orbit
     period: float
@@ -61,12 +63,12 @@ class ExactCycle:
 
     @classmethod
     def near(cls, orbit: Orbit) -> "ExactCycle":
-        """Of the same rod as the orbit."""
+        """The exact cycle of the orbit's rod."""
         found = refine(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def at(self, F: float) -> "ExactCycle":
-        """Of the rod at a force near by."""
+        """The exact cycle of the rod at a nearby force."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
         orbit = newton(near, EXACT, NewtonWorkspace()).orbit
@@ -82,9 +84,9 @@ class ExactCycle:
 
 @dataclass(frozen=True, eq=False)
 class SweptRod:
-    """A rod, its exact cycle, and for each axis the neighbour from which the stretch to it starts.
+    """A rod, its exact cycle, and the neighbour on each axis from which a stretch to the rod starts.
 
-    workspace: memory of Newton's matrices, as all points of a sweep share it.
+    workspace: buffers of Newton's matrices, shared by all points of a sweep.
     """
 
     point: Rod
@@ -94,7 +96,7 @@ class SweptRod:
 
 
 def swept(point: Rod, accuracy: float) -> SweptRod:
-    """The rod with its neighbours, which are points of a sweep downwards, with others before them."""
+    """The rod with its neighbours: points of downward sweeps that end at the rod."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT:
@@ -108,12 +110,12 @@ def swept(point: Rod, accuracy: float) -> SweptRod:
 
 
 def beyond(point: Rod, axis: str, steps: int) -> Rod:
-    """The point of the sweep that is so many steps before this one."""
+    """The point of the sweep `steps` before the given point."""
     return replace(point, **{axis: getattr(point, axis) * STEP**steps})
 
 
 def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """The last of a stretch of points of a sweep over an axis."""
+    """Solves a stretch of a sweep over an axis; returns its last cycle."""
     start = rod.neighbours[axis]
     for k in range(STRETCH - 1, -1, -1):
         there = beyond(rod.point, axis, k)
@@ -123,19 +125,19 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """The point without a neighbour."""
+    """Solves the rod without a neighbour."""
     return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start), workspace=rod.workspace))
 
 
 def settled(cycle: Cycle) -> Cycle:
-    """The cycle, if it is one; raises ArithmeticError."""
+    """The cycle itself; raises ArithmeticError if the solve found none."""
     if cycle.status != CycleStatus.cycle:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
     return cycle
 
 
 def ways(accuracy: float) -> list[Contender]:
-    """All starts of a point."""
+    """All starts of a point, as contenders."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy)) for axis in SWEPT
@@ -155,14 +157,14 @@ def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
 
 
 def name_of(point: Rod) -> str:
-    """The rod, in the order in which its parameters stand in tables."""
+    """Label of a rod: its parameters in the order of the tables."""
     return f"{point.F:g}, {point.k1:g}, {point.k2:g}, {point.gamma3:g}, {point.gamma1:g}"
 
 
 def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
-    """Errors and estimate of a cycle, its mesh, and how many multipliers were found.
+    """Errors and error estimate of a cycle, its mesh, and the number of multipliers.
 
-    What only the orbit tells is left out where a start does not hand it on.
+    Columns derived from the orbit are missing if the solve returns no orbit.
     """
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
     extra = errors | {"estimate": cycle.errors.largest, "order": float(cycle.elements * cycle.order)}
@@ -175,26 +177,27 @@ def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
 
 
 def sweep_introduction() -> str:
-    """What is measured."""
+    """Description of the measurements for the report."""
     return (
-        f"Cycles solved: a point of a sweep, all its multipliers included, asked for {ACCURACY:.0e}; its "
-        f"neighbour is {STEP - 1:.0%} away; the mean of {STRETCH} points, the last of which is the rod, with "
-        "what finer meshes cost that their errors are calibrated by. The time includes the straight rod's "
-        "spectrum, the choice of the mesh, the verdict, and the estimate of the error, the larger of the "
-        "period's and of the extrema's. Errors of period and largest tip y are relative, against meshes that "
-        f"leave {REFERENCE_ACCURACY:.0e}. Multipliers are those above rounding. The order in space is that "
-        "of one element; the intervals in time cover half a period where the cycle is symmetric."
+        f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
+        f"{STEP - 1:.0%} between neighbours. The time is the mean of {STRETCH} points up to the rod, with "
+        "the finer meshes that calibrate errors. It includes the straight rod's spectrum, the choice of "
+        "the mesh, the verdict, and the error estimate, which is the larger of the estimates for the period "
+        "and for the extrema. Errors of the period and of the largest tip y are relative to a solution on "
+        f"meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers are counted above rounding. The order "
+        "in space is that of one element; the intervals in time cover half a period if the cycle is "
+        "symmetric."
     )
 
 
 def milliseconds(m: Measurement) -> float:
-    """Of one point; nan where it failed."""
+    """Time of one point in milliseconds; nan for a failed point."""
     points = STRETCH if m.method.startswith(SWEEP) else 1
     return nan if m.failure else 1e3 * m.seconds / points
 
 
 def sweep_table(measurements: Sequence[Measurement]) -> str:
-    """A line for each rod and start, and the medians over the rods."""
+    """Table with a line for each rod and start, and the medians over the rods."""
     lines = [
         {"rod": m.case, "way": m.method, "ms": milliseconds(m), "failure": m.failure} | NOTHING | m.extra
         for m in measurements

@@ -1,9 +1,9 @@
-"""Work and precision of following a settled cycle.
+"""Work and precision of following a settled cycle in time.
 
 Every integrator starts on the cycle of one rod. The reference is the cycle on the same mesh in space, and on
-one in time that leaves rounding only. Period and amplitude are measured alike for all: the steps next to a
-return of the tip and next to the largest y are made again in small steps, so that an error is that of the
-integration and not of an interpolant.
+a mesh in time with rounding errors only. Period and amplitude are measured alike for all integrators: steps
+around a return of the tip and around the largest y are repeated in small steps, so that the measured error is
+the error of the integration and not of an interpolant.
 """
 
 from collections.abc import Iterable
@@ -35,32 +35,37 @@ FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 """The rod of the paper's Fig. 5 without its force."""
 CYCLE_FORCE = 50.0
 CYCLE_ORDER = 18
-"""Of the one element; it leaves 1e-9 of period and amplitude at F = 50."""
+"""Order of the single element in space. Its error of period and amplitude is 1e-9 at F = 50."""
 REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
-"""Of the reference in time, over half its period."""
+"""Mesh of the reference in time, over half a period."""
 EXACT = 1e-13
-"""Relative, of the reference by Newton's method."""
+"""Relative tolerance of Newton's method for the reference."""
 PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
-"""With it events are located, in equal steps: their number rules the error, and Newton's leaves none."""
+"""Scheme for locating events. The number of equal steps determines the error; Newton's error is
+negligible."""
 FOLLOWED_PERIODS = 6.3
-"""Length of a run; the first return is left out, for a start is not a settled cycle."""
+"""Length of a run in periods. The first return is left out, because the start is not exactly on the cycle."""
 TARGET = 1e-6
-"""Error, the larger of the two, at which the families are compared."""
+"""Error at which the families are compared, the larger of the errors of period and amplitude."""
 SETTLED_WITHIN = 1e-7
-"""Accuracy asked of solve_cycle; relative distance of two successive returns of one who waits instead."""
-AMPLITUDE, MOST_RETURNS = 0.1, 300
-"""Of the start, in L; returns that solve_cycle may wait for."""
-SMALL_STEPS, DEGREE = 20, 7
-"""Small steps about an event, and the degree of the spline through them."""
+"""Accuracy requested from solve_cycle; when waiting, relative distance of two successive returns."""
+AMPLITUDE = 0.1
+"""Tip deflection at the start, in L."""
+MOST_RETURNS = 300
+"""Maximum number of returns for which solve_cycle may wait."""
+SMALL_STEPS = 20
+"""Number of small steps around an event."""
+DEGREE = 7
+"""Degree of the spline through the small steps."""
 CORRECTIONS = 2
-"""Newton steps from the spline's root to the event: the spline alone leaves 1e-8 rad."""
+"""Newton steps from the spline's root to the event, because the spline alone has errors of 1e-8 rad."""
 OVERSHOOT = 1.25
-"""How far a step is made again, in units of it: its end is a little off and might miss the event."""
+"""Length of the repeated step, in units of the original step, which has an error and might miss the event."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """The cycle: a state on it, its period in tau2 and the tip's largest y in L."""
+    """The reference cycle: a state on it, its period in tau2 and the tip's largest y in L."""
 
     beam: Beam
     state: Array
@@ -69,38 +74,38 @@ class Reference:
 
 
 def asked(accuracy: float) -> CycleRequest:
-    """A cycle with its numbers at an accuracy, and nothing else to store."""
+    """Request for a cycle at an accuracy, without stored samples or shapes."""
     return CycleRequest(accuracy, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS)
 
 
 def cycle_at(force: float) -> Cycle:
-    """The rod's cycle as the task limit_cycle finds it."""
+    """The rod's cycle as found by the task limit_cycle."""
     return solve_cycle(FIG5_ROD.changed(F=force), asked(SETTLED_WITHIN), along="F")
 
 
 def orbit_of(cycle: Cycle) -> Orbit:
-    """The orbit on the mesh that was chosen for it; raises ArithmeticError where there is none."""
+    """The orbit on the mesh chosen for it; raises ArithmeticError if there is no cycle."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
     return cycle.neighbour.branch.orbit
 
 
 def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
-    """The rod as integrators see it, and its state z on the cycle where y is largest, shape (unknowns,)."""
+    """The beam for the integrators, and its state z on the cycle where y is largest, shape (unknowns,)."""
     form = orbit.form
     beam = Beam(form.rod, form.mesh)
     return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
 
 
 def reference() -> Reference:
-    """The cycle on the benchmark's mesh, by collocation in time."""
+    """The cycle on the benchmark's mesh in space, by collocation in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
     orbit = newton(near, EXACT, NewtonWorkspace()).orbit
     return Reference(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 
 def work_precision(at: Reference, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
-    """All contenders along the cycle; seconds are those of a period."""
+    """Measurements of all contenders along the cycle; seconds are per period."""
     leg = Leg(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
@@ -124,9 +129,10 @@ def _rms(values: NDArray[np.floating]) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Returns:
-    """The returns of a run: theta of the tip rises through 0.
+    """Returns of a run: times at which theta of the tip rises through 0.
 
-    times in tau2, (k,), states z, (k, unknowns); heights: the tip's largest y in L between two, (k - 1,).
+    times in tau2, (k,), states z, (k, unknowns); heights: the tip's largest y in L between two returns, (k -
+    1,).
     """
 
     times: Array
@@ -154,7 +160,7 @@ def returns_of(beam: Beam, run: Trajectory) -> Returns:
 
 
 def height_near(beam: Beam, run: Trajectory, k: int) -> float:
-    """The largest y of the tip in L between the steps next to the k-th."""
+    """Largest y of the tip in L in the two steps around the k-th."""
     again = _again(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
     height = _spline(again.times, beam.tip(again.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())

@@ -1,1 +1,1 @@
-"""Spectra timed beside dense QZ, Chebyshev and Arnoldi codes."""
+"""Spectra: rodsweep timed beside dense QZ, Chebyshev and Arnoldi codes."""

@@ -1,4 +1,4 @@
-"""Eigenvalues to 30 digits: the roots of D in multiple precision (mpmath), none missed by the certificate."""
+"""Eigenvalues to 30 digits: roots of D in multiple precision (mpmath), proved complete by the certificate."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,11 +13,11 @@ from ...solve.spectrum.status import SpectrumStatus
 
 DIGITS = 30
 GUARD = 25
-"""Digits that the cancellation in D may take, and more."""
+"""Additional digits of the computation, more than the cancellation in D costs."""
 STEP = mp.mpf(10) ** -12
-"""Relative distance of the two first points of the secant method."""
+"""Relative distance of the first two points of the secant method."""
 FARTHEST_ROOT = 20
-"""Distance of the root, in units of the estimated error of where the search begins, that is believed."""
+"""Largest accepted distance of the root from the starting value, in units of its estimated error."""
 
 
 def determinant(rod: Rod) -> Callable[[Any], Any]:
@@ -42,7 +42,7 @@ def determinant(rod: Rod) -> Callable[[Any], Any]:
 def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     """The leading eigenvalues to 30 digits, as numbers of mpmath.
 
-    Raises ArithmeticError where the leading eigenvalues are not certified or one cannot be refined.
+    Raises ArithmeticError if the leading eigenvalues are not certified or cannot be refined.
     """
     found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
     if found.status != SpectrumStatus.ok or not found.certified:
@@ -61,7 +61,7 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
 
 
 def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
-    """Largest relative distance of an exact eigenvalue to the nearest of w, shape (modes,); inf for none."""
+    """Largest relative distance of an exact eigenvalue to the nearest of w, shape (modes,); inf for no w."""
     if isinstance(w, Exception) or not len(w):
         return float("inf")
     with mp.workdps(DIGITS):

@@ -1,7 +1,7 @@
-"""rodsweep on one rod: as its task uses it, and its Krylov-Schur solver alone at every size of its pencil.
+"""rodsweep on one rod: the solver of its task, and Krylov-Schur alone at every size of the pencil.
 
-All give the leading eigenvalues, WANTED_MODES and one more where they are there, for a pair may straddle the
-end, largest real part first.
+Every solver returns the leading eigenvalues, largest real part first: WANTED_MODES, and one more if found,
+because the last mode may be half of a complex pair.
 """
 
 from functools import partial
@@ -19,44 +19,44 @@ from ..study import Contender
 
 WANTED_MODES = 4
 ACCURACY = 1e-12
-"""Asked of rodsweep, whose error does not depend on it."""
+"""Accuracy requested from rodsweep; its error does not depend on the request."""
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Sizes of the pencil."""
 PLAIN, PROVED = "rodsweep, certificate off", "rodsweep, certificate on"
 KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
 THIS_TOOL, PENCIL = "this tool", "the same pencil"
-"""Groups of a figure."""
+"""Groups of methods in the figure."""
 
 
 def own_spectrum(rod: Rod, certify: bool) -> Complex:
-    """This tool as its task uses it, shape (modes,); it chooses the size itself."""
+    """rodsweep as in its task, with automatic size, shape (modes,)."""
     return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
 
 
 def mesh_of(order: int) -> Resolution:
-    """One element of this order, or as many equal ones as keep to LARGEST_ORDER."""
+    """One element of the given order, or several equal elements of at most LARGEST_ORDER."""
     elements = ceil(order / LARGEST_ORDER)
     return Resolution(elements, ceil(order / elements))
 
 
 def shift_of(rod: Rod) -> float:
-    """The shift of rodsweep's own shift-and-invert."""
+    """Shift of rodsweep's own shift-and-invert."""
     return SHIFT_ABOVE_GROWTH * most_amplified_wave(rod)[0]
 
 
 def krylov_schur(rod: Rod, size: int) -> Complex:
-    """SLEPc's Krylov-Schur to its last digit, without refinement on D, shape (modes,)."""
+    """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
     w = eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True)
     return leading(w, WANTED_MODES + 1)
 
 
 def leading(w: Complex, count: int) -> Complex:
-    """The eigenvalues with the largest real parts, largest first, shapes (n,) and (count,)."""
+    """The eigenvalues with the largest real parts, largest first; from shape (n,) to (count,)."""
     return w[np.argsort(-w.real, kind="stable")][:count]
 
 
 def contenders() -> list[Contender]:
-    """rodsweep's ways, the solver alone at all sizes."""
+    """rodsweep with and without certificate, and Krylov-Schur at all sizes."""
     return [
         Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
         Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),

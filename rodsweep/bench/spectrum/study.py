@@ -1,6 +1,6 @@
-"""The spectrum benchmark: time and error of a point, on the paper's and on hard rods.
+"""The spectrum benchmark: time and error of a point, on the paper's rods and on hard rods.
 
-Its race RACE is run on a `Rod`, and gives the leading eigenvalues, WANTED_MODES or more, shape (modes,).
+The race RACE runs on a `Rod` and gives the leading eigenvalues, at least WANTED_MODES, shape (modes,).
 """
 
 from collections.abc import Sequence
@@ -47,10 +47,10 @@ HARD_RODS = {
     "12 unstable modes: F = 2000, k1 = 1e4": Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4),
 }
 TARGETS = (1e-12, 1e-10, 1e-6)
-"""Errors at which the methods are compared, the strictest first."""
+"""Errors at which the methods are compared, smallest first."""
 ROUNDS, QUICK_ROUNDS = 25, 2
 QUICK_STRIDE = 3
-"""A quick run measures every third size on the hard rods."""
+"""Stride of the sizes on the hard rods in a quick run."""
 
 
 def spectrum_study(quick: bool, peers: Peers) -> Study:
@@ -72,7 +72,7 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
 
 
 def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
-    """Of every method that gets within the target the smallest size that does."""
+    """The contender with the smallest sufficient size, for every method that reaches the target."""
     found: dict[str, Contender] = {}
     for contender in every:
         if contender.method not in found:
@@ -84,7 +84,7 @@ def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: flo
 def equal_errors(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
-    """All methods at the cheapest size that reaches the target, point by point; a table."""
+    """Table of all methods at the cheapest size that reaches the target, point by point."""
     fit = [cheapest(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
@@ -106,8 +106,9 @@ def equal_errors(
         }
         rows.append(row)
     return (
-        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}, each method at the cheapest size that gets "
-        f"there, median over {len(rods)} points of the paper's four rods, {plural(rounds, 'round')}:\n\n"
+        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
+        f"this error; median over {len(rods)} points of the paper's four rods, "
+        f"{plural(rounds, 'round')}:\n\n"
     ) + table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
@@ -116,7 +117,7 @@ def equal_errors(
 
 
 def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """All methods at all of their sizes on the hard rods."""
+    """Measurements of all methods at all sizes on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(_judge, exact_spectrum(rod, WANTED_MODES))
@@ -129,19 +130,20 @@ def _judge(exact: list[Any], w: Complex) -> dict[str, float]:
 
 
 def hard_table(measurements: Sequence[Measurement]) -> str:
-    """For every method on every hard rod the least error, and the time it takes to get within ten of it."""
+    """Table: for every method on every hard rod the smallest error, and the time for ten times this error."""
     rows = [
         {"method": method, "cells": " | ".join(best(own) for own in grouped(every, "case").values())}
         for (method,), every in grouped(measurements, "method").items()
     ]
     return (
-        f"Leading {WANTED_MODES} eigenvalues of hard rods: the least relative error that a method reaches at "
-        "any size, and the ms of the cheapest size within a factor 10 of it (the figure has all):\n\n"
+        f"Leading {WANTED_MODES} eigenvalues of hard rods: the smallest relative error that a method reaches "
+        "at any size, and the ms of the cheapest size with at most ten times this error (the figure shows "
+        "all sizes):\n\n"
     ) + table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
 def best(measurements: Sequence[Measurement]) -> str:
-    """One method on one rod."""
+    """Table cell of one method on one rod: smallest error and time."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"

@@ -1,1 +1,1 @@
-"""Whole runs of the command timed: scaling, overhead, memory."""
+"""Complete runs of the command: scaling, overhead, memory."""

@@ -1,4 +1,4 @@
-"""What following eigenvalues along an axis of a grid gains over solving every point alone, and its limits."""
+"""Speed of following eigenvalues along an axis of a grid, compared with solving every point alone."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ FOLLOWED, ALONE = "followed", "alone"
 
 @dataclass(frozen=True, slots=True)
 class LongAxis:
-    """A grid (F, k1, k2, gamma3) that is named after its longest axis, and a smaller one for points alone."""
+    """A grid (F, k1, k2, gamma3) named after its longest axis, and a smaller grid for points solved alone."""
 
     name: str
     shape: tuple[int, int, int, int]
@@ -43,7 +43,7 @@ QUICK_AXES = (
 
 
 def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
-    """Certified spectra with four modes on one rank, followed and alone, on axes of many values and few."""
+    """Certified spectra with four modes on one rank, followed and alone, on long and short axes."""
     found = []
     for axis in QUICK_AXES if quick else AXES:
         for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
@@ -57,7 +57,7 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
 
 
 def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
-    """The times of a run, and how many points had a mesh of their own."""
+    """Times of a run, and the number of points solved on a mesh of their own."""
     variables = read_view(case.directories[0] / RESULT).variables
     extra = {
         "points": float(case.points),
@@ -71,7 +71,7 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measu
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Followed beside alone, axis by axis."""
+    """Table of followed and single points, axis by axis."""
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]
@@ -82,9 +82,9 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
         )
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
-        "alone is `follow: false` on a part of the same grid. Seconds are those that the run states, with "
-        "loading what is compiled, handing out and storing; µs of the solver are from `seconds` in the file. "
-        "With a mesh are points that could not be followed, or not proved:\n\n"
+        '"alone" is `follow: false` on a part of the same grid. Seconds are stated by the run, including '
+        "loading of compiled code, scheduling and storing; µs of the solver are from `seconds` in the file. "
+        '"With a mesh" counts points that could not be followed or not be proved:\n\n'
     ) + table(
         "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
         "| MB a rank",

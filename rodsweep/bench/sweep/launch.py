@@ -1,8 +1,8 @@
-"""Sweeps, and runs of them as a user starts them: time, memory of each rank, bytes on disk.
+"""Sweeps run as by a user: time, memory of each rank, bytes on disk.
 
-The words that start the command are given. They are followed by a directory, into which every rank writes
-its peak memory in bytes, in a file FIRST_RANK-PID or OTHER_RANKS-PID; by what takes the place of the solver,
-SOLVED, INSTANT or KILLED; and by the words of the command.
+The caller gives the words that start the measured command. Three arguments follow: a directory, where every
+rank writes its peak memory in bytes into a file FIRST_RANK-PID or OTHER_RANKS-PID; the kind of solver,
+SOLVED, INSTANT or KILLED; and the words of the `rodsweep` command.
 """
 
 import os
@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
 
@@ -26,7 +26,8 @@ RESULT, NOTES = "c.h5", "notes"
 """Names in the directory of a case."""
 FIRST_RANK, OTHER_RANKS = "first", "other"
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
-"""The solver itself, outcomes that cost nothing, and the same with a kill at the last point."""
+"""Kinds of solver: the real solver; instant random outcomes; instant outcomes and a kill at the last
+point."""
 CONFIG = "c.yaml"
 SPECTRUM_CONFIG = """
 task: spectrum
@@ -44,10 +45,10 @@ HOPF_FORCE = 27.4271941267592812
 
 @dataclass(frozen=True, slots=True)
 class SweepCase:
-    """A sweep to be run: how many points it has, and where its config is.
+    """A sweep to run: number of points and directories of its config.
 
-    kind: what takes the place of the solver. Of several directories each has a share of the points, which a
-    command of its own runs at the same time as the others.
+    kind: kind of solver. With several directories, each has a part of the points, and one command for each
+    directory runs at the same time.
     """
 
     name: str
@@ -57,7 +58,7 @@ class SweepCase:
 
 
 def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
-    """A grid of two k1 and of F and k2; 200 points or more are rounded down to hundreds."""
+    """A grid over two k1, F and k2; from 200 points on, the number is rounded down to hundreds."""
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
     directory.mkdir()
@@ -66,7 +67,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
 
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
-    """Limit cycles of very different cost, in an order that mixes them."""
+    """Limit cycles of very different cost, in random order."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in uneven_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -75,7 +76,7 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
 
 
 def uneven_forces(count: int) -> np.ndarray:
-    """Forces far below the Hopf point, just below it, just above it, and ordinary ones, shape (count,)."""
+    """Forces far below the Hopf point, just below it, just above it, and far above, shape (count,)."""
     below, close, above = count // 5, count // 6, count // 4
     forces = np.concatenate(
         [
@@ -90,13 +91,13 @@ def uneven_forces(count: int) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandRun:
-    """What a run of the command took, and what it left.
+    """Time, memory and disk space of a run of the command.
 
-    seconds: of the whole command; inside: as the command says, without the start of Python and MPI, nan where
-    it was killed; solving: in the solver, all ranks together. memory: peak bytes of the first rank, and of
-    the largest other. file, journal: bytes of the result, and of the journals that a killed run leaves.
-    elsewhere: processors that other programs kept busy, nan where the system does not say. busy: share of
-    the ranks' time that went into points and not into waiting, nan without the real solver.
+    seconds: the whole command. inside: time stated by the command, without the start of Python and MPI; nan
+    if killed. solving: time in the solver, summed over ranks. memory: peak bytes of the first rank, and the
+    largest peak of the remaining ranks. file, journal: bytes of the result, and of the journals left by a
+    killed run. elsewhere: processors kept busy by foreign programs; nan if unknown. busy: share of the ranks'
+    time spent on points instead of waiting; nan without the real solver.
     """
 
     seconds: float
@@ -110,14 +111,14 @@ class CommandRun:
 
 
 def launcher(ranks: int) -> list[str]:
-    """The words that start a command on some ranks; none where there is no mpiexec."""
+    """Words that start a command on several ranks; empty without mpiexec."""
     beside = Path(sys.executable).with_name("mpiexec")
     found = str(beside) if beside.exists() else shutil.which("mpiexec")
     return [found, "-n", str(ranks)] if found else []
 
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
-    """Runs a case on some ranks; EnvironmentLacks where that fails without having been killed."""
+    """Runs a case on several ranks; EnvironmentIncomplete if the command fails without having been killed."""
     others, began = _seconds_of_others(), time.monotonic()
     words = [*launcher(ranks), *command]
     started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
@@ -146,7 +147,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
     return subprocess.Popen(
         [*words, str(notes), kind, *run],
         cwd=directory,
-        env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
+        env=dict(os.environ),  # as this process was started: MPI adds variables to the C environment only
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -154,30 +155,30 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 
 def _inside(process: subprocess.Popen[str], kind: str) -> float:
-    """The seconds that a command states in the end; nan where it was killed as it should be."""
+    """Seconds stated by a command at its end; nan if it was killed on purpose."""
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output
     if kind != KILLED and (stopped or process.returncode not in (0, 1)):
-        raise EnvironmentLacks(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
+        raise EnvironmentIncomplete(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
     return float(said[1]) if said else nan
 
 
 def _peak(case: SweepCase, rank: str) -> int:
-    """The peak memory in bytes that the first rank has noted, or the largest of the others."""
+    """Peak memory in bytes noted by the first rank, or the largest peak of all other ranks."""
     notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
     return max((int(note.read_text()) for note in notes), default=0)
 
 
 def _solving(file: Path) -> tuple[float, float]:
-    """(seconds in the solver, share of the ranks' time that went into points), as a result says."""
+    """(seconds in the solver, share of the ranks' time spent on points), from a result file."""
     view = read_view(file)
     busy, idle = (float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle"))
     return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
 
 
 def _seconds_of_others() -> float:
-    """Processor seconds of all but the ended children of this process, so far; nan if no system says."""
+    """Processor seconds of all processes except the finished children of this one; nan if unknown."""
     try:
         line = Path("/proc/stat").read_text().split("\n", 1)[0]
         user, nice, system, _, _, irq, softirq, steal = map(int, line.split()[1:9])

@@ -1,7 +1,7 @@
-"""The sweep benchmark: what a second rank gains, and what a point costs beside its solution.
+"""The sweep benchmark: speedup by a second rank, and overhead of a point beside its solve.
 
-Every number comes from `rodsweep run` itself. Where only the sweep is to be seen, up to 1e6 points, a solver
-that costs nothing takes the place of the real one.
+Every number comes from `rodsweep run` itself. For the overhead, up to 1e6 points, an instant solver replaces
+the real one.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,34 +27,34 @@ from .launch import (
 )
 
 SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
-"""Points of the sweeps without a solver."""
+"""Numbers of points of the sweeps with the instant solver."""
 ONCE_FROM = 10**6
-"""Points from which a sweep without a solver is run once: the start is little of it then."""
+"""Number of points from which an instant sweep is run only once, because its start hardly counts."""
 SPECTRA, QUICK_SPECTRA = 200_000, 6_000
 CYCLES, QUICK_CYCLES = 200, 10
 ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
 
 APART = "spectra, two commands"
-"""Each with half of the spectra, on one rank: what the machine allows two ranks to gain."""
+"""Case of two commands, each with half of the spectra on one rank: the upper bound for two ranks."""
 MEGABYTE = 1e6
 INTRODUCTION = """
 `mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: `modes: 2`,
-certified, over F, k1, k2; two commands, each with half of them on one rank, gain what two processors of
-this machine gain at most. Limit cycles: of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at forces far below the Hopf
-point, down to 1e-6 below and 1e-7 above it, and ordinary ones, mixed. Inside is the time that the run
-itself states, without the start of Python and MPI; % busy of the ranks' time in the sweep went into points,
-the rest into waiting. Beside the solver is the ranks' time inside less the `seconds` in the file: loading
-what is compiled, handing out, storing, and waiting. Memory is the peak of a rank's resident set. While
-other programs, or the host of a virtual machine, keep processors busy, a second rank gains less."""
+certified, over F, k1, k2. Two commands, each with half of the spectra on one rank, show the largest possible
+gain of two processors on this machine. Limit cycles: k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at mixed forces far
+below the Hopf point, down to 1e-6 below and 1e-7 above it, and far above. "Inside" is the time stated by the
+run, without the start of Python and MPI; "% busy" is the share of the ranks' time in the sweep spent on
+points instead of waiting. "Beside the solver" is the ranks' time inside minus the `seconds` in the file:
+loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
+rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 
 RunCase = Callable[..., CommandRun]
 """`run_case` with the words that start the command."""
 
 
 def sweep_study(quick: bool, command: Sequence[str]) -> Study:
-    """Runs the benchmark: a second rank, following along axes, then what a point costs without a solver.
+    """Runs the benchmark: a second rank, following along axes, then the overhead of a point.
 
-    command: the words that start the command that is measured, see `rodsweep.bench.sweep.launch`.
+    command: words that start the measured command, see `rodsweep.bench.sweep.launch`.
     """
     run, ranks = partial(run_case, command), (1, 2) if launcher(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as place:
@@ -74,7 +74,7 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
     count = QUICK_SPECTRA if quick else SPECTRA
     spectra = spectrum_case(place / "spectra", "spectra", count, SOLVED)
     cycles = cycle_case(place / "cycles", QUICK_CYCLES if quick else CYCLES, SOLVED)
-    # Not timed: formulas may have to be compiled.
+    # Not timed: the first runs may compile the formulas.
     run(spectrum_case(place / "first", "first", 8, SOLVED), 1)
     run(cycle_case(place / "first_cycle", 1, SOLVED), 1)
     entries = [(spectra, n, rounds) for n in ranks]
@@ -86,7 +86,7 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
 
 
 def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Sweeps of all sizes without a solver; then killed at their last point on one rank, and resumed."""
+    """Sweeps of all sizes with the instant solver; then killed at the last point on one rank, and resumed."""
     sizes, rounds = (QUICK_SIZES, QUICK_ROUNDS) if quick else (SIZES, ROUNDS)
     entries = []
     for size in sizes:
@@ -111,7 +111,7 @@ def interleaved(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> 
 
 
 def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """The medians over all runs of one case on some ranks; no error applies."""
+    """Medians over all runs of one case on some ranks. No error applies."""
     seconds, processes = middle(run.seconds for run in runs), ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.memory for run in runs), strict=True)]
     extra = {
@@ -132,16 +132,16 @@ def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measure
 
 
 def numbers(m: Measurement) -> dict[str, object]:
-    """All that is known of a sweep, by name."""
+    """All numbers of a sweep, by name."""
     microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
 
 
 def solved_table(measurements: Sequence[Measurement]) -> str:
-    """Spectra and limit cycles with their solvers."""
+    """Table of spectra and limit cycles with the real solvers."""
     rows = []
     for m in measurements:
-        kind = m.case.split(",")[0]  # who is apart gains on who is not
+        kind = m.case.split(",")[0]  # two commands are compared with the same sweep in one command
         one = next(other for other in measurements if other.case == kind and other.extra["ranks"] == 1)
         gains = {
             "gain": nan if m is one else one.seconds / m.seconds,
@@ -160,10 +160,10 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
 
 
 def instant_table(measurements: Sequence[Measurement]) -> str:
-    """Sweeps without a solver, and what a kill leaves of them."""
+    """Table of sweeps with the instant solver, killed and resumed."""
     return (
-        "The same command with a solver that returns random eigenvalues at once, so that everything counts "
-        "as scheduling and storing; then killed at its last point on one rank, and resumed:\n\n"
+        "The command with an instant solver that returns random eigenvalues: all time is scheduling and "
+        "storing. Next, a sweep killed at the last point on one rank, and resumed:\n\n"
     ) + table(
         "sweep | points | ranks | s | µs a point | MB, first rank | MB, other | bytes a point, file "
         "| bytes a point, journal",
@@ -175,7 +175,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
 
 
 def growth_table(measurements: Sequence[Measurement]) -> str:
-    """How time, memory and file grow from each size to the next; what is killed has no file."""
+    """Table of the growth of time, memory and file from each size to the next; a killed run has no file."""
     rows = []
     for (case, method), sizes in grouped(measurements, "case", "method").items():
         if case == KILLED:
@@ -186,8 +186,8 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
             row |= {name: (end - start[name]) / (many - few) for name, end in totals(more).items()}
             rows.append(row | {"power": growth_power(sizes[0], less, more)})
     return (
-        "What a further point takes, of all ranks together; the power is that of the points with which the "
-        "time beyond that of the smallest sweep grows:\n\n"
+        'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
+        "the time of the smallest sweep, grows with the number of points:\n\n"
     ) + table(
         "sweep | on | from | to points | µs | bytes of file | bytes, first rank | bytes, other | power",
         "{case} | {method} | {less:.0f} | {more:.0f} | {microseconds:.3g} | {file:.4g} | {first:+.1f} "
@@ -197,7 +197,7 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
 
 
 def totals(m: Measurement) -> dict[str, float]:
-    """What a whole sweep takes: microseconds of all ranks, bytes of its file and of the ranks' memory."""
+    """Totals of a sweep: microseconds of all ranks, bytes of its file and of the ranks' memory."""
     return {
         "microseconds": 1e6 * m.extra["ranks"] * m.seconds,
         "file": m.extra["file_bytes_per_point"] * m.extra["points"],
@@ -207,7 +207,10 @@ def totals(m: Measurement) -> dict[str, float]:
 
 
 def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
-    """With which the time beyond that of the smallest sweep grows; nan where it does not."""
+    """Exponent of the growth of the time, beyond the smallest sweep's time, with the number of points.
+
+    nan if the time does not grow.
+    """
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan
     times = (more.seconds - start.seconds) / (less.seconds - start.seconds)

@@ -1,1 +1,1 @@
-"""Thresholds timed beside bisection, continuation codes and the pencil in F."""
+"""Thresholds: rodsweep timed beside bisection, continuation codes and the pencil in F."""

@@ -1,4 +1,4 @@
-"""The rods of the thresholds benchmark, what a method is given, and what it gives."""
+"""Rods of the thresholds benchmark, and the result of a method."""
 
 from dataclasses import dataclass
 from math import inf, isnan, nan
@@ -6,16 +6,16 @@ from math import inf, isnan, nan
 from ...model.rod import Rod
 
 ONSET, HOPF = "onset", "hopf"
-"""Kinds of thresholds, by their names in ThresholdCase and in rodsweep's results."""
+"""Kinds of thresholds: fields of ThresholdCase and names in rodsweep's results."""
 ANOTHER = 0.3
-"""Relative distance beyond which what was found is not the first change."""
+"""Relative distance from the exact value beyond which the result is a different change."""
 
 
 @dataclass(frozen=True)
 class ThresholdCase:
-    """A rod without its force, its first onset and Hopf point, nan for none, from 30 digits.
+    """A rod without force, its first onset and Hopf point (nan for none), rounded from 30 digits.
 
-    top: the force where the peers end their search.
+    top: force at which the peers end their search.
     """
 
     name: str
@@ -30,7 +30,7 @@ class ThresholdCase:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3)
 
     def error_of(self, kind: str, found: float) -> float:
-        """Relative; nan where there is nothing to be found, inf where that is missed or invented."""
+        """Relative error; nan if there is no threshold, inf if it was missed or invented."""
         exact = getattr(self, kind)
         if isnan(exact):
             return nan if isnan(found) else inf
@@ -40,10 +40,10 @@ class ThresholdCase:
 
 @dataclass(frozen=True, slots=True)
 class FirstThreshold:
-    """The first threshold of a kind, nan where none was found, and what it took.
+    """First threshold of a kind, nan if none was found, and the work spent on it.
 
-    solves: eigenproblems; determinants: evaluations of D; products: of a matrix and a vector, for who solves
-    no whole eigenproblem.
+    solves: eigenproblems. determinants: evaluations of D. products: matrix-vector products, for methods that
+    solve no complete eigenproblem.
     """
 
     force: float
@@ -61,6 +61,6 @@ CASES = (
     ThresholdCase("narrow", 147.93, 1e4, 1e-4, 23.7456428120601644, 74.8251556528066767, 140.0),
     ThresholdCase("soft", 1e4, 3.0, 1e-2, 4.15946661669787928, 7.93638669176118928),
 )
-"""The window of flutter of the last but one, from 74.83 to 75.98, falls between the points of a coarse grid;
-the last one takes up ever more unstable pairs, so that a long step passes the first."""
+"""The flutter window of "narrow", from 74.83 to 75.98, falls between the points of a coarse grid. In "soft",
+more and more pairs become unstable, and a long step passes the first one."""
 QUICK_CASES = tuple(case for case in CASES if case.name in ("Fig. 2b", "Fig. 2d", "filament"))

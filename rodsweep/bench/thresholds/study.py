@@ -1,7 +1,7 @@
 """The thresholds benchmark: onset and Hopf point, with errors against 30 digits.
 
-rodsweep finds all changes of a rod, and proves that there are no others. The races ONSET and HOPF are run on
-a `ThresholdCase` and give a `FirstThreshold`; peers find the first onset or the first Hopf point only.
+rodsweep finds all changes of a rod and proves the list complete. The races ONSET and HOPF run on a
+`ThresholdCase` and give a `FirstThreshold`; peers find the first onset or the first Hopf point only.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,7 +22,7 @@ RODSWEEP = "rodsweep"
 
 
 def thresholds_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: a table for the onset, one for the Hopf point, and what was skipped."""
+    """Runs the benchmark: a table for the onset, a table for the Hopf point, and the skipped peers."""
     warm_up()
     cases, rounds = (QUICK_CASES, QUICK_ROUNDS) if quick else (CASES, ROUNDS)
     found = {kind: timed_on(kind, cases, contenders(kind) + peers.of(kind), rounds) for kind in TITLES}
@@ -32,7 +32,7 @@ def thresholds_study(quick: bool, peers: Peers) -> Study:
 
 
 def contenders(kind: str) -> list[Contender]:
-    """rodsweep with its proof and without."""
+    """rodsweep with and without its proof."""
     return [
         Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(own_threshold, kind, True)),
         Contender("rodsweep, all changes", "without proof", RODSWEEP, partial(own_threshold, kind, False)),
@@ -40,7 +40,7 @@ def contenders(kind: str) -> list[Contender]:
 
 
 def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
-    """All changes of the rod, and of them the first of a kind."""
+    """All changes of the rod by rodsweep; returns the first change of a kind."""
     result = solve_thresholds(case.rod(0.0), ThresholdsRequest(F_MAX, 1e-10, certify, 64))
     at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
     return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
@@ -49,7 +49,7 @@ def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThresho
 def timed_on(
     kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """All contenders on each rod."""
+    """Measurements of all contenders on each rod."""
     measurements = []
     for case in cases:
         name = f"{case.name}, {TITLES[kind]}"
@@ -58,7 +58,7 @@ def timed_on(
 
 
 def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
-    """What is wrong with a threshold. digits: of it, an eigenproblem, 0 where it was missed."""
+    """Error of a threshold. digits: correct digits per eigenproblem, 0 if the threshold was missed."""
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
     digits = -log10(min(max(error, 10**-MOST_DIGITS), 1.0))
@@ -72,7 +72,7 @@ def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> d
 
 
 def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
-    """A line for each method and setting: medians over the rods, and the error on each."""
+    """Table with a line for each method and setting: medians over the rods, and the error on each rod."""
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
     for (method, setting), own in grouped(measurements, "method", "setting").items():
@@ -94,10 +94,10 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
 
 
 def introduction(rounds: int) -> str:
-    """What is measured."""
+    """Description of the measurements for the report."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{plural(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at once, "
-        "for which it evaluates D besides its eigenproblems, and each to rounding, whatever accuracy is "
-        "asked for. Digits = -log10(error), 0 where the threshold was missed."
+        f"{plural(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at once. "
+        "It evaluates D in addition to its eigenproblems, and locates each change to rounding, whatever "
+        "accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
     )

@@ -1,4 +1,4 @@
-"""What a run says of its end: how long points and curves took, and what is kept where it was stopped."""
+"""Closing sentences of a run: the time of points and curves, and what a stopped run keeps."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ from ...wording import counted, duration
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunEnd:
-    """How a run ended.
+    """Counts and times at the end of a run.
 
-    asked: points that were to do; left: those of them that still are; kept: points in the file. seconds: of
-    the points; curve_seconds: of what all of them together give. in_the_middle: points that a stop ended.
-    followed: halves of curves of this run, None where no curves were due; halves: those that are kept while
-    the curves are missing, None where they are not.
+    asked: points to solve. left: points not solved. kept: points in the file. seconds: time of the points.
+    curve_seconds: time of the variables determined by all points together. in_the_middle: points interrupted
+    by a stop. followed: halves of curves followed in this run, None if no curves were due. halves: halves
+    kept while the curves are incomplete, else None.
     """
 
     ranks: int
@@ -26,7 +26,7 @@ class RunEnd:
     halves: int | None
 
     def times(self) -> list[str]:
-        """Sentences about the times of points and curves; none where there was nothing to do."""
+        """Sentences on the times of points and curves; empty if there was nothing to do."""
         sentences, ranks = [], counted(self.ranks, "rank")
         if self.asked:
             points = self.asked - self.left
@@ -41,7 +41,7 @@ class RunEnd:
         return sentences
 
     def kept_words(self) -> str:
-        """What is kept of a run that was stopped."""
+        """Words on what a stopped run keeps."""
         points = f"{counted(self.kept, 'point')} kept"
         if self.halves is not None:
             return f"{points}, the curves are missing, {self.halves} of their halves kept"

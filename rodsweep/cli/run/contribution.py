@@ -1,4 +1,4 @@
-"""What each rank did in a run, and what the file keeps of it."""
+"""What each rank did in a run, and the attributes of the file made from it."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -13,12 +13,12 @@ from ...sweep.loop import Indices, Share
 from ...sweep.points.stretches import StretchResult
 
 FAILURES_TOLD = 3
-"""Failed points that are named at the end of a run; the file has the status of all."""
+"""Maximum number of failed points named at the end of a run; the file has the status of all points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contribution:
-    """What a rank tells the first one: its host, failed points in words, its share."""
+    """Report of a rank to the first rank: host, failed points in words, and statistics of the rank's work."""
 
     host: str
     failures: list[str]
@@ -26,7 +26,7 @@ class Contribution:
 
 
 def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> list[str]:
-    """What to tell of points that did not succeed, as many as are told. where: the parameters of one."""
+    """Descriptions of failed points, at most `FAILURES_TOLD`; where: a point's parameters in words."""
     if isinstance(result, StretchResult):
         failed = np.flatnonzero(~result.succeeded)[:FAILURES_TOLD]
         told = [(int(np.asarray(index)[i]), result.message(int(i))) for i in failed]
@@ -36,13 +36,13 @@ def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> lis
 
 
 def of_the_last_run(plan: Plan) -> dict[str, Any]:
-    """The attributes of a plan that are those of the last run that computed points."""
+    """Attributes of a plan that belong to the last run that computed points."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
 
 
 def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:
-    """Attributes that say where, by what and by whom the points of a run were computed."""
+    """Attributes with the hosts, versions and ranks that computed the points of a run."""
     hosts = {contribution.host for contribution in contributions}
     shares = [contribution.share for contribution in contributions[: provenance.MAX_RANK_SHARES]]
     points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)

@@ -1,4 +1,4 @@
-"""What only all points together give, as the curves of a phase diagram: in units, by all ranks of a run."""
+"""Variables that all points together determine, such as curves of a phase diagram, computed by all ranks."""
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -23,19 +23,19 @@ from ...tasks.running.unforeseen import PASSING, UnitNote
 from ...watch import Stopped, heard_by
 
 NOUN = "halves of curves"
-"""What units are called; a curve is followed from one of its points in two halves."""
+"""Name of the units of work: each curve is followed from one of its points in two halves."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """What all points together are to give: whether the file lacks it, and its units, if it has some."""
+    """Joint work of a run. due: whether the file lacks the variables. units: units of work, or None."""
 
     due: bool
     units: Any = None
 
 
 class JointWork:
-    """The units of a run on this rank, and their results on the first."""
+    """Joint work of a run: the units solved on this rank and, on the first rank, all results."""
 
     def __init__(
         self,
@@ -46,15 +46,15 @@ class JointWork:
         note: UnitNote,
         stop: StopRequest,
     ):
-        """note: what is done about an exception that no solver foresees, in whose unit no curve is found."""
+        """note: called with an unforeseen exception; the unit then contributes no curve."""
         self.team, self.together, self.output = team, together, output
         self.note, self.stop = note, stop
         self.kept = UnitResults(journal_directory(output), fingerprint)
         self.results: dict[int, Arrays] = {}
-        """On the first rank, those of all units that are done."""
+        """Results of all finished units, on the first rank only."""
 
     def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> Share:
-        """Solves what is wanted of the units, on all ranks. title: of the progress; None shows none."""
+        """Solves the wanted units on all ranks. title: of the progress display; None shows none."""
         found: dict[int, Arrays] = {}
 
         def keep(unit: Indices, result: Arrays) -> None:
@@ -85,7 +85,7 @@ class JointWork:
             shown.close()
 
     def _exchange_starts(self, units: Any) -> None:
-        """Gives every rank what any has kept of where the first units start: none computes it anew."""
+        """Sends the stored starting data of the first units to every rank, to save computing them again."""
         wanted = self.team.on_first(lambda: units.wanted(self.results))
         for starts in self.team.exchange(self.together.starts(units, wanted)):
             self.together.take(starts)
@@ -101,7 +101,7 @@ class JointWork:
             yield unit, self.together.nothing()
 
     def variables(self, units: Any) -> Sequence[Filled] | None:
-        """The variables of the file, on the first rank; None where a stop came before all was done."""
+        """The variables for the file, on the first rank; None if a stop came before all units were done."""
         if units is not None and units.wanted(self.results):
             return None
         with suppress(Stopped), heard_by(RankListener(NoClaims(), self.stop)):

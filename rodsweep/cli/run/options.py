@@ -1,4 +1,4 @@
-"""What the user asks of a run beside the config."""
+"""Options of a run beside the config."""
 
 from dataclasses import dataclass
 
@@ -18,4 +18,4 @@ class RunOptions:
     strict: bool = False
     """Whether the run ends at the first exception that is a bug."""
     quiet: bool = False
-    """Whether only what is amiss is told."""
+    """Whether to print problems only."""

@@ -1,4 +1,4 @@
-"""The points of a run that a rank solves: which units they make, and how results reach its journal."""
+"""The points of a run: their units of work, and the path of results into a rank's journal."""
 
 import socket
 from collections.abc import Callable, Iterable
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ...results.file.creation import Plan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, kept_sentence
@@ -29,7 +29,7 @@ from .contribution import FAILURES_TOLD, Contribution, failures_of
 
 @dataclass(frozen=True, kw_only=True)
 class PointWork:
-    """The points of a job that are solved for a shard of a plan, into the journal beside `output`."""
+    """Points of a job, solved for a shard of a plan into the journal beside `output`."""
 
     team: Team
     job: Job
@@ -39,12 +39,12 @@ class PointWork:
     output: Path
     stop: StopRequest
     quiet: bool
-    """Whether no progress is shown."""
+    """Whether to hide the progress."""
     where: Callable[[int], str]
-    """The parameters of a point, in words."""
+    """The parameters of a point in words."""
 
     def units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
-        """(the units of this shard that miss a point, the points that they miss)."""
+        """(units of this shard with missing points, number of missing points)."""
         if self.solver.stretched is not None:
             stretches = self.solver.stretched[0]
             units = self.shard.part(stretches.todo(missing), stretches.count)
@@ -60,7 +60,7 @@ class PointWork:
     def solve(
         self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
     ) -> Contribution:
-        """Solves this rank's share of the units, into its journal."""
+        """Solves the units of this rank and writes the results into the rank's journal."""
         failures: list[str] = []
         solver, plan = self.solver, self.plan
 
@@ -80,7 +80,7 @@ class PointWork:
                 loop = Loop(solve=solve, keep=keep, prepare=prepare, name=self._unit_name)
                 share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
-            raise EnvironmentLacks(
+            raise EnvironmentIncomplete(
                 f"cannot write beside {self.output}: {error.strerror or error}"
                 f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
             ) from error
@@ -91,7 +91,7 @@ class PointWork:
     def _solve_unit(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """How a unit is solved: a point, a chain or a stretch."""
+        """Function that solves a unit of work: a point, a chain or a stretch."""
         solver = self.solver
         if solver.stretched:
             return StretchSolver(*solver.stretched, missing)
@@ -101,7 +101,7 @@ class PointWork:
         return lambda index: ((index, solver.solve(index)),)
 
     def _unit_name(self, unit: int) -> str:
-        """Which point or chain a unit is."""
+        """Name of a unit, point or chain, for the progress display."""
         if self.solver.chained:
             return f"chain {unit + 1} of {self.solver.chained.chains.count}"
         return f"point {unit + 1} of {self.job.points.count}"

@@ -1,4 +1,4 @@
-"""`rodsweep run`, read aloud: read the config, open the file, solve what is missing, fold it in."""
+"""`rodsweep run`: read the config, open the file, solve missing points, write them into the file."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ from .options import RunOptions
 from .point_work import PointWork
 
 CONTINUE = 75
-"""Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
+"""Exit status of a run stopped by a signal; the same command continues it (EX_TEMPFAIL of sysexits.h)."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -44,7 +44,7 @@ class _Run:
     """One run of a job on this rank."""
 
     store: Store
-    """On the first rank, once it is open."""
+    """The result file, on the first rank, after `_open`."""
 
     def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
         from ...solve.backend.blas_kernel import blas
@@ -74,7 +74,7 @@ class _Run:
         )
 
     def run(self) -> int:
-        """Solves what is missing and folds it into the file; returns the exit status."""
+        """Solves missing points and writes them into the file; returns the exit status."""
         if self.team.on_first(self._creates):
             plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
@@ -102,21 +102,21 @@ class _Run:
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
     def _creates(self) -> bool:
-        """Whether a file is to be created, as far as can be seen before it is opened."""
+        """Whether a file will be created, as far as can be decided before opening it."""
         return self.options.fresh or self.options.extend or not self.output.exists()
 
     @staticmethod
     def _stopped_beforehand(signal: str) -> int:
-        """Says that a stop came before the file was created; returns the exit status."""
+        """Prints that a stop came before the file was created; returns the exit status."""
         click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")
         return CONTINUE
 
     def _lacks_curves(self, missing: int) -> bool:
-        """Whether the file is not finished although no point is missing; on the first rank."""
+        """Whether only the variables that all points together determine are missing; on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
     def _fold(self, count: int, contributions: list[Contribution]) -> JointDue:
-        """Folds the points into the file; returns what all points together are still to give."""
+        """Writes the points into the file; returns the joint work that is still due."""
         self.seconds = time.monotonic() - self.began
         if count:
             history = history_of(contributions, self.team.MPI.Get_library_version())
@@ -131,26 +131,26 @@ class _Run:
         return JointDue(True, self.joint.together.units(read_view(self.output)))
 
     def _say(self, text: str, amiss: bool = False) -> None:
-        """Tells the user, who may want to hear only what is amiss."""
+        """Prints a text, in quiet mode only if it reports a problem."""
         if amiss or not self.options.quiet:
             click.echo(text)
 
     def _note(self, indices: Sequence[int], error: Exception) -> None:
-        """Writes an unforeseen exception into the log; raises it where the run is to end."""
+        """Writes an unforeseen exception into the log; raises it in strict mode."""
         self.log(indices, error)
         if self.options.strict:
             error.add_note(f"at {self._where(indices[0])}")
             raise error
 
     def _note_unit(self, place: str, error: Exception) -> None:
-        """The same of what is no point."""
+        """Writes an unforeseen exception of a unit of joint work into the log; raises it in strict mode."""
         self.log.note(place, error)
         if self.options.strict:
             error.add_note(f"at {place}")
             raise error
 
     def _open(self) -> list[IndexRange]:
-        """Opens the file; returns the points that it misses."""
+        """Opens the file; returns the missing points."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
         if self.joint and (self.options.fresh or not self._lacks_curves(0)):
             self.joint.kept.drop()
@@ -158,13 +158,13 @@ class _Run:
         return self.store.missing()
 
     def _tell_notes(self) -> None:
-        """Tells what the store has to say of points and journals that are not where they were."""
+        """Prints the store's notes on points and journals found in unexpected places."""
         for note in self.store.notes:
             self._say(f"{self.output}: {note}", amiss=True)
         self.store.notes.clear()
 
     def _note_kernels(self) -> None:
-        """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
+        """Stores the BLAS kernels that compute the points, and prints a warning if there are several."""
         before = self.store.attributes()
         kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
         if kernels != before.get(provenance.KERNELS):
@@ -177,7 +177,7 @@ class _Run:
         return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
     def _finish_file(self, joint: JointDue) -> bool:
-        """Puts what all points together give into the file; whether that is still missing."""
+        """Writes the joint variables into the file; returns whether they are still missing."""
         if not joint.due:
             return False
         variables = self.joint.variables(joint.units) if self.joint else ()
@@ -190,7 +190,7 @@ class _Run:
         return False
 
     def _say_failures(self, contributions: list[Contribution], exceptions: int) -> None:
-        """Says which points failed, the first of them, and where tracebacks are."""
+        """Prints the first failed points, and where the tracebacks of exceptions are."""
         told = [failure for contribution in contributions for failure in contribution.failures]
         for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
@@ -199,7 +199,7 @@ class _Run:
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
     def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
-        """How many points have each status, in words; left: those of this run that are not done."""
+        """Number of points per status in words; left: points of this run not done."""
         words = {"missing": "of other shards"} if self.shard and not left else {}
         return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
 
@@ -211,7 +211,7 @@ class _Run:
         shares: list[Share],
         exceptions: int,
     ) -> int:
-        """Finishes the file, says how the run ended, and with which status it exits."""
+        """Finishes the file, prints how the run ended, and returns the exit status."""
         lacks_curves = self._finish_file(joint)
         missing = self.store.missing()
         self._tell_notes()

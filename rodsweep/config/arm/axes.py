@@ -1,9 +1,10 @@
-"""What the quantities of an arm move as axes, and which of them make the grid of a sweep.
+"""Parameters changed by the quantities of an arm, and the axes of a sweep's grid.
 
-An axis of the load is one of F, an axis of Poisson's ratio one of k2, and a grid of both stays a grid of
-parameters. Any other quantity moves several parameters at once, or none: with an axis of these, or a load
-relative to flutter, the points are a grid over the arm's own quantities, on which every parameter has its own
-value. A phase diagram needs parameters: there, the drags are an axis of gamma3.
+An axis of the load is an axis of F, an axis of Poisson's ratio is an axis of k2, and a grid of both is still
+a grid of parameters. Any other quantity changes several parameters at once, or none. With an axis of such a
+quantity, or with a load relative to flutter, the points form a grid over the arm's quantities, and every
+parameter has its own value at every point. A phase diagram always needs a grid of parameters, in which the
+values of drag are an axis of gamma3.
 """
 
 from collections.abc import Mapping
@@ -12,31 +13,32 @@ from ...model.arm.quantities import LOADS, RELATIVE
 from ...model.parameters import NONLINEAR_PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
-"""What may say the load; an arm has one of them or none."""
+"""Keys of the load. An arm has at most one load."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
-"""The one parameter that a quantity moves, where it moves one only."""
+"""Quantities with an effect on exactly one parameter, and the name of this parameter."""
 MOVES = AXIS_OF | dict.fromkeys(RELATIVE, "F")
-"""The same along the axes of a grid over an arm's quantities."""
+"""The parameter changed by an axis, in a grid over an arm's quantities."""
 ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
-"""Along which parameter of a grid of parameters a quantity or a unit lies, where it has several values."""
+"""The parameter along whose axis a quantity or unit with several values is stored, in a grid of
+parameters."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
-"""What moves no parameter: units of time are proportional to viscosity, densities say whether the model
-applies."""
+"""Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
+whether the model applies."""
 SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID, "drag")
-"""What makes an arm beside its load."""
+"""All quantities of an arm except the load."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER = 0, 100, 101, 102, 103
-"""Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1;
-the bore is as wide as the arm; the load is relative to a flutter that there is not. All but the first are
-statuses, which no task's own statuses reach."""
+"""Codes for whether a rod covers a point: covered; arm too short for the drag of slender bodies; F reaches
+k1; bore as wide as the arm; load relative to a flutter threshold that does not exist. All but the first are
+statuses, numbered above every task's own statuses."""
 MOST_POINTS = 1_000_000
-"""Points of a grid over an arm's quantities, whose parameters are all in memory."""
+"""Maximum number of points of a grid over an arm's quantities, whose parameters are all kept in memory."""
 
 
 def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
-    """The axes of a grid over an arm's quantities; none where the points are a grid of parameters.
+    """Axes of a grid over an arm's quantities; empty if the points form a grid of parameters.
 
-    sizes: how many values each quantity that is given, and each parameter beside the arm, has. in_diagram:
-    whether they make the rows of a phase diagram.
+    sizes: number of values of each given quantity, and of each parameter beside the arm. in_diagram: whether
+    the points are the rows of a phase diagram.
     """
     given = (name for name in (*SECTION, *LOAD_AXES) if name in sizes)
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE]
@@ -46,5 +48,5 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def moved_by(axis: str) -> str:
-    """The one parameter that an axis of an arm's grid moves; empty where it moves several or none."""
+    """The parameter that an axis of an arm's grid changes; "" if it changes several or none."""
     return axis if axis in NONLINEAR_PARAMETERS else MOVES.get(axis, "")

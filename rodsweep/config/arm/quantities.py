@@ -1,4 +1,4 @@
-"""What a quantity of an arm may be in a config: one value, a list or a range, with units; in SI then."""
+"""Quantities of an arm in a config: one value, a list or a range, with units, converted to SI."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any
@@ -12,11 +12,11 @@ from ...model.units import in_si, share_of_flutter, split, written_in
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
 RANGE = "range"
-"""The drag that stands for all of DRAGS."""
+"""Word for all members of DRAGS."""
 
 
 def as_quantities(value: Any, info: ValidationInfo) -> Axis:
-    """A quantity, a list or a range of quantities as an Axis in SI units; ValueError otherwise."""
+    """A quantity, or a list or range of quantities, as an Axis in SI units; ValueError otherwise."""
     name = str(info.field_name)
     if isinstance(value, Axis):
         return value
@@ -37,7 +37,7 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 
 def _without_unit(name: str, span: dict[str, Any]) -> str:
-    """A remark on a range of which one end has a unit and the other has none; else empty."""
+    """Remark on a range with a unit at one end only; else ""."""
     ends = [end for end in ("start", "stop") if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
@@ -45,7 +45,7 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
 
 
 def _read(name: str, value: Any) -> float:
-    """A quantity in SI units; ValueError where it is none."""
+    """A quantity in SI units; ValueError if the value is no quantity."""
     if not isinstance(value, str):
         return as_number(value)
     try:
@@ -55,9 +55,9 @@ def _read(name: str, value: Any) -> float:
 
 
 def with_shares(given: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of an arm, in which a load relative to flutter stands under its name in RELATIVE.
+    """Keys of an arm, with a load relative to flutter moved to its key in RELATIVE.
 
-    ValueError where a load is relative in part only, or given in both ways.
+    Raises ValueError if only a part of the load is relative, or if both keys are given.
     """
     found = dict(given)
     for name, load in RELATIVE.items():
@@ -80,17 +80,17 @@ def with_shares(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 ENDS = ("start", "stop")
-"""Of a range."""
+"""Keys of the ends of a range."""
 
 
 def _shares(value: Any) -> tuple[list[float | None], bool]:
-    """(each number of a load's value over flutter, None where it is not relative; whether any is)."""
+    """(numbers of a load as multiples of the flutter load, None if not relative; whether any is relative)."""
     shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
     return shares, any(share is not None for share in shares)
 
 
 def as_drags(value: Any) -> Axis:
-    """Names of drags, one, a list or "range", as an Axis of their places in DRAGS; ValueError otherwise."""
+    """Names of drags (one, a list, or "range") as an Axis of their indices in DRAGS; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
     names = list(DRAGS) if value == RANGE else value if isinstance(value, list | tuple) else [value]
@@ -102,18 +102,18 @@ def as_drags(value: Any) -> Axis:
 
 
 def drags_written(values: list[float]) -> list[str]:
-    """Places in DRAGS by their names, as a config has them."""
+    """Names of drags from their indices in DRAGS, as in a config."""
     return [DRAGS[int(place)] for place in values]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
-    """The unit in which a quantity was typed, the first of several; the SI unit where it was none."""
+    """Unit typed by the user, the first of several; the SI unit if none was typed."""
     units = [split(value)[1] for value in _each(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
 
 def given_text(quantities: Mapping[str, Axis]) -> str:
-    """The quantities of an arm in the units that were taken, and which were given without one, as words."""
+    """Quantities of an arm in words, in the typed units, with a remark on quantities given without a unit."""
     told, bare = [], []
     for name, axis in quantities.items():
         ends = axis.array()[[0, -1]].tolist()
@@ -131,14 +131,14 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
 
 
 def _each(written: Any) -> list[Any]:
-    """The values that a user wrote for a quantity; of a range its ends."""
+    """Values that a user wrote for a quantity; the ends of a range."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]
 
 
 def _schema() -> dict[str, Any]:
-    """What `as_quantities` takes, as a JSON schema: an axis whose numbers may be text with a unit."""
+    """JSON schema of the values taken by `as_quantities`: an axis whose numbers may be text with a unit."""
     each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
     ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
@@ -152,7 +152,7 @@ def _schema() -> dict[str, Any]:
 
 
 NAMED_DRAG = {"enum": list(DRAGS)}
-"""A drag as a JSON schema."""
+"""JSON schema of one drag."""
 Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_schema())]
 Drags = Annotated[
     Axis,

@@ -1,4 +1,4 @@
-"""The section `parameters.arm` of a config: an arm in SI units, and the axes of a grid of parameters."""
+"""The section `parameters.arm` of a config: an arm in SI units, and the parameter axes made from it."""
 
 from collections.abc import Collection, Iterator, Mapping
 from itertools import product
@@ -24,12 +24,12 @@ RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a r
 
 
 UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
-"""What refusals of an arm mean for a point."""
+"""Status of a point by the error of its arm."""
 NO_LOAD = {"pressure": 0.0}
 
 
 class UncoveredArm(ValueError):
-    """The refusal of an arm that no rod covers; `status` is that of its points."""
+    """No rod covers this arm; `status` is the status of its points."""
 
     def __init__(self, error: NotSlender | NoWall):
         super().__init__(f"parameters.arm.{error}")
@@ -37,79 +37,82 @@ class UncoveredArm(ValueError):
 
 
 class ArmSection(Strict):
-    """An arm as `rodsweep arm` takes it, each quantity one value or an axis."""
+    """The arm as `rodsweep arm` takes it; each quantity is one value or an axis."""
 
     length: Annotated[Quantities, Allowed]
-    """From the clamp to the tip."""
+    """Length from the clamp to the tip."""
     radius: Annotated[Quantities | None, Allowed] = None
-    """Of a circular section; or give width and height."""
+    """Radius of a circular section; or give width and height."""
     inner_radius: Annotated[Quantities | None, Allowed] = None
-    """Of the bore of a tube, which is closed at its tip."""
+    """Radius of the bore of a tube, which is closed at its tip."""
     width: Annotated[Quantities | None, Allowed] = None
-    """Of a rectangular section, across the plane of motion."""
+    """Width of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
-    """Of a rectangular section, in the plane of motion."""
+    """Height of a rectangular section, in the plane of motion."""
     young: Annotated[Quantities, Allowed]
     """Young's modulus."""
     poisson: Annotated[Values | None, RatioAllowed] = None
-    """Poisson's ratio, 0.5 where it is not given."""
+    """Poisson's ratio, by default 0.5."""
     viscosity: Annotated[Quantities, Allowed]
-    """Of the fluid; it moves no parameter, but times are proportional to it."""
+    """Viscosity of the fluid. It changes no parameter; times are proportional to it."""
     fluid_density: Annotated[Quantities | None, Allowed] = None
-    """Of the fluid, that of water where it is not given; for whether the model applies."""
+    """Density of the fluid, by default water's. It decides whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
-    """The arm's density less the fluid's, for whether the model applies; weight is left out without it."""
+    """Density of the arm minus density of the fluid, for whether the model applies. Without it, weight is
+    neglected."""
     drag: Annotated[Drags | None, DragAllowed] = None
-    """Members of the range of drags that the literature has; the likeliest where it is not given."""
+    """Members of the range of drags in the literature; by default the likeliest."""
     pressure: Annotated[Quantities | None, Allowed] = None
-    """On the tip's cross section; or give force. Not where the task finds F itself."""
+    """Pressure on the tip's cross section; or give force. Omit it if the task finds F."""
     force: Annotated[Quantities | None, Allowed] = None
     """Follower force at the tip."""
     pressure_over_flutter: Annotated[Values | None, ShareAllowed] = None
-    """The pressure over that of flutter with the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
+    """Pressure divided by the flutter pressure at the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
     force_over_flutter: Annotated[Values | None, ShareAllowed] = None
-    """The same of a force."""
+    """Force divided by the flutter force at the likeliest drag: 1.2 is `force: 1.2 of flutter`."""
 
     @model_validator(mode="before")
     @classmethod
     def _with_shares(cls, given: Any) -> Any:
-        """A load relative to flutter has a key of its own."""
+        """Moves a load relative to flutter to its own key."""
         return with_shares(given) if isinstance(given, dict) else given
 
     @property
     def load_axis(self) -> str | None:
-        """Which of LOAD_AXES is given, if any is."""
+        """The given key of LOAD_AXES, None without a load."""
         return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
 
     @property
     def load(self) -> str | None:
-        """Which of LOADS the load is told as, if any is given."""
+        """Kind of the load, pressure or force, given absolutely or relative to flutter; None without a
+        load.
+        """
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
     def several(self) -> tuple[str, ...]:
-        """The quantities that have more than one value, or are relative to flutter."""
+        """Quantities with more than one value, or relative to flutter."""
         return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
 
     @property
     def meaning(self) -> dict[str, float | None]:
-        """The quantities, and the values of those that the points do not tell, in SI."""
+        """Given quantities in SI units, by name: a value if all points share it, else None."""
         told = AXIS_OF if self.is_grid else self.several
         return {name: None if name in told else float(axis.array()[0]) for name, axis in self.given.items()}
 
     @property
     def is_grid(self) -> bool:
-        """Whether every axis moves one parameter only, so that the points are a grid of parameters."""
+        """Whether every axis changes exactly one parameter: the points then form a grid of parameters."""
         return all(name in AXIS_OF for name in self.several)
 
     @property
     def given(self) -> dict[str, Axis]:
-        """The quantities that are given, those of the section first."""
+        """Given quantities by name, the load last."""
         names = (*SECTION, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
-        """ValueError where a value is not allowed, or a grid of parameters is of arms that no rod covers."""
+        """Raises ValueError for a value out of range, or a grid of parameters of arms that no rod covers."""
         for name, axis in self.given.items():
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
@@ -120,9 +123,9 @@ class ArmSection(Strict):
             self.made(self.firsts, loaded=True)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
-        """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
+        """Raises ValueError unless the task has exactly the load it needs, and every axis changes something.
 
-        forced: whether F is a parameter of the task; beside: the parameters that stand beside the arm.
+        forced: whether F is a parameter of the task. beside: parameters given beside the arm.
         """
         loads = ["parameters.F"] if "F" in beside else []
         loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
@@ -142,9 +145,10 @@ class ArmSection(Strict):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
     def grid_axes(self) -> dict[str, Axis]:
-        """The axes of the dimensionless parameters of a grid of these, by name; no F without load.
+        """Axes of the dimensionless parameters for a grid of parameters, by name; without F if no load is
+        given.
 
-        ValueError for what is no slender arm, and where the least load crushes it.
+        ValueError if the arm is not slender, or if the smallest load crushes it.
         """
         arm = self.made(self.firsts, loaded=True)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in all_but("F", NONLINEAR_PARAMETERS)}
@@ -156,9 +160,11 @@ class ArmSection(Strict):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """The quantities and units of a grid of parameters: numbers, shape (), or along their parameter."""
+        """Quantities and units in a grid of parameters: numbers of shape (), or arrays along their
+        parameter.
+        """
         values = {name: axis.array() for name, axis in self.given.items()}
-        if self.poisson is not None:  # k2 falls as it rises
+        if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
         first = self.made(self.firsts)
         units = {name: np.array([getattr(first, name)]) for name in ARM_UNITS}
@@ -169,31 +175,32 @@ class ArmSection(Strict):
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
     def count(self, beside: int) -> int:
-        """Points of a grid, where `beside` the arm so many combinations of parameters are given."""
+        """Number of points of a grid, given the number of combinations of parameters beside the arm."""
         return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
 
     @property
     def firsts(self) -> dict[str, float]:
-        """The first value of every quantity."""
+        """First value of every given quantity."""
         return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
-        """The quantities of all sections, in row-major order."""
+        """Quantities of all sections without load, in row-major order."""
         names = [name for name in SECTION if name in self.given]
         for values in product(*(self.given[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
     def arm_at(self, number: int) -> SlenderArm:
-        """The arm of a section without load, numbered in row-major order of the section's axes."""
+        """Arm of one section, without load; `number` counts in row-major order of the section's axes."""
         axes = {name: axis.array() for name, axis in self.given.items() if name in SECTION}
         places = np.unravel_index(number, [len(column) for column in axes.values()])
         values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
         return self.made(values)
 
     def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
-        """An arm of values by quantity, with its load or without; ValueError where it cannot be.
+        """Arm with the given values of its quantities, with its load or without; ValueError for invalid
+        values.
 
-        UncoveredArm where no rod covers it. A load that is relative to flutter is left out.
+        UncoveredArm if no rod covers the arm. A load relative to flutter is left out.
         """
         section = {name: value for name, value in values.items() if name in SECTION}
         load = {self.load_axis: values[self.load_axis]} if loaded and self.load_axis in LOADS else NO_LOAD

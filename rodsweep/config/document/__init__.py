@@ -1,1 +1,1 @@
-"""The YAML document of a config: parsed, read, and refused in one sentence."""
+"""The YAML document of a config: parsing, validation, and error messages of one sentence."""

@@ -1,4 +1,4 @@
-"""What is wrong with the arguments of a call in Python, as one sentence: missing, unknown or too many."""
+"""Error messages for missing, unknown or surplus arguments of a call in Python, one sentence each."""
 
 from collections.abc import Callable, Mapping
 from functools import wraps
@@ -14,9 +14,9 @@ R = TypeVar("R")
 
 
 def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """A function that raises InputError where arguments are missing, unknown or too many.
+    """Decorator: calls with missing, unknown or surplus arguments raise InputError instead of TypeError.
 
-    example: a call that is right, which the sentence shows.
+    example: a correct call, shown in the message.
     """
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
@@ -35,7 +35,7 @@ def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 def refuse_misfit(
     asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
-    """InputError for the first argument that a function does not take, or that it lacks."""
+    """Raises InputError for the first unknown, repeated, surplus or missing argument."""
     ours = list(asked.parameters.values())
     by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
     if len(values) > len(by_place):
@@ -54,5 +54,5 @@ def refuse_misfit(
 
 
 def unknown(name: str, known: list[str]) -> InputError:
-    """What to say of an argument that is none of those known."""
+    """InputError for an unknown argument, with the nearest known name."""
     return InputError(f"unknown key {name}; {hint_of(name, known)}")

@@ -1,7 +1,7 @@
-"""The YAML that a config may be: version 1.2, one document, short, not deep, and nothing in it but data.
+"""Safe YAML of a config: version 1.2, one small document of limited depth, plain data only.
 
-Every event is looked at before anything is built of it, so that no text can run code or explode. What is
-refused here is refused in one sentence, with the place.
+Every parser event is checked before anything is built: no text can run code or exhaust memory. Every refusal
+is one sentence with the place in the file.
 """
 
 from pathlib import Path
@@ -16,23 +16,24 @@ from ...errors import InputError
 from ..values import named, overflows, short
 
 LARGEST_FILE = 100_000
-"""Bytes: some 15,000 numbers, which are read in a second; longer lists of points are CSV files."""
+"""Maximum file size in bytes: about 15,000 numbers, read in a second. Longer lists of points are CSV
+files."""
 LONGEST = 1000
-"""Characters of a value or a key."""
+"""Maximum length of a key or value, in characters."""
 RESULT = b"\x89HDF"
-"""How result files begin, which are HDF5."""
+"""First bytes of an HDF5 file, hence of a result file."""
 TABLES = (".csv", ".tsv")
-"""Endings of lists of points, and of what `rodsweep export` writes."""
+"""Endings of lists of points and of the tables written by `rodsweep export`."""
 DEEPEST = 20
-"""Levels of lists and mappings in each other."""
+"""Maximum depth of nested lists and mappings."""
 
 
 def read_text(path: Path) -> str:
-    """The text of a small UTF-8 file; InputError if it cannot be had."""
+    """Text of a small UTF-8 file; InputError if it cannot be read."""
     where = named(path)
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):
-            raise InputError(f"{where} is not a file")  # to open a pipe would be to wait for its other end
+            raise InputError(f"{where} is not a file")  # opening a pipe would wait for its writer
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
     except OSError as error:
@@ -55,7 +56,7 @@ def read_text(path: Path) -> str:
 
 
 def parse(text: str, where: str) -> Any:
-    """The tree of a text; InputError, which begins with `where`, for all that has no place in a config."""
+    """Tree of a YAML text; InputError, beginning with `where`, for anything not allowed in a config."""
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{where}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)
@@ -75,7 +76,7 @@ def parse(text: str, where: str) -> Any:
 
 
 class _DataOnly(Parser):
-    """A parser that stops at the first thing that is not plain data, before it is built: InputError."""
+    """YAML parser that raises InputError for the first event that is not plain data."""
 
     depth = 0
 
@@ -98,7 +99,7 @@ class _DataOnly(Parser):
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
-    """InputError for a text that can be neither a key nor a value."""
+    """Raises InputError for a scalar that can be neither a key nor a value."""
     text = event.value
     if len(text) > LONGEST:
         raise InputError(f"{short(text)} has {len(text)} characters, more than any value of a config")

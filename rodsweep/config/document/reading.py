@@ -1,4 +1,4 @@
-"""From a YAML file and --set overrides to a Config; every refusal is one sentence that names the key."""
+"""Reads a YAML file with --set overrides into a Config; every error is one sentence with the key."""
 
 from io import StringIO
 from pathlib import Path
@@ -19,7 +19,7 @@ from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
-    """(config, its YAML text with the overrides listed); raises InputError for anything amiss."""
+    """(config, its YAML text with the overrides listed); raises InputError for any error in the file."""
     text, where = read_text(path), named(path)
     tree = parse(text, where)
     if not isinstance(tree, dict):
@@ -35,7 +35,7 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 
 def validated(tree: dict[str, Any]) -> Config:
-    """The config that a tree of keys and values asks for; InputError for the first thing amiss."""
+    """Config of a tree of keys and values; InputError for the first error."""
     config = CONFIGS[_task(tree)]
     try:
         return config.model_validate(tree)
@@ -46,9 +46,9 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf".
+    """The config with all defaults, as JSON-compatible values; inf becomes "inf".
 
-    A grid of an arm has the axes too that are made of it.
+    For an arm with a grid of parameters, the axes of all parameters are included.
     """
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
@@ -58,7 +58,7 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config that `canonical` made `resolved` of; ValueError if it is none that this version takes."""
+    """The config from which `canonical` made `resolved`; ValueError if not accepted by this version."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -79,7 +79,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
 
 
 def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
-    """The keys of a resolved section, its axes as such."""
+    """Keys of a resolved section, with its axes as `Axis`."""
     return {
         name: axis_of(value) if name != "arm" and isinstance(value, dict) else value
         for name, value in section.items()
@@ -87,7 +87,7 @@ def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """The parameters without the axes that `canonical` made of the arm; in_diagram: for a phase diagram."""
+    """Parameters without the axes that `canonical` made from the arm; in_diagram: for a phase diagram."""
     arm = ArmSection.model_validate(parameters["arm"])
     made = arm.grid_axes() if in_diagram or arm.is_grid else {}
     return {
@@ -98,7 +98,7 @@ def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> d
 
 
 def yaml_of(tree: dict[str, Any]) -> str:
-    """A tree as the text of a config file."""
+    """Text of a config file with a given tree."""
     text, yaml = StringIO(), YAML()
     yaml.default_flow_style = None  # lists of numbers on one line
     yaml.dump(tree, text)
@@ -106,7 +106,7 @@ def yaml_of(tree: dict[str, Any]) -> str:
 
 
 def text_of(config: Config) -> str:
-    """A config as the text of a file: what is not a default, axes as a user writes them."""
+    """Text of a config file: only keys that differ from their defaults, axes in the user's form."""
     given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _written(value) for name, value in given["parameters"].items()}
     options = {
@@ -118,7 +118,9 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """A resolved axis as a user writes it: a number, a list or a range; and the axes of an arm."""
+    """A resolved axis in the user's form: a number, a list or a range. Also converts the section of an
+    arm.
+    """
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -149,7 +151,7 @@ def _override(tree: dict, override: str) -> None:
 
 
 def _task(tree: dict) -> str:
-    """The task that the config names; InputError if it is none, or if a section belongs to another."""
+    """Task named by the config; InputError for an unknown task or a section of another task."""
     known = words(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]

@@ -1,4 +1,6 @@
-"""What is wrong with a config as one sentence: which key, which value, what is allowed, what was meant."""
+"""Error messages of a config, one sentence each: the key, its value, what is allowed, and the likely
+meaning.
+"""
 
 from collections.abc import Sequence
 from math import isinf
@@ -14,17 +16,17 @@ from ..schema import Config
 from ..values import named, short
 
 KEY_SHOWN = 100
-"""Characters of a key that a sentence has room for."""
+"""Maximum length of a key in a message, in characters."""
 LETTERS_A_SLIP = 3
-"""Letters of a key that are needed for each that is wrong, so that the rest says which was meant."""
+"""Letters of a key per typing error: a key with more errors than one in three letters resembles no name."""
 MOST_MEANT = 4
-"""Keys that an unknown one may mean; where it may mean more, all that there are say as much."""
+"""Maximum number of suggested keys. If more are equally near, all known keys are listed instead."""
 LONG_PART = 4
-"""Letters of a part of a key from which it says which was meant, as `density` of `fluid_density`."""
+"""Minimum letters of a part of a key that identifies the key, such as `density` for `fluid_density`."""
 
 
 def sentence_of(config: type[Config], problem: Any) -> str:
-    """One pydantic problem as a sentence: which key, which value, what is allowed."""
+    """A pydantic error as a sentence with the key, the value, and the allowed values."""
     location = tuple(str(part) for part in problem["loc"])
     key = dotted(location)
     kind, value = problem["type"], problem["input"]
@@ -50,16 +52,16 @@ def sentence_of(config: type[Config], problem: Any) -> str:
 
 
 def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
-    """What is said of an unknown key: which it may mean, or which there are."""
+    """Hint for an unknown key: the keys it may mean, or else all known keys."""
     close = nearest(key, known)
     return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
 
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """The known keys that an unknown one may mean, the nearest ones, in their order; none if none is near.
+    """Known keys nearest to an unknown one, in their order; empty if none is near.
 
-    Near is the same but for capitals and underscores, a beginning or a long part of it, or a slip of the pen
-    in every third letter at most.
+    A key is near if it differs only in capitals and underscores, is the beginning or a long part of the known
+    key, or has at most one typing error in three letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
@@ -72,7 +74,7 @@ def _plain(key: str) -> str:
 
 
 def _slips(key: str, name: str) -> float | None:
-    """Letters by which a key differs from a name, half of one where it is a part of it; None where far."""
+    """Number of typing errors between a key and a name, 0.5 if the key is a part of the name; None if far."""
     if key == name:
         return 0
     if name.startswith(key) or (len(key) >= LONG_PART and key in name):
@@ -82,7 +84,7 @@ def _slips(key: str, name: str) -> float | None:
 
 
 def _edits(a: str, b: str) -> int:
-    """Letters to put in, take out, change or swap with the next to make b of a."""
+    """Edit distance: letters inserted, deleted, changed or exchanged with the next to turn a into b."""
     rows = [list(range(len(b) + 1))]
     for i, letter in enumerate(a, 1):
         row = [i]
@@ -96,7 +98,7 @@ def _edits(a: str, b: str) -> int:
 
 
 def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
-    """The places of other sections at which a key is known that is unknown where it stands."""
+    """Places in other sections where an unknown key would be known."""
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("parameters", "arm")):
@@ -107,7 +109,7 @@ def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 
 def dotted(location: Sequence[str]) -> str:
-    """A place in the config as the user writes it in --set."""
+    """A place in the config in the notation of --set."""
     return named(".".join(location), KEY_SHOWN)
 
 
@@ -123,13 +125,13 @@ def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]
 
 
 def model_of(field: FieldInfo) -> Any:
-    """The type of a key, without None where it need not be given."""
+    """Type of a key, without the None of an optional key."""
     kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
     return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
 
 
 def what_is_allowed(field: FieldInfo) -> str:
-    """What the user may write for a key, as a phrase made of its type and bounds."""
+    """Allowed values of a key as a phrase, from its type and bounds."""
     kind = field.annotation
     bound = {
         name: getattr(part, name)

@@ -1,6 +1,6 @@
-"""What a JSON schema says of keys together and of values' bounds: which are needed, which exclude each other.
+"""JSON schema of combinations of keys and of bounds: required keys, exclusive keys, ranges of values.
 
-A key that is null counts as not given, as for the command.
+A key that is null counts as not given, as in the command.
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,32 +14,34 @@ from ..arm.axes import LOAD_AXES, SECTION
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
-"""A number and the beginning of a unit."""
+"""Pattern of a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in SECTION if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
     **{name: {"minimum": 0} for name in RELATIVE},
 }
-"""Of the quantities of an arm that may not be any number."""
+"""Bounds of the quantities of an arm, by name."""
 
 
 def given(name: str) -> Schema:
-    """That a key is there and not null."""
+    """Schema: a key is present and not null."""
     return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
 def none_of(names: Iterable[str]) -> Schema:
-    """That none of the keys is given."""
+    """Schema: none of the keys is given."""
     return {"not": {"anyOf": [given(name) for name in names]}}
 
 
 def all_of(names: Iterable[str], *more: Schema) -> Schema:
-    """That all keys are given, and more."""
+    """Schema: all keys are given, and all further schemas hold."""
     return {"allOf": [*map(given, names), *more]}
 
 
 def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
-    """A schema of numbers with a bound on every one, and no words for numbers but those."""
+    """Copy of a schema of numbers with bounds on every number, and with only `words` allowed as names of
+    numbers.
+    """
     copy = deepcopy(schema)
     for node in nodes_of(copy):
         kinds = node.get("anyOf", [])
@@ -52,7 +54,7 @@ def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] =
 
 
 def with_bounds(properties: Schema, axis: Schema) -> None:
-    """Gives the parameters of a section, in place, what each may be; `axis`: what any axis may be."""
+    """Adds, in place, the bounds of the parameters in a section; `axis`: schema of any axis."""
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
@@ -61,9 +63,9 @@ def with_bounds(properties: Schema, axis: Schema) -> None:
 
 
 def restrict_arm(section: Schema, axis: Schema) -> None:
-    """Says in place of an arm: positive quantities with a unit, one section, one load at most.
+    """Adds the conditions of an arm in place: positive quantities with a unit, one section, at most one load.
 
-    axis: what an axis of numbers may be.
+    axis: schema of any axis of numbers.
     """
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
@@ -84,9 +86,10 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
 
 
 def points_of(needed: Iterable[str], lists: bool) -> Schema:
-    """What makes points: all axes `needed`, an arm, or a file where a task takes `lists`.
+    """Schema of parameters that define points: all axes `needed`, an arm, or a file if the task takes
+    `lists`.
 
-    The arm has a load, or F beside it, where F is needed, and neither otherwise.
+    If F is needed, the arm has a load or F stands beside it; otherwise neither may be given.
     """
     axes = tuple(name for name in needed if PARAMETERS[name].default is None)
     loads = [all_of([name]) for name in LOAD_AXES]
@@ -100,7 +103,7 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
 
 
 def nodes_of(schema: Any) -> Iterable[Schema]:
-    """All mappings of a schema."""
+    """All mappings within a schema."""
     if isinstance(schema, dict):
         yield schema
     if isinstance(schema, dict | list):

@@ -1,8 +1,8 @@
-"""The config as a JSON schema, from which editors complete keys and mark mistakes while one writes.
+"""JSON schema of a config, for editors that complete keys and mark mistakes.
 
-Made of the models of the tasks, with the sentences that stand below their keys, and of what `json_conditions`
-says of keys together. What only a whole config tells (F < k1, sorted lists) is not in it; `rodsweep check`
-says that.
+It is made from the models of the tasks, the docstrings of their keys, and the conditions on combinations of
+keys in `conditions`. Conditions on the whole config (F < k1, sorted lists) are not in the schema; `rodsweep
+check` tests them.
 """
 
 import ast
@@ -21,13 +21,13 @@ from ..values import Axis, Strict
 from .conditions import nodes_of, points_of, restrict_arm, with_bounds
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
-"""What editors know best."""
+"""Draft 7 of JSON schema, which most editors support."""
 BOUNDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
-"""How JSON schemas call bounds that pydantic leaves as they are, where a validator of ours stands first."""
+"""JSON schema's names of bounds, for bounds that pydantic leaves unconverted behind a validator of ours."""
 
 
 def json_schema() -> dict[str, Any]:
-    """The schema of a config of any task."""
+    """JSON schema of a config of any task."""
     definitions: dict[str, Any] = {}
     tasks = []
     for config in CONFIGS.values():
@@ -54,7 +54,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
-    """The models of the sections that a config has, and of those in them."""
+    """Models of the sections of a config, including nested sections."""
     for field in config.model_fields.values():
         kind = model_of(field)
         if isinstance(kind, type) and issubclass(kind, Strict) and not issubclass(kind, Axis):
@@ -63,14 +63,14 @@ def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
 
 
 def meanings_of(section: type[BaseModel]) -> dict[str, str]:
-    """The docstring below every key of a section, those of the sections it is made from included."""
+    """Docstring of every key of a section, base classes included."""
     found: dict[str, str] = {}
     for kind in reversed(section.__mro__):
         if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
             continue
         try:
             source = inspect.getsource(kind)
-        except OSError:  # made of the table of parameters
+        except OSError:  # a class without source, created from the table of parameters
             continue
         body = ast.parse(textwrap.dedent(source)).body[0]
         assert isinstance(body, ast.ClassDef)
@@ -83,7 +83,7 @@ def meanings_of(section: type[BaseModel]) -> dict[str, str]:
 
 
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
-    """Gives the keys of a section their sentences, instead of titles that repeat the key."""
+    """Adds the docstrings of the keys as descriptions and removes pydantic's titles, which repeat the key."""
     parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
     meanings = parameters | meanings_of(section)
     for name, key in schema["properties"].items():

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib import rc_params_from_file
 from matplotlib.figure import Figure
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ...results.file.view import View
 from .arm.map import can_draw, draw_arm_map
 from .branch import draw_branch
@@ -103,9 +103,11 @@ def draw(
         try:
             shown = _drawn(request)
         except OSError as error:
-            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
+            raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror or error}") from error
         except RuntimeError as error:  # from a program that a style uses, such as LaTeX
-            raise EnvironmentLacks(f"the figure cannot be drawn: {str(error).splitlines()[0]}") from error
+            raise EnvironmentIncomplete(
+                f"the figure cannot be drawn: {str(error).splitlines()[0]}"
+            ) from error
         except (ValueError, ArithmeticError, MemoryError) as error:  # numbers that another program wrote
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"

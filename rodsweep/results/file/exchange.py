@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ..run.journal import journal_directory
 from ..run.lock import Lock
 from .seal import seal
@@ -29,12 +29,12 @@ def identity(path: Path) -> Identity:
 
 @contextmanager
 def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
-    """Turns errors of the disk (RuntimeError from HDF5) into EnvironmentLacks; kept: what is not lost."""
+    """Turns errors of the disk (RuntimeError from HDF5) into EnvironmentIncomplete; kept: saved work."""
     try:
         yield
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise EnvironmentLacks(f"{path} cannot be written: {reason}{kept()}") from error
+        raise EnvironmentIncomplete(f"{path} cannot be written: {reason}{kept()}") from error
 
 
 class Exchange:

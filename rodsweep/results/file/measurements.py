@@ -6,7 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 
 Table = dict[str, Sequence[str] | Sequence[float]]
 """Columns of equal length, by name."""
@@ -16,7 +16,7 @@ UNITS = {"seconds": "s", "error": "1"}
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes /STUDY/COLUMN, each (measurement,); raises EnvironmentLacks if the file cannot be written."""
+    """Writes /STUDY/COLUMN, each (measurement,); EnvironmentIncomplete if writing fails."""
     try:
         with h5py.File(path, "w") as file:
             file.attrs.update(attributes)
@@ -32,4 +32,4 @@ def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapp
                     if name in UNITS:
                         dataset.attrs["units"] = UNITS[name]
     except OSError as error:
-        raise EnvironmentLacks(f"{path} cannot be written: {error}") from error
+        raise EnvironmentIncomplete(f"{path} cannot be written: {error}") from error

@@ -11,7 +11,7 @@ from typing import TypeVar
 import h5py
 import numpy as np
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import total
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
@@ -33,7 +33,7 @@ def unfolded(path: Path, read: Callable[[], Found]) -> Found:
     """Result of `read`, which reads a file and journals; repeated if a run folds journals in meanwhile.
 
     A fold replaces the file before the journals are deleted. No journal was deleted if the file is the same
-    before and after the reading. Raises EnvironmentLacks if the file keeps changing.
+    before and after the reading. Raises EnvironmentIncomplete if the file keeps changing.
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
@@ -41,7 +41,7 @@ def unfolded(path: Path, read: Callable[[], Found]) -> Found:
         found = read()
         if not has_journals or identity(path) == before:
             return found
-    raise EnvironmentLacks(f"{path} cannot be read, because a run keeps replacing it; try again")
+    raise EnvironmentIncomplete(f"{path} cannot be read, because a run keeps replacing it; try again")
 
 
 def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
@@ -67,7 +67,7 @@ def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
     """Writes the points computed so far into a separate file; returns (points computed, all points).
 
     Raises InputError if `path` is no result, or if `output` exists and is no snapshot. Raises
-    EnvironmentLacks if the disk fails.
+    EnvironmentIncomplete if the disk fails.
     """
     read_header(path)
     if output.exists():

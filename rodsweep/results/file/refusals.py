@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ..run.journal import journals_of
 from .combination.extension import extension_of
 from .combination.identity import change_between
@@ -18,11 +18,11 @@ SPACE_FIXED = 300_000
 
 
 def require_room(path: Path, plan: Plan) -> None:
-    """Raises EnvironmentLacks unless the disk has room for the file, the journals and the copy."""
+    """Raises EnvironmentIncomplete unless the disk has room for the file, the journals and the copy."""
     size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + SPACE_FIXED
     free = shutil.disk_usage(path.parent).free
     if free < size:
-        raise EnvironmentLacks(
+        raise EnvironmentIncomplete(
             f"{path} needs {size / 1e6:.3g} MB of disk space during the run, and {free / 1e6:.3g} MB are free"
         )
 

@@ -16,7 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import IndexRange, total
 from ..layouts.variables import MISSING, Filled, Layout
 from ..run.checkpoints import CHECKPOINTS
@@ -174,7 +174,7 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def _restore_if_gone(self) -> None:
-        """Creates a moved or deleted file again; raises EnvironmentLacks if another file took the place."""
+        """Creates a moved or deleted file again; EnvironmentIncomplete if another file took its place."""
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
@@ -187,7 +187,7 @@ class Store:
             if header.fingerprint != self.plan.fingerprint:
                 refuse_other(header, self.plan, self.journals)
         except InputError as error:
-            raise EnvironmentLacks(f"another file was put in its place meanwhile: {error}") from None
+            raise EnvironmentIncomplete(f"another file was put in its place meanwhile: {error}") from None
 
     def _fold_blocks(
         self,

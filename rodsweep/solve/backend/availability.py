@@ -3,19 +3,21 @@
 import os
 from importlib.util import find_spec
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 
 
 def require_directory() -> None:
-    """EnvironmentLacks where the working directory was deleted: MPI and PETSc ask for it when they start."""
+    """EnvironmentIncomplete if the working directory was deleted: MPI and PETSc read it when they start."""
     try:
         os.getcwd()
     except FileNotFoundError:
-        raise EnvironmentLacks("the working directory was deleted; change into one that exists") from None
+        raise EnvironmentIncomplete(
+            "the working directory was deleted; change into one that exists"
+        ) from None
 
 
 def require_solvers() -> None:
-    """EnvironmentLacks where PETSc cannot be started, InputError where the formulas may not be compiled."""
+    """EnvironmentIncomplete if PETSc cannot start, InputError if the formulas may not be compiled."""
     import numba
 
     if numba.config.DISABLE_JIT:
@@ -29,7 +31,7 @@ def require_solvers() -> None:
         except (ImportError, ValueError):
             found = False
         if not found:
-            raise EnvironmentLacks(
+            raise EnvironmentIncomplete(
                 f"{name} cannot be imported; `make install` provides it, or set PETSC_DIR and SLEPC_DIR to "
                 "where PETSc and SLEPc are installed"
             )

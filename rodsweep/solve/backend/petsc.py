@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 
 try:
     import petsc4py
@@ -14,7 +14,7 @@ try:
     from petsc4py import PETSc
     from slepc4py import SLEPc
 except ImportError as error:
-    raise EnvironmentLacks(
+    raise EnvironmentIncomplete(
         f"petsc4py and slepc4py cannot be imported ({error}); `make install` provides them, or set "
         "PETSC_DIR and SLEPC_DIR to where they are installed"
     ) from error

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...discretization.elements.mesh import mesh
 from ...discretization.stress.form import StressForm
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ...model.rod import Rod
 from ..backend.petsc import options
 from ..motion.integrator import forget_integrators
@@ -76,7 +76,7 @@ def solve_cycle(
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it.
 
-    Raises EnvironmentLacks where options of the prefix cycle_ lose the cycle of a rod whose cycle is known.
+    Raises EnvironmentIncomplete if options of the prefix cycle_ lose the cycle of a rod whose cycle is known.
     """
     rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
@@ -88,7 +88,7 @@ def warm_up() -> None:
     given = options(CYCLE_PREFIX)
     if given and not known:
         said = f"{cycle.status.name} {cycle.message}".strip()
-        raise EnvironmentLacks(
+        raise EnvironmentIncomplete(
             f"with the PETSc options '{given}' a rod whose cycle is known ends as '{said}', so the task "
             "limit_cycle cannot run; remove them"
         )

@@ -1,1 +1,1 @@
-"""Points of arms, and whether the model applies to them."""
+"""Points of arms without a rod or with equal rods, and the validity of the model."""

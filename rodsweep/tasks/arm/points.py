@@ -1,4 +1,4 @@
-"""Points of an arm that no rod covers, which get a status, and those of one and the same rod, solved once."""
+"""Points of an arm: a status where no rod covers a point, and one solve for all points with equal rods."""
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
@@ -21,13 +21,13 @@ from ..protocol import Solver
 
 MODEL_APPLIES = VALIDITY[0].name
 REMEMBERED = 1e8
-"""Bytes of outcomes that a rank remembers, about."""
+"""Memory of the outcomes kept on a rank, in bytes, approximately."""
 SMALLEST_OUTCOME = 10_000
-"""Bytes that an outcome takes beside its variables, at least."""
+"""Smallest assumed memory of an outcome in bytes, because an outcome has fields beside its variables."""
 
 
 class NoRod(PointStatus):
-    """Outcome of a point that no rod covers, of any task."""
+    """Outcome of a point that no rod covers, in every task."""
 
     not_slender = (
         NOT_SLENDER,
@@ -47,7 +47,7 @@ class NoRod(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class Uncovered:
-    """The outcome of such a point."""
+    """Outcome of a point that no rod covers."""
 
     status: NoRod
     message: str = ""
@@ -55,25 +55,26 @@ class Uncovered:
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """The outcome of a point whose rod was solved at another point."""
+    """Outcome of a point whose rod was already solved at another point."""
 
     outcome: Any
 
     @property
     def status(self) -> Any:
-        """How the solve ended."""
+        """Outcome of the solve."""
         return self.outcome.status
 
     @property
     def message(self) -> str:
-        """What the solve has to say."""
+        """Message of the solve."""
         return str(self.outcome.message)
 
 
 def same_rods(points: Points) -> NDArray[np.int64] | None:
-    """The number of the rod of each point of a grid over an arm's quantities, (points,); None if all differ.
+    """Number of the rod at each point of a grid over an arm's quantities, (points,); None if all rods differ.
 
-    Viscosity and densities move no parameter, Young's modulus none without a load or with a relative one.
+    Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes none
+    without a load or with a relative load.
     """
     if not points.over:
         return None
@@ -83,11 +84,10 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
 
 
 def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """The solver that remembers outcomes, so that a rod of several points is solved once on a rank.
+    """A solver that keeps outcomes: a rank solves a rod once, although several points share the rod.
 
-    Points that start one from the other are the same if they start from the same state, that of an outcome
-    which is remembered. Spectra along stretches take less than a millisecond a point: they are left as they
-    are.
+    In chains, two points are equal if they have equal rods and start from the same state of a kept outcome.
+    Spectra along stretches are solved again, because a point takes less than a millisecond.
     """
     rods = None if solver.stretched else same_rods(points)
     if rods is None:
@@ -108,13 +108,13 @@ def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
 
 @dataclass(slots=True)
 class _Outcomes:
-    """The outcomes of the last solves of a rank."""
+    """The outcomes of a rank's last solves, at most `most`."""
 
     most: int
     kept: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
     def of(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
-        """(what a solve gives, whether it was solved before)."""
+        """(result of a solve, whether it was kept from an earlier solve)."""
         if key in self.kept:
             self.kept.move_to_end(key)
             return self.kept[key], True
@@ -125,7 +125,7 @@ class _Outcomes:
 
 
 def around(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """The solver that leaves out points that no rod covers, whose variables have their fill."""
+    """A solver that skips points without a rod; their variables get fill values."""
     if points.covered is None or not points.covered.any():
         return solver
     return _Around(solver, points.covered, layout).solver()
@@ -133,14 +133,16 @@ def around(solver: Solver, points: Points, layout: Layout) -> Solver:
 
 @dataclass(frozen=True, slots=True)
 class _Around:
-    """A solver of points, of which those without a rod have a status in `covered`, (points,)."""
+    """A solver for points with and without rods; `covered`, (points,), has the status of points without a
+    rod.
+    """
 
     inner: Solver
     covered: NDArray[np.int8]
     layout: Layout
 
     def solver(self) -> Solver:
-        """The solver around the inner one."""
+        """The solver of all points."""
         statuses = (*self.inner.statuses, *NoRod)
         return self.inner.within(self._solve, self._together, record=self._record, statuses=statuses)
 
@@ -156,11 +158,11 @@ class _Around:
 
     @property
     def _empty(self) -> dict[str, Any]:
-        """Every variable of a point without a rod but its status."""
+        """Every variable of a point without a rod, except its status."""
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES: Validity.does_not_apply}
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
-        """What comes of the points of a stretch, of which only those with a rod are solved."""
+        """Results for the points of a stretch; only points with a rod are solved."""
         assert self.inner.stretched is not None
         covered = self.covered[indices]
         places = np.flatnonzero(covered == SLENDER)

@@ -1,7 +1,7 @@
-"""Whether the model applies at each point of an arm's sweep, from what it leaves out and how the arm moves.
+"""Whether the model applies at each point of an arm's sweep, from the neglected effects at the arm's motion.
 
-The rate of the motion is that of the task: of the first Hopf point, of the leading mode that oscillates, of
-the cycle. Where nothing moves only compression and weight count.
+The rate of the motion depends on the task: the rate of the first Hopf point, of the leading oscillating mode,
+or of the cycle. Without motion only compression and weight count.
 """
 
 from collections.abc import Callable, Mapping
@@ -25,30 +25,32 @@ from ...sweep.points.points import Points
 
 Record = Mapping[str, Any]
 ARMS_KEPT = 64
-"""Arms that are not made again for the next point."""
+"""Maximum number of cached arms."""
 
 
 @dataclass(frozen=True, slots=True)
 class ArmMotion:
-    """How the arm moves at n points, each (n, ...): frequency in 1/tau2, F, and the tip's amplitude in L."""
+    """Motion of an arm at n points, each (n, ...): frequency in 1/tau2, force F, amplitude of the tip in
+    L.
+    """
 
     frequency: Array
     F: Array | None = None
-    """None where it is that of the points, which comes first where they have one."""
+    """Force of each motion; None to take F from the points. If points have an F, it takes precedence."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
 
 
 def _of_modes(record: Record) -> ArmMotion:
-    """That of the leading mode which oscillates."""
+    """Motion of the leading oscillating mode; frequency NaN if no mode oscillates."""
     frequency = np.abs(record["frequency"])
-    first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # the first of all where none does
+    first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first, axis=-1)[..., 0]
     return ArmMotion(np.where(leading > 0, leading, np.nan))
 
 
 def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
-    """That of the first Hopf point, whose force is the variable `at`."""
+    """Motion of the first Hopf point; `at`: name of the variable with its force."""
 
     def found(record: Record) -> ArmMotion:
         hopf = np.asarray(record["crossing_kind"]) == CROSSING_KINDS.index("hopf")
@@ -80,11 +82,11 @@ MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
     "limit_cycle": _of_cycle,
     "branch": _of_branches,
 }
-"""How the arm moves, from the variables of a task."""
+"""Functions that compute the motion of an arm from the variables of a task."""
 
 
 class ArmValidity:
-    """Whether the model applies at the points of a config's arm."""
+    """Validity of the model at the points of a config's arm."""
 
     def __init__(self, config: Config, points: Points):
         assert config.parameters.arm is not None
@@ -92,16 +94,18 @@ class ArmValidity:
         self.points, self.task = points, config.task
         sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
-        """Points of an arm, one after another."""
+        """Number of consecutive points with the same arm."""
         self.arm = lru_cache(ARMS_KEPT)(self.section.arm_at)
 
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        """The variables of VALIDITY of a point, or of several of one arm, (n,), with records (n, ...)."""
+        """The variables of VALIDITY for a point, or for n points of one arm; records (n, ...), result
+        (n,).
+        """
         motion = MOTIONS[self.task](record)
         return self._told(self._arm_of(int(np.ravel(index)[0])), motion, index)
 
     def at_rest(self) -> dict[str, Array]:
-        """The variables of VALIDITY at all points with a rod, (n,), before anything moves."""
+        """The variables of VALIDITY at all points with a rod, (n,), for an arm at rest."""
         found = []
         for first in range(0, self.points.count, self.each):
             indices = np.arange(first, first + self.each)
@@ -135,7 +139,7 @@ class ArmValidity:
         }
 
     def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
-        """F in units of the arm's own k1, which a parameter beside it may replace; nan without load."""
+        """F multiplied by the ratio of the arm's k1 to a k1 given beside it; nan without load."""
         own = self._column("k1", index)
         F = self._column("F", index) if "F" in self.points.names else motion.F
         if F is None:
@@ -146,7 +150,9 @@ class ArmValidity:
         return np.asarray(F) * (arm.k1 / own)
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
-        """A parameter at a point, shape (), or at several, (n,); None where it makes no point."""
+        """A parameter at a point, shape (), or at n points, (n,); None if it is no parameter of the
+        points.
+        """
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])

@@ -1,4 +1,4 @@
-"""The curves of a phase diagram, which all its rows together give."""
+"""The curves of a phase diagram, which need all rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -27,40 +27,40 @@ if TYPE_CHECKING:
     from ..phase_diagram import PhaseDiagramTask
 
 MAX_KEPT_ROWS = 200
-"""Rows whose special points a process keeps: the cycles of a row take up to a megabyte. The special points of
-others are located anew, which gives the same and takes some seconds."""
+"""Maximum number of rows whose special points a process keeps, because the cycles of a row take up to a
+megabyte. The special points of further rows are located again, with the same result, in some seconds."""
 
 
 @dataclass(slots=True, eq=False)
 class DiagramCurves:
-    """Boundaries, their criticality, generalised Hopf points and curves of cycles of a task's diagram.
+    """Boundaries, their criticality, generalised Hopf points and curves of cycles of a diagram.
 
-    The curves of cycles take longest, and are units of work.
+    Only the curves of cycles are units of work, because they take most of the time.
     """
 
     task: "PhaseDiagramTask"
     workspace: "NewtonWorkspace"
-    """Memory of Newton's matrices of this process."""
+    """Buffers of Newton's matrices in this process."""
     special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
-    """Special points, with their cycles, of rows that this process has solved: by the row's number."""
+    """Special points, with their cycles, of rows solved in this process, by the row's number."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """The row, whose special points are kept while there is room."""
+        """The row itself. Its special points are kept if fewer than MAX_KEPT_ROWS rows are kept."""
         if len(self.special) < MAX_KEPT_ROWS:
             self.special[number] = row.special
         return row
 
     def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
-        """What this rank has kept of the rows from which units start, by the row's number."""
+        """Special points kept on this rank for the rows where units start, by the row's number."""
         rows = {units.row_of(unit) for unit in wanted}
         return {row: self.special[row] for row in rows if row in self.special}
 
     def take(self, starts: "Mapping[int, Any]") -> None:
-        """Keeps what another rank has of rows."""
+        """Keeps special points of rows from another rank."""
         self.special.update(starts)
 
     def units(self, view: View) -> "SpecialBoundaries | None":
-        """The curves of cycles as units of work, from a view with all rows; None where there are none."""
+        """Curves of cycles as units of work, from a view with all rows; None without cycles or curves."""
         from ...solve.branch.special.boundaries import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
@@ -71,11 +71,11 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """The result of a unit, arrays of the shapes that `TracedHalf` has."""
+        """Result of a unit, arrays with the shapes of `TracedHalf`."""
         return units.solve(unit, self._special_points, self.workspace)
 
     def nothing(self) -> dict[str, np.ndarray]:
-        """The result of a unit that finds no curve, arrays of no length along their first shape."""
+        """Result of a unit without a curve: arrays of length 0 along their first dimension."""
         from ...solve.branch.special.cycle_curves import TracedHalf
 
         return TracedHalf(None).arrays()
@@ -83,7 +83,7 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: of all units that were wanted, of their shapes."""
+        """All curves as variables of the file. results: results of all wanted units."""
         plane = self.plane
         if plane is None:
             return []
@@ -108,12 +108,12 @@ class DiagramCurves:
 
     @property
     def _finite(self) -> np.ndarray:
-        """Which rows have a finite value, (rows,)."""
+        """Mask of the rows with a finite value, (rows,)."""
         return np.isfinite(self.task.points.by_name[self.task.config.plane[1]])
 
     @property
     def plane(self) -> "Plane | None":
-        """The plane of the line's parameter and the finite rows; None where these are fewer than two."""
+        """Plane of the line's parameter and the finite rows; None for fewer than two finite rows."""
         from ...determinant.parameter_plane import Plane, PlaneAxis
 
         line, row = self.task.config.plane
@@ -129,7 +129,7 @@ class DiagramCurves:
         return Plane(Rod(**not_crushed, gamma1=self.task.config.gamma1), (abscissa, ordinate))
 
     def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
-        """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
+        """Curves through the crossings of all finite rows; rows: value of every row, (rows,)."""
         from ...solve.changes.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
@@ -142,12 +142,12 @@ class DiagramCurves:
             for j in np.flatnonzero(kind[i])
         ]
         found = curves_through(plane, [seed for seed in seeds if seed is not None])
-        # Where a list is full its last crossings are not stored, and no curve starts from them.
+        # If a list is full, its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
         return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
-        """The special points of the branches of the row of a number, kept or solved anew."""
+        """Special points of the branches of a row, kept or solved again."""
         from ...solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
@@ -156,7 +156,7 @@ class DiagramCurves:
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":
-        """On which side of each curve cycles are born, if it is one of Hopf points."""
+        """Criticality along each curve; NaN along curves that are not Hopf curves."""
         from ...solve.hopf.generalised import CurveCriticality, curve_criticality
 
         accuracy = self.task.config.accuracy
@@ -170,7 +170,7 @@ class DiagramCurves:
     def _bautin_curves(
         self, plane: "Plane", told: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> list[Filled]:
-        """The curves of generalised Hopf points over the third parameter, as variables of the file."""
+        """Curves of generalised Hopf points over the third parameter, as variables of the file."""
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 

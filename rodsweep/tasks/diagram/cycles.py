@@ -1,4 +1,4 @@
-"""What `phase_diagram.cycles` adds to the task phase_diagram: rows with their cycles, and curves of these."""
+"""Cycles of the rows of a phase diagram (`phase_diagram.cycles`), and their curves."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
 
 def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
-    """The cycles of a row along a parameter as the variables of the file, with time and status of the row."""
+    """Cycles of a row as variables of the file, including time and status of the row; line: the row's
+    parameter.
+    """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     at = {f"cycle_special_{line}": "at"}
     rows = [recorded(variables, point, prefix="cycle_special_", names=at) for point in result.special]
@@ -30,7 +32,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
 
 def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
-    """The folds and torus points of all finite rows as the file has them. rows: all values, (rows,)."""
+    """Folds and torus points of all finite rows in the file. rows: value of every row, (rows,)."""
     from ...solve.branch.special.boundaries import CURVE_KINDS, RowSpecial
     from ...solve.branch.special.point import SpecialKind
 
@@ -51,7 +53,9 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
 
 
 def unstored_specials(view: View, finite: np.ndarray) -> int:
-    """Special points that the full lists of finite rows lack; no curve starts from them. finite: (rows,)."""
+    """Number of special points missing from the full lists of finite rows; no curve starts there. finite:
+    (rows,).
+    """
     stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored
     return int(lacking[finite].clip(min=0).sum())
@@ -60,7 +64,7 @@ def unstored_specials(view: View, finite: np.ndarray) -> int:
 def with_hopf_ends(
     found: "Boundaries[CycleCurve]", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
 ) -> "Boundaries[CycleCurve]":
-    """The curves with the generalised Hopf points at their ends as they are located on Hopf curves."""
+    """Curves whose ends at generalised Hopf points are replaced by the points located on Hopf curves."""
     from ...solve.branch.special.cycle_curves import ending_at
 
     known = [point for curve in told for point in curve.points]

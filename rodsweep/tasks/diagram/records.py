@@ -1,6 +1,6 @@
-"""Curves of a phase diagram as the variables of its file, which `results.layouts.phase_diagram` declares.
+"""Curves of a phase diagram as variables of its file, which `results.layouts.phase_diagram` declares.
 
-plane: the parameter along a row, and the one across the rows.
+In every function, `plane` is (parameter along a row, parameter across the rows).
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
-    """Curves and their folds; more: the variables of a limit."""
+    """Boundary curves and their folds; more: variables of the partial beam limit."""
     points, folds = [], []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
@@ -43,7 +43,7 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
 def criticality_record(
     told: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[Filled]:
-    """What was found along each curve, in their order, of rods of this gamma1."""
+    """Criticality of each curve, in the order of the curves, for rods with this gamma1."""
     rows, start = [], 0
     for number, curve in enumerate(told, 1):
         for point in curve.points:
@@ -70,7 +70,7 @@ def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str],
 
 
 def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
-    """Curves of folds and torus points, with the Hopf points where they end."""
+    """Curves of folds and torus points, including the Hopf points where they end."""
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
@@ -85,7 +85,7 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
 
 
 def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
-    """A point with its values and errors by parameter, and what else is stored beside it."""
+    """A point with its values and errors by parameter, and further variables `beside`."""
     errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
     return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
 
@@ -93,7 +93,7 @@ def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]
 def _columns(
     declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
 ) -> dict[str, Any]:
-    """The variables of a prefix along a dimension, as lists; each row has the outcomes of one item."""
+    """Variables with a name prefix along a dimension, as lists; each row has the outcomes of one item."""
     along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
     return listed(along, [recorded(along, *row, prefix=prefix) for row in rows])
 
@@ -103,7 +103,9 @@ def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list
 
 
 def _ends(ends: Sequence[int], count: int) -> list[int]:
-    """Why a curve ends at each of its points, 0 between its ends; of a single point the last says it."""
+    """Reason for the end of a curve at each of its points, 0 between its ends; a single point has the last
+    reason.
+    """
     why = [0] * count
     why[0], why[-1] = ends
     return why

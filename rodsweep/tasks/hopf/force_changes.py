@@ -1,8 +1,8 @@
-"""Where the rods of a file of spectra start to oscillate along F, become unstable, or stable again.
+"""Forces at which the rods of a file of spectra start to oscillate, become unstable, or stable again.
 
-Found from the stored eigenvalues once all points are there, and stored beside them: `show` and figures mark
-what the file has. It costs some 30 us a change: 1 % of the time of spectra followed along 512 forces a line,
-3 to 5 % along 50.
+They are computed from the stored eigenvalues once all points are done, and stored in the file for `show` and
+figures. A change takes about 30 us: 1 % of the time of spectra followed along 512 forces a line, 3 to 5 %
+along 50.
 """
 
 from collections.abc import Iterator, Mapping
@@ -23,15 +23,15 @@ from ...sweep.points.lines import lines_over
 from ...sweep.points.points import Points
 
 POINTS_AT_ONCE = 1 << 13
-"""Points whose eigenvalues are read together; memory does not grow with the file beyond that."""
+"""Maximum number of points whose eigenvalues are read together, which limits memory for large files."""
 
 
 @dataclass(frozen=True, slots=True)
 class ForceLines:
-    """Lines with points at the same forces.
+    """Lines of points at the same forces.
 
-    fixed: k1, k2 and gamma3 of each line, (lines, 3); F: increasing, (n,); eigenvalues: leading first,
-    (lines, n, modes), in 1/tau2; unstable: how many grow, -1 where that is not known, (lines, n).
+    fixed: k1, k2 and gamma3 of each line, (lines, 3). F: increasing, (n,). eigenvalues: leading first,
+    (lines, n, modes), in 1/tau2. unstable: number of growing modes, -1 if unknown, (lines, n).
     """
 
     fixed: Array
@@ -41,9 +41,9 @@ class ForceLines:
 
 
 def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-    """The changes on all lines over F as variables of the file; none where F does not vary.
+    """The changes on all lines over F as variables of the file; empty if F does not vary.
 
-    values: the variables of the points by name, of their shape and their own, as arrays or HDF5 datasets.
+    values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
     F = points.by_name["F"]
     if len(np.unique(F[np.isfinite(F)])) < 2:
@@ -56,7 +56,7 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
 
 
 def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """The lines of a grid, some at a time."""
+    """Lines of a grid, in groups of at most POINTS_AT_ONCE points."""
     along = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != along]
     widest = max(others, key=lambda axis: points.shape[axis])
@@ -76,7 +76,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """The lines of a list, one after another."""
+    """Lines of a list, one by one."""
     count = points.count
     w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(count, -1)
     unstable = values["unstable_count"][...].ravel()
@@ -90,7 +90,7 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
-    """The changes on lines, one line after another, by the names of their variables."""
+    """The changes on lines as variables, line after line."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
     F, w = lines.F.tolist(), lines.eigenvalues
@@ -112,16 +112,16 @@ def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
 
 
 def _growing(w: Complex, counted: int) -> int:
-    """How many modes grow at a point: as counted, or of those stored, (modes,), where that is not known."""
+    """Number of growing modes at a point: as counted, or, if unknown, among the stored modes, (modes,)."""
     return int(counted) if counted >= 0 else int(np.count_nonzero(w.real > 0))
 
 
 Steps = NDArray[np.int64]
-"""Neighbouring points of lines, (steps, 3): the line, the point before, the point behind."""
+"""Pairs of neighbouring points, (steps, 3): line, point before, point behind."""
 
 
 def _sign_changes(w: Complex) -> Steps:
-    """Where the leading growth rate changes its sign; w: (lines, n, modes)."""
+    """Pairs between which the leading growth rate changes its sign; w: (lines, n, modes)."""
     growing = w[..., 0].real > 0
     line, before, behind = _neighbours(np.isfinite(w[..., 0].real))
     differ = growing[line, before] != growing[line, behind]
@@ -129,7 +129,7 @@ def _sign_changes(w: Complex) -> Steps:
 
 
 def _new_pairs(w: Complex) -> Steps:
-    """Where two real eigenvalues lead, and a pair leads at the next point; w: (lines, n, modes)."""
+    """Pairs of two leading real eigenvalues followed by a leading complex pair; w: (lines, n, modes)."""
     if w.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     real = (w[..., :2].imag == 0).all(axis=-1)
@@ -139,14 +139,14 @@ def _new_pairs(w: Complex) -> Steps:
 
 
 def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
-    """(line, point before, point behind) of all neighbours among the known points of lines, (lines, n)."""
+    """(line, point before, point behind) of all neighbours among the known points; known: (lines, n)."""
     line, point = np.nonzero(known)
     together = line[1:] == line[:-1]
     return line[1:][together], point[:-1][together], point[1:][together]
 
 
 def _by_line(steps: Steps) -> dict[int, list[tuple[int, int]]]:
-    """The neighbouring points of each line that has some."""
+    """Pairs of neighbouring points by line."""
     found: dict[int, list[tuple[int, int]]] = {}
     for line, before, behind in steps.tolist():
         found.setdefault(line, []).append((before, behind))

@@ -1,7 +1,7 @@
-"""The Hopf points of the straight rods between the points of a file, which its figures and `show` mark.
+"""Hopf points of the straight rods between the points of a file, for figures and for `show`.
 
-They depend on the config alone, so the file has them before any point is solved: whatever of it is computed,
-extended or merged, they are those of all of its lines.
+Hopf points depend on the config alone and are stored before any point is solved. Hence they cover all lines
+of the file after a run, an extension or a merge.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Rods from which points of a file are taken: all that lie between two values of one parameter."""
+    """Rods of a file along one parameter, between two values, with all other parameters fixed."""
 
     name: str
-    """The parameter."""
+    """The parameter that varies."""
     fixed: dict[str, float]
-    """The other ones of the straight rod."""
+    """The fixed parameters of the straight rod."""
     start: float
     stop: float
 
     def search(self) -> "Transitions | None":
-        """The Hopf points on the line; None where they cannot be had. Needs no PETSc."""
+        """Hopf points on the line; None if the range is empty or the search fails. Needs no PETSc."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
         from ...solve.changes.unstable_modes import SHORT_OF_CRUSHED
@@ -49,19 +49,19 @@ class HopfLine:
             return None
         try:
             return pair_crossings(Path(Rod(**self.fixed, **{self.name: start}), self.name), start, stop)
-        except (*FAILURES, ValueError):  # ValueError: the model has no rod where the search asks for one
+        except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
-    """The lines on which points lie, once each: rods that differ in gamma1 alone are one."""
+    """Lines through the points, each line once; rods that differ in gamma1 alone share a line."""
     return [line for name in HOPF_ALONG for line in _lines_over(points, name)]
 
 
 def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
-    """The lines over a parameter of points with at least two finite values of it; over F from 0 on.
+    """Lines over a parameter of points with at least two finite values of it; lines over F begin at 0.
 
-    Below the first force the rod may have begun to beat, and that is told too.
+    Below the first force of the points the rod may already oscillate; such a Hopf point is stored too.
     """
     columns = {n: points.of_rods[n] for n in LINEAR_PARAMETERS}
     others = all_but(name)
@@ -81,13 +81,13 @@ def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
-    """Smallest and largest finite value, (n,); twice the same where there is none to search between."""
+    """Smallest and largest finite value, (n,); (0, 0) if no value is finite."""
     finite = values[np.isfinite(values)]
     return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
 
 
 def hopf_variables(lines: Sequence[HopfLine], found: "Sequence[Transitions | None]") -> tuple[Filled, ...]:
-    """The Hopf points of lines, one line after another, as variables of the file."""
+    """Hopf points of all lines, line after line, as variables of the file."""
     rows = [
         _row(line, crossing)
         for line, transitions in zip(lines, found, strict=True)
@@ -104,7 +104,7 @@ def hopf_variables(lines: Sequence[HopfLine], found: "Sequence[Transitions | Non
 
 
 def _row(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
-    """A Hopf point by the names of its variables."""
+    """A Hopf point as variables of the file."""
     rod = line.fixed | {line.name: crossing.at}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG} | {
         "hopf_along": HOPF_ALONG.index(line.name),

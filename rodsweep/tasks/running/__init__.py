@@ -1,1 +1,1 @@
-"""A job of a config, the plan of its file, and exceptions that no solver foresees."""
+"""The job of a config, the plan of its file, and unforeseen exceptions."""

@@ -1,4 +1,4 @@
-"""From a config file to everything a run needs that is neither PETSc nor MPI."""
+"""The job of a config file: everything a run needs except PETSc and MPI."""
 
 import os
 from dataclasses import dataclass, replace
@@ -23,16 +23,17 @@ from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
 LARGEST_FILE = 2**63 - 1
-"""Bytes of a file, and the largest number of a point."""
+"""Maximum size of a file in bytes, and the largest number of a point."""
 BYTES_A_VALUE = 40
-"""Memory of a value of an axis while a run is set up: 33 to 36 were measured, four arrays of numbers."""
+"""Memory per value of an axis, in bytes, while a run is set up: four arrays of numbers; 33 to 36 were
+measured."""
 LARGEST_RECORD = 100_000_000
-"""Bytes of one point's results, which are held in memory and written at once."""
+"""Maximum size of one point's results in bytes; they are held in memory and written at once."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A validated config with its points and its task."""
+    """A validated config with points and task."""
 
     path: Path
     config: Config
@@ -42,7 +43,7 @@ class Job:
 
     @property
     def name(self) -> str:
-        """The config's title, or the name of its file."""
+        """The config's title, or else the name of its file."""
         return self.config.title or self.path.stem
 
     @property
@@ -51,11 +52,11 @@ class Job:
 
     @property
     def quantities(self) -> tuple[Filled, ...]:
-        """The quantities of the arm, where the config has one, as coordinates of the points."""
+        """Quantities of the config's arm as coordinates of the points; empty without an arm."""
         return quantities_of(self.config.parameters, self.points)
 
     def solver(self) -> Solver:
-        """The task's solver, whose records tell an arm's results in SI units too. Starts PETSc."""
+        """The task's solver; for an arm, its results also contain SI units and the validity. Starts PETSc."""
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
@@ -63,7 +64,7 @@ class Job:
         return around(once, self.points, self.layout)
 
     def _in_si(self, solver: Solver) -> Solver:
-        """The solver whose records tell results in SI units too, and whether the model applies."""
+        """The solver, with results in SI units and the validity of the model added to every record."""
         layout = LAYOUTS[self.config.task](self.resolved)
         quantities = at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points)
@@ -91,18 +92,20 @@ class Job:
 
 
 def memory() -> int:
-    """Bytes of this machine's memory."""
+    """Memory of this machine in bytes."""
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
 def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
-    """The job of a config file; InputError for everything that can be known to be wrong beforehand."""
+    """The job of a config file; InputError for all errors that can be found before the run."""
     return job_of(path, *load_config(path, overrides))
 
 
 def job_of(path: Path, config: Config, text: str) -> Job:
-    """The job of a config with its YAML text, beside whose path a file of points is looked for."""
-    values = sum(axis.size for axis in config.parameters.axes.values())  # before any axis is made
+    """The job of a config with its YAML text. A file of points is searched relative to the folder of
+    `path`.
+    """
+    values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_A_VALUE > memory():
         raise InputError(
             f"{path}: parameters make {grid_size(config):.6g} points, whose axes of {values:.6g} values take "

@@ -1,4 +1,4 @@
-"""From a job to the plan of its result file."""
+"""The plan of a job's result file."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,7 +16,7 @@ from .job import Job
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
-    """The plan of a config on these points, without attributes and flags."""
+    """Plan of a config on given points, without attributes and flags."""
     return _plan(TASKS[config.task](config, points), canonical(config))
 
 
@@ -36,7 +36,7 @@ def _plan(task: Task, resolved: dict[str, Any]) -> Plan:
 
 
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
-    """The file that a run of the job, with these BLAS kernels, makes or continues."""
+    """Plan of the file that a run of the job, with these BLAS kernels, creates or continues."""
     from ...solve.backend import petsc
 
     attributes = {

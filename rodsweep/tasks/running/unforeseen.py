@@ -1,7 +1,6 @@
-"""Exceptions that no solver foresees, which are bugs: the point gets the status `failed`, the sweep goes on.
+"""Unforeseen exceptions, which are bugs: the point gets the status `failed`, and the sweep continues.
 
-Refusals and errors of the operating system are no bugs and pass: the machine lacks something, for every
-point.
+Refusals and errors of the operating system are no bugs and are not caught: they concern every point.
 """
 
 import os
@@ -27,16 +26,16 @@ from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
 PASSING = (Refusal, OSError)
-"""Exceptions that are not of a point: they end the run in a sentence."""
+"""Exceptions that concern the whole run, not a point: the run ends with a sentence."""
 MAX_NOTES = 1000
-"""Exceptions that a rank writes into its log; more of them than this are one bug at every point."""
+"""Maximum number of exceptions written to the log per rank; a larger number would repeat one bug."""
 FAILED = "failed"
-"""The status of a point whose solver raised; every task has it."""
+"""Status of a point whose solver raised an exception; every task has it."""
 
 Note = Callable[[Sequence[int], Exception], None]
-"""What is done about an exception, from the flat indices of its points."""
+"""Called with the flat indices of the failed points and their exception."""
 UnitNote = Callable[[str, Exception], None]
-"""What is done about an exception of a unit, from what that is in words."""
+"""Called with the name of a unit of work and its exception."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +48,9 @@ class Outcome:
 
 
 def guarded(solver: Solver, layout: Layout, note: Note) -> Solver:
-    """The solver with outcomes of the type `Outcome`: an exception is `note`d, its point has no numbers.
+    """A solver that catches unforeseen exceptions, calls `note`, and gives the point fill values.
 
-    A stretch that raises is solved again point by point. Its other points keep their spectra.
+    After an exception in a stretch its points are solved one by one: only failing points lose their spectra.
     """
     return _Guard(solver, layout, note).solver()
 
@@ -69,7 +68,7 @@ class _Guard:
     def _outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[Outcome, State]:
-        """(outcome, state for the neighbour) of a point whose solver, or whose record, may raise."""
+        """(outcome, state for the neighbour) of a point whose solve or record may raise an exception."""
         began = time.perf_counter()
         try:
             found, state = solve()
@@ -82,7 +81,7 @@ class _Guard:
             return self._failed(error, time.perf_counter() - began), None
 
     def _failed(self, error: Exception, seconds: float) -> Outcome:
-        """The outcome of a point whose solver raised: the fill of every variable."""
+        """Outcome of a failed point, with the fill value of every variable."""
         status = next(status for status in self.inner.statuses if status.name == FAILED)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return Outcome(status, described(error), self.layout.empty_point | values)
@@ -99,7 +98,7 @@ class _Guard:
             return self._one_by_one(indices)
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
-        """The points of a stretch, each solved alone."""
+        """The points of a stretch, each solved on its own."""
         solve = self.solver().solve
         outcomes = [solve(index) for index in indices.tolist()]
         names = [variable.name for variable in self.layout.variables]
@@ -111,7 +110,7 @@ class _Guard:
 
 
 def described(error: Exception) -> str:
-    """An unforeseen exception in one line: its class, what it says, and where it was raised."""
+    """An unforeseen exception in one line: class, message, and the place where it was raised."""
     said = " ".join(str(error).split())
     place = traceback.extract_tb(error.__traceback__)[-1]
     where = f"{Path(place.filename).name}, line {place.lineno}, in {place.name}"
@@ -119,29 +118,29 @@ def described(error: Exception) -> str:
 
 
 def log_file(output: Path) -> Path:
-    """The file beside a result that has the tracebacks of its points."""
+    """File beside a result with the tracebacks of failed points."""
     return output.with_name(output.name + ".log")
 
 
 class Log:
-    """The tracebacks of a rank's points, appended to a file beside the result that all ranks share."""
+    """Tracebacks of a rank's points, appended to a file beside the result that all ranks share."""
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str]):
-        """where: the parameters of a point in words."""
+        """Function `where`: the parameters of a point in words, from the point's index."""
         self.path, self.rank, self.where = log_file(output), rank, where
         self.count = 0
-        """Exceptions of this rank's points."""
+        """Number of exceptions on this rank."""
         self._known: set[str] = set()
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
-        """Appends a traceback; of one that this rank has written before, its last line."""
+        """Appends a traceback, or only its last line if this rank has written the same traceback before."""
         points = self.where(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
         self.note(points, error)
 
     def note(self, place: str, error: Exception) -> None:
-        """The same of a place in words."""
+        """Appends a traceback under the name of a place."""
         self.count += 1
         if self.count > MAX_NOTES:
             return
@@ -153,7 +152,7 @@ class Log:
         self._append(f"{head}{body}\n")
 
     def _append(self, text: str) -> None:
-        """Writes by one call, so that ranks do not write into each other's lines."""
+        """Writes with a single call, so that lines of different ranks do not mix."""
         handle = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
         try:
             os.write(handle, text.encode(errors="backslashreplace"))

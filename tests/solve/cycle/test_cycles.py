@@ -11,7 +11,7 @@ from rods import rod_of
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.elements.periodic import derivative, resampled
 from rodsweep.discretization.elements.quadrature import lobatto_points
-from rodsweep.errors import EnvironmentLacks
+from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -281,7 +281,9 @@ def test_options_that_lose_the_cycle_are_refused_in_one_sentence():
     PETSc.Options()["cycle_ts_type"] = "nosuch"
     forget_integrators()
     try:
-        with pytest.raises(EnvironmentLacks, match="options '-cycle_ts_type nosuch' .* cannot run; remove"):
+        with pytest.raises(
+            EnvironmentIncomplete, match="options '-cycle_ts_type nosuch' .* cannot run; remove"
+        ):
             warm_up()
     finally:
         PETSc.Options().delValue("cycle_ts_type")

@@ -10,7 +10,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ....errors import EnvironmentLacks, InputError
+from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import View
 from ..layout.fitting import fit
 from ..style import FIRST, SECOND
@@ -72,11 +72,13 @@ def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
-    """Writer for the suffix of the file; raises EnvironmentLacks if ffmpeg is needed and missing."""
+    """Writer for the suffix of the file; raises EnvironmentIncomplete if ffmpeg is needed and missing."""
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):
-        raise EnvironmentLacks(f"{output}: an .mp4 needs ffmpeg, which is not installed; a .gif does not")
+        raise EnvironmentIncomplete(
+            f"{output}: an .mp4 needs ffmpeg, which is not installed; a .gif does not"
+        )
     return FFMpegWriter(fps=rate)
 
 

@@ -38,7 +38,7 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
 
     An existing `output` is the first source. Of two values of a point the first stays; files of different
     grids must agree. Raises InputError for a file that is no result, was made for another config, or has
-    points in a journal, and for grids that do not make up a larger grid. Raises EnvironmentLacks if the disk
+    points in a journal, and for grids that do not make up a larger grid; EnvironmentIncomplete if the disk
     fails.
     """
     sources = _opened(paths)
