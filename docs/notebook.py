@@ -18,7 +18,7 @@ NOTEBOOK = Path(__file__).with_name("notebook.ipynb")
 
 
 def executed(notebook: dict[str, Any]) -> dict[str, Any]:
-    """The notebook with the outputs that its code gives now."""
+    """The notebook with the current outputs of its cells."""
     names: dict[str, Any] = {"__name__": "__main__"}
     cells, number = [], 0
     for cell in notebook["cells"]:
@@ -32,7 +32,7 @@ def executed(notebook: dict[str, Any]) -> dict[str, Any]:
 
 
 def outputs_of(source: str, names: dict[str, Any], number: int) -> list[dict[str, Any]]:
-    """What a cell prints, then what its last expression is, as a notebook stores them."""
+    """Outputs of a cell in the notebook's format: printed text, then the last expression's value."""
     *statements, last = ast.parse(source).body
     if not isinstance(last, ast.Expr):
         statements, last = [*statements, last], None
@@ -50,7 +50,7 @@ def outputs_of(source: str, names: dict[str, Any], number: int) -> list[dict[str
 
 
 def shown(value: Any) -> dict[str, Any]:
-    """A value as notebooks show it, by the methods that they ask for."""
+    """A value in the formats that notebooks display."""
     bundle: dict[str, Any] = {"text/plain": repr(value)}
     if hasattr(value, "_repr_html_"):
         bundle["text/html"] = value._repr_html_()
@@ -63,12 +63,12 @@ def shown(value: Any) -> dict[str, Any]:
 
 
 def lines(text: str) -> list[str]:
-    """A text as notebooks store it."""
+    """A text as a notebook stores it."""
     return text.splitlines(keepends=True)
 
 
 def text_of(notebook: dict[str, Any]) -> str:
-    """A notebook as its file."""
+    """The text of a notebook's file."""
     return json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
 
 

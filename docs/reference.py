@@ -2,9 +2,8 @@
 
     python docs/reference.py
 
-What a key or a variable means stands where it is declared; here is only how it is laid out on the page, and
-the meaning of the words and attributes that no declaration explains. `tests/test_docs.py` compares the page
-with this.
+Keys and variables are explained where they are declared. This module has the layout of the page, and the
+meanings of words and attributes without a declaration. `tests/test_docs.py` compares the page with `text`.
 """
 
 import inspect
@@ -56,7 +55,7 @@ WHOLE = {
         parameters: {F: 50, k1: 1.0e+4, k2: 100, gamma3: 0.01, gamma1: 1}
         limit_cycle: {samples: 64, shapes: 8, transient: 99, time: tau1}""",
 }
-"""A config of every task with all its parameters and everything that may be asked for."""
+"""A config of every task with all parameters and all optional variables."""
 WITHOUT = {
     "phase_diagram.cycles: true": ("phase_diagram.cycles=false",),
     "spectrum.vectors: true": ("spectrum.vectors=false",),
@@ -67,7 +66,7 @@ WITHOUT = {
     "limit_cycle.shapes > 0": ("limit_cycle.shapes=0",),
     "limit_cycle.time: tau1": ("limit_cycle.time=tau2",),
 }
-"""What some variables depend on, and how to ask for a file without them."""
+"""Overrides that remove the variables depending on an option, by the option."""
 LENGTHS = {
     "point": "lines of the CSV file",
     "mode": "`spectrum.modes`, `modes.modes`",
@@ -89,7 +88,7 @@ LENGTHS = {
     "shape": "`limit_cycle.shapes`",
     "transient": "`limit_cycle.transient`",
 }
-"""What says how long a dimension is that is not a parameter."""
+"""Origin of the length of each dimension that is no parameter."""
 MOTIONS = {
     "missing": "not computed",
     "monotone": "stable; the slowest mode decays without oscillations",
@@ -98,7 +97,7 @@ MOTIONS = {
     "undecided": "on a boundary within its error, or not known",
     "crushed": "F >= k1: there is no rod",
 }
-"""What the rod does at a point of a phase diagram."""
+"""State of the rod at a point of a phase diagram."""
 STATES = {
     "missing": "not computed",
     "neither_known": "the straight rod is unstable, and no stable cycle lies on a branch that was followed",
@@ -108,7 +107,7 @@ STATES = {
     "undecided": "on a boundary within its error, or a branch could not be followed so far",
     "crushed": "F >= k1: there is no rod",
 }
-"""What is stable at a point of a phase diagram with cycles."""
+"""Stable states at a point of a phase diagram with cycles."""
 ATTRIBUTES = {
     "program": "`rodsweep`: what a result file is recognised by",
     "Conventions": "`CF-1.8`",
@@ -231,7 +230,7 @@ def text() -> str:
 
 
 def parameters() -> str:
-    """The parameters, and the tasks that have them."""
+    """Table of the parameters and their tasks."""
     tasks = {task: whole(task).config.parameters for task in CONFIGS}
     rows = []
     for name, p in PARAMETERS.items():
@@ -243,7 +242,7 @@ def parameters() -> str:
 
 
 def common_keys() -> str:
-    """The keys that every task has."""
+    """Table of the keys of every task."""
     config = CONFIGS["spectrum"]
     meanings = meanings_of(config)
     points = config.model_fields["parameters"].annotation
@@ -259,7 +258,7 @@ def common_keys() -> str:
 
 
 def task_keys(task: str) -> str:
-    """The keys of one task: its options, and what it has otherwise than the others."""
+    """Keys of one task: its options, and its accuracy if the default differs."""
     config = CONFIGS[task]
     rows = []
     if config.model_fields["accuracy"].default != CONFIGS["spectrum"].model_fields["accuracy"].default:
@@ -278,7 +277,7 @@ def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
 
 
 def yaml_of(value: object) -> str:
-    """A default as it would stand in a config; nothing where there is none."""
+    """A default value as in a config; "" without default."""
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -291,7 +290,7 @@ def key_table(rows: Sequence[Sequence[str]]) -> str:
 
 
 def dimensions() -> str:
-    """All dimensions but those that are parameters."""
+    """Table of all dimensions except the parameters."""
     rows = [
         [f"`{name}`", LENGTHS[name], meaning]
         for name, (_, meaning) in DIMENSIONS.items()
@@ -326,14 +325,14 @@ computed:
 
 
 def validity() -> str:
-    """What a file says of whether the model applies, and the statuses of arms that no rod covers."""
+    """Variables on the validity of the model, and statuses of arms without a rod."""
     statuses = [[str(int(status)), f"`{status.name}`", status.sentence] for status in NoRod]
     variables = variable_table(variable_row(v, ["...", *v.extra], "") for v in VALIDITY)
     return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 
 
 def quantities() -> str:
-    """What the coordinates of an arm are."""
+    """Table of the coordinates of an arm."""
     rows = [[f"`{name}`", each.unit, each.meaning] for name, each in ALL_QUANTITIES.items()]
     return table(("coordinate", "unit", "meaning"), rows)
 
@@ -343,13 +342,13 @@ def kinds() -> list[tuple[int, str]]:
 
 
 def words(title: str, meanings: dict[str, str], flags: Iterable[tuple[int, str]]) -> str:
-    """What the values of a variable mean that stands for a word."""
+    """Table of the values of a variable that stand for words."""
     rows = [[str(value), f"`{word}`", meanings[word]] for value, word in flags]
     return f"\n### {title}\n\n" + table(("value", "word", "meaning"), rows)
 
 
 def task_variables(task: str) -> str:
-    """The variables and the statuses of one task."""
+    """Tables of the variables and the statuses of one task."""
     job = whole(task)
     given = variables_of(job)
     only = {
