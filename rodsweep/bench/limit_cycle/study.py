@@ -194,7 +194,7 @@ def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
     return (
         f"From a start of {AMPLITUDE:g} L to the settled cycle. Waiting ends when two successive returns "
         f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
-        "user is assumed to know this tolerance. solve_cycle has the same accuracy, and its time includes the "
+        "user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes the "
         f"choice of mesh and the proof of stability. At F = {NEAR_HOPF:g} the number of periods is estimated "
         f"from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the time per "
         "period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"

@@ -75,7 +75,7 @@ class DiagramCurves:
         return units.solve(unit, self._special_points, self.workspace)
 
     def nothing(self) -> dict[str, np.ndarray]:
-        """Result of a unit without a curve: arrays of length 0 along their first dimension."""
+        """Result of a unit without a curve: arrays of shape (0, ...)."""
         from ...solve.branch.special.cycle_curves import TracedHalf
 
         return TracedHalf(None).arrays()
@@ -83,7 +83,7 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: results of all wanted units."""
+        """All curves as variables of the file. results: arrays of all wanted units, of the shapes of `TracedHalf`."""
         plane = self.plane
         if plane is None:
             return []
