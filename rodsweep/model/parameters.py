@@ -44,8 +44,6 @@ class Parameter:
     """What a rod is called whose value is inf; empty where inf is not allowed."""
     default: float | None = None
     """Value in a grid that does not name it; None where it must be named."""
-    optional: bool = False
-    """Whether a sweep that does not name it has no dimension for it."""
     scales: tuple[str, ...] = ()
     """Stiffnesses or drags that the value multiplies; empty where the parameter is itself a load, a stiffness
     or a drag. One parameter scales either stiffnesses or drags, so that the equations are affine in its
@@ -135,26 +133,14 @@ PARAMETERS = {
             linear=False,
             default=1.0,
         ),
-        Parameter(
-            name="taper",
-            symbol="t",
-            unit="1",
-            meaning="tip radius over base radius",
-            remark=" of a circular cone; 1 is a uniform arm",
-            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
-            default=1.0,
-            optional=True,
-        ),
     )
 }
 """All parameters by name, in the order used everywhere."""
 
-OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
-"""Names of the parameters that a sweep has only where its config names them."""
-NONLINEAR_PARAMETERS = tuple(name for name in PARAMETERS if name not in OPTIONAL_PARAMETERS)
-"""Names of the parameters that every nonlinear rod has."""
-LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].linear)
-"""Names of the parameters that every linear problem has."""
+NONLINEAR_PARAMETERS = tuple(PARAMETERS)
+"""Names of the parameters of the nonlinear rod."""
+LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
+"""Names of the parameters of the linear problem."""
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
 """(parameter, stiffness or drag that it multiplies) of all that multiply any."""
 CRUSHING = ("F", "k1")

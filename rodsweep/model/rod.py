@@ -13,15 +13,12 @@ import numpy as np
 
 from ..arrays import Array
 from .balance import Material, first_component
-from .material.laws import LAWS, LINEAR, Law, law_of
-from .material.profile import FACTORS, RADIUS_POWERS, Profile
-from .parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
+from .material.build import STANDARD, Build, LocalCoefficients
+from .parameters import LINEAR_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
 
 Decorated = TypeVar("Decorated")
 ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """The test of each parameter's range: rods are made often."""
-MATERIAL = ("law", "section", "profile")
-"""Fields of a rod that are no numbers."""
 
 
 class Crushed(ValueError):
@@ -29,7 +26,7 @@ class Crushed(ValueError):
 
 
 class NotUniform(ValueError):
-    """The refusal to state one set of coefficients for an arm whose coefficients vary, or whose law is another."""
+    """The refusal to state constant coefficients of an arm that varies or whose law is not linear."""
 
 
 class Coefficients(NamedTuple):
@@ -39,20 +36,6 @@ class Coefficients(NamedTuple):
     nu: float
     c2: float
     gamma3: float
-
-
-class LocalCoefficients(NamedTuple):
-    """What the transverse operator contains of an arm at some points, arrays of one shape.
-
-    nu: stretch at rest; c2, c3: compliances of shear and bending; gamma2, gamma3: drags; g = nu + F c2.
-    """
-
-    nu: Array
-    c2: Array
-    c3: Array
-    gamma2: Array
-    gamma3: Array
-    g: Array
 
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
@@ -97,9 +80,9 @@ def with_parameters(cls: type[Decorated]) -> type[Decorated]:
 class Rod:
     """A rod under its follower force: one point of parameter space, with every parameter of the table.
 
-    The annotations are those that code asks for by name; the others are fields too. law, section: a key of
-    `LAWS`. profile: factors along the arm, or None. Raises ValueError for a parameter outside the range that the
-    table states and for an unknown law, Crushed for F >= `crushing_force`.
+    The annotations are those that code asks for by name; the others are fields too. build: constitutive law,
+    taper and profile. Raises ValueError for a parameter outside the range that the table states, Crushed
+    for a force that is not below `crushing_force`.
     """
 
     F: float
@@ -107,10 +90,7 @@ class Rod:
     k2: float
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral
-    taper: float = PARAMETERS["taper"].neutral
-    law: str = LINEAR.law
-    section: str = LINEAR.section
-    profile: Profile | None = None
+    build: Build = field(default=STANDARD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
     _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)
@@ -122,97 +102,49 @@ class Rod:
             if not contains(value):
                 PARAMETERS[name].require(value)
         object.__setattr__(self, "values", values)
-        coefficients = None
-        if self.standard:
-            coefficients = coefficients_of(values)
-            if not coefficients.nu > 0:
-                raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
-        else:
-            law_of(self.law, self.section)
-            if not self.F < self.crushing_force:
-                raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes this arm")
+        coefficients = coefficients_of(values) if self.build.standard else None
         object.__setattr__(self, "_coefficients", coefficients)
-
-    @property
-    def uniform(self) -> bool:
-        """Whether stiffnesses and drags are constant along the arm."""
-        return self.taper == 1 and self.profile is None
-
-    @property
-    def standard(self) -> bool:
-        """Whether the rod is uniform and of linear material: what `coefficients` describe."""
-        return self.taper == 1 and self.profile is None and self.law == "linear"
+        if coefficients is None and not self.crushing_force > self.F:
+            raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes the arm")
+        if coefficients is not None and not coefficients.nu > 0:
+            raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
 
     @property
     def coefficients(self) -> Coefficients:
-        """What the transverse operator contains of this rod, as floats; NotUniform where that varies."""
+        """Coefficients of the transverse operator; NotUniform where they vary or the law is not linear."""
         if self._coefficients is None:
             raise NotUniform(f"{self} is no uniform rod of linear material")
         return self._coefficients
 
-    @property
-    def constitutive_law(self) -> Law:
-        """The law that `law` and `section` name."""
-        return LAWS[self.law, self.section]
+    def local(self, u: Array) -> LocalCoefficients:
+        """Coefficients of the transverse operator at points u that are no break of the profile."""
+        return self.build.local(self.F, scaled(self.values), u)
 
     @property
     def crushing_force(self) -> float:
-        """The force that crushes the arm where it is weakest, in k3/L^2; inf where none does."""
-        largest = self.constitutive_law.largest_load
-        return largest * self.stretch_stiffness * self._least_stretch_factor if largest < inf else inf
-
-    @property
-    def _least_stretch_factor(self) -> float:
-        """A lower bound of the factor of k1 along the arm, sharp without a profile."""
-        cone = min(1.0, self.taper**2)
-        return cone if self.profile is None else cone * min(row[0] for row in self.profile.rows)
-
-    @property
-    def breaks(self) -> Array:
-        """The u between which all coefficients are smooth, increasing, both ends included."""
-        return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
-
-    def local(self, u: Array) -> LocalCoefficients:
-        """The coefficients at points of the arm that are no break, each of the shape of u."""
-        radius = 1 - (1 - self.taper) * u
-        own = scaled(self.values)
-        factor = dict(zip(FACTORS, np.ones((len(FACTORS), *u.shape)), strict=True))
-        if self.profile is not None:
-            factor = dict(zip(FACTORS, self.profile.factors(u), strict=True))
-        for name, power in RADIUS_POWERS.items():
-            factor[name] = factor[name] * radius**power
-        law = self.constitutive_law
-        nu = 1 - law.shortening(self.F / (own["k1"] * factor["k1"]))
-        c2 = 1 / (own["k2"] * factor["k2"])
-        c3 = 1 / (factor["k3"] * law.bending(nu))
-        return LocalCoefficients(
-            nu, c2, c3, factor["gamma2"], own["gamma3"] * factor["gamma3"], nu + self.F * c2
-        )
+        """The force that crushes the arm where it is weakest, in k3/L^2; inf where no force does."""
+        return self.build.crushing_share * self.stretch_stiffness
 
     @property
     def equivalent(self) -> tuple["Rod", float]:
-        """(a rod of linear material, rate): the eigenvalues of this uniform rod are `rate` times those of that.
+        """(linear rod, rate): the eigenvalues of a uniform rod of any law are `rate` times those of that rod.
 
         With K = B(nu) the coefficients (F/K, nu, c2 K, gamma3) are those of a linear rod, whose time runs K
         times as fast. NotUniform for an arm that varies.
         """
-        if not self.uniform:
+        if not self.build.uniform:
             raise NotUniform(f"{self} is not uniform")
-        if self.law == "linear":
-            return self, 1.0
-        own = scaled(self.values)
-        law = self.constitutive_law
+        law = self.build.constitutive_law
         shortening = float(law.shortening(self.F * self.c1))
         K = float(law.bending(1 - shortening))
         F = self.F / K
-        k1 = own["k1"] / K if shortening == 0 else F / shortening
-        return Rod(F=F, k1=k1, k2=own["k2"] / K, gamma3=own["gamma3"]), K
+        k1 = F / shortening if shortening else self.stretch_stiffness / K
+        return Rod(F=F, k1=k1, k2=1 / (self.c2 * K) if self.c2 else inf, gamma3=self.rotational_drag), K
 
     @property
     def linear(self) -> "Rod":
         """The rod with the same straight state: parameters that only cycles depend on have their defaults."""
-        shared = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *MATERIAL)
-        return Rod(**{name: getattr(self, name) for name in shared})
+        return Rod(**{name: getattr(self, name) for name in LINEAR_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:
         """Where the rod stands along a parameter: 1/k of a stiffness k, or the value."""
@@ -224,9 +156,8 @@ class Rod:
 
     def changed(self, **values: float) -> "Rod":
         """The rod with other values of some parameters; ValueError where the model has none."""
-        if self.standard:
-            return Rod(**{**self.values, **values})  # `dataclasses.replace` takes a third longer
-        return Rod(**{**self.values, **{name: getattr(self, name) for name in MATERIAL}, **values})
+        # `dataclasses.replace` takes a third longer.
+        return Rod(**{**self.values, **values}, build=self.build)
 
     @property
     def stretch_stiffness(self) -> float:

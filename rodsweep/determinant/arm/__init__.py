@@ -1,1 +1,1 @@
-"""D(w) of arms that are not uniform: from the propagators of their elements, with roots, counts and errors."""
+"""D(w) of arms that are not uniform, from the propagators of their elements."""

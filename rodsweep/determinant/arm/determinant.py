@@ -1,8 +1,8 @@
 """D(w) of one arm at any w: elements that suit the size of w, made when they are first needed.
 
-The propagators of an element are polynomials in w/W, good for |w| <= W. Levels W = 4^k have elements of their own:
-short enough that the fastest local exponential grows by exp(`LONGEST`) at most, that the coefficients are resolved
-by the Gauss points, and nowhere across a break of the profile.
+The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements.
+They are so short that the fastest local exponential grows by exp(`LONGEST`) at most and that the Gauss
+points resolve the coefficients; a break of the profile is always an end of an element.
 """
 
 import math
@@ -10,9 +10,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...model.rod import LocalCoefficients, Rod
+from ...model.material.build import LocalCoefficients
+from ...model.rod import Rod
 from ..value import Value
 from .propagators import STAGES, element_propagators, gauss_method, tail_of
 from .value import chain_value
@@ -24,12 +26,12 @@ TO_THE_TIP = 0.5
 RESOLVED = 1e-9
 """Tail of the coefficients' Legendre series, relative, above which an element is halved. The error of a Gauss
 method is about the square of the tail."""
-MOST_HALVINGS = 12
+MAX_HALVINGS = 12
 SAMPLES = 33
 """Points between two breaks at which the local exponents are looked up."""
-LEAST_LEVEL = 2
+MIN_LEVEL = 2
 """The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
-MOST_ELEMENTS = 4000
+MAX_ELEMENTS = 4000
 KEPT = 16
 """Arms whose propagators are kept."""
 
@@ -42,19 +44,19 @@ class LocalWaves(NamedTuple):
 
 
 class ArmDeterminant:
-    """D(w) of one arm."""
+    """D(w) of one arm; raises FloatingPointError where no `MAX_ELEMENTS` elements resolve it."""
 
     def __init__(self, rod: Rod):
         self.rod = rod
         self._levels: dict[int, tuple[float, Array]] = {}
-        breaks = rod.breaks
+        breaks = rod.build.breaks
         inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
         self._points: Array = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
         self._weights: Array = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
         self._local = rod.local(self._points)
 
     def value(self, w: complex) -> Value:
-        """D and D' = dD/dw at w, times exp(-S). Raises FloatingPointError where the arm cannot be resolved."""
+        """D and D' = dD/dw at w, times exp(-S)."""
         W, polynomials = self._level(abs(w))
         return chain_value(complex(w), W, polynomials)
 
@@ -76,7 +78,9 @@ class ArmDeterminant:
 
     def _level(self, size: float) -> tuple[float, Array]:
         """(W, propagators) for |w| = size."""
-        level = LEAST_LEVEL if size <= 4.0**LEAST_LEVEL else math.ceil(math.log(size) / math.log(4) - 1e-12)
+        level = MIN_LEVEL
+        if size > 4.0**MIN_LEVEL:
+            level = math.ceil(math.log(size) / math.log(4) - 1e-12)
         if level not in self._levels:
             W = max(4.0**level, size)
             self._levels[level] = W, self._propagators(W)
@@ -85,8 +89,8 @@ class ArmDeterminant:
     def _propagators(self, W: float) -> Array:
         edges = self._edges(W)
         points, _, _ = gauss_method(STAGES)
-        for _ in range(MOST_HALVINGS):
-            if not len(edges) <= MOST_ELEMENTS:
+        for _ in range(MAX_HALVINGS):
+            if not len(edges) <= MAX_ELEMENTS:
                 break
             lengths = np.diff(edges)
             local = self.rod.local(edges[:-1, None] + lengths[:, None] * points)
@@ -95,18 +99,18 @@ class ArmDeterminant:
                 return element_propagators(self.rod.F, local, lengths, W)
             middles = (edges[:-1] + edges[1:])[coarse] / 2
             edges = np.sort(np.append(edges, middles))
-        raise FloatingPointError(f"no {MOST_ELEMENTS} elements resolve this arm at |w| = {W:g}")
+        raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
 
     def _edges(self, W: float) -> Array:
         """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
         density = bound_of_waves(W, self.rod.F, self._local) / LONGEST
-        if self.rod.taper != 1:
-            apex = 1 / (1 - self.rod.taper)
+        if self.rod.build.taper != 1:
+            apex = 1 / (1 - self.rod.build.taper)
             density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - self._points)))
         edges = [np.zeros(1)]
-        for start, stop, share in zip(
-            self.rod.breaks[:-1], self.rod.breaks[1:], np.split(density, len(self.rod.breaks) - 1), strict=True
-        ):
+        breaks = self.rod.build.breaks
+        shares = np.split(density, len(breaks) - 1)
+        for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
             mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
             count = max(1, math.ceil(mass[-1]))
             places = np.linspace(start, stop, SAMPLES + 1)
@@ -115,9 +119,7 @@ class ArmDeterminant:
         return np.concatenate(edges)
 
 
-def _as_uniform(
-    w: complex | float, F: float, local: LocalCoefficients
-) -> tuple[complex | Array, Array, Array, Array]:
+def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
     """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that the arm is at each point."""
     return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
 
@@ -139,7 +141,9 @@ def local_waves(w: complex, F: float, local: LocalCoefficients) -> LocalWaves:
     turn = np.where(P == 0, 0, (local.g * local.nu + 2 * X * v) / np.where(P == 0, 1, P))
     # Where both squares are close D depends on P^2, which has no branch point, and not on P.
     turn = turn * np.minimum(1.0, np.abs(P) / np.maximum(1.0, np.maximum(*roots)))
-    rates = [np.abs(T + s * turn) / (2 * np.maximum(1.0, root)) for s, root in zip((1, -1), roots, strict=True)]
+    rates = [
+        np.abs(T + sign * turn) / (2 * np.maximum(1.0, q)) for sign, q in ((1, roots[0]), (-1, roots[1]))
+    ]
     return LocalWaves((roots[0] + roots[1]) / 2, np.maximum(*rates) * local.gamma2 * local.c3)
 
 

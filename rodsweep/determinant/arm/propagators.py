@@ -1,14 +1,14 @@
 """Propagators of the transverse problem over elements of a non-uniform arm, as polynomials in w.
 
-With the state X = (y, theta, s, m) the eigenproblem of an arm with profiles reads (physics: the arm as it is
-built)
+With the state X = (y, theta, s, m) the eigenproblem of an arm with profiles reads (physics: the arm as it
+is built)
 
     y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
 
-Over one element X(b) = Phi(w) X(a), with Phi entire in w. Its Taylor polynomials in w come from collocation at
-the Gauss points of the element (a Gauss method of `stages` stages): coefficients are sampled there alone, so that
-any profile and law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1), in which (s, m) is
-solved for first, then theta and y by quadrature.
+Over one element X(b) = Phi(w) X(a), with Phi entire in w. Its Taylor polynomial in w comes from collocation
+at the Gauss points of the element. Coefficients are sampled at these points alone, so that any profile and
+law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a linear system gives (s, m), then
+quadrature gives theta and y.
 """
 
 from functools import cache
@@ -16,11 +16,11 @@ from functools import cache
 import numpy as np
 
 from ...arrays import Array
-from ...model.rod import LocalCoefficients
+from ...model.material.build import LocalCoefficients
 
 STAGES = 12
 """Gauss points of an element. Ten leave 1e-17 of exp(2.4); two more cover what the coefficients vary."""
-MOST_TERMS = 24
+MAX_TERMS = 24
 NEGLIGIBLE = 1e-18
 """Most terms in w/W, and the size of a term, relative to the first one, behind which none is needed."""
 
@@ -39,9 +39,7 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
     return (x + 1) / 2, integrals / 2, weights / 2
 
 
-def element_propagators(
-    F: float, local: LocalCoefficients, lengths: Array, W: float
-) -> Array:
+def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: float) -> Array:
     """The coefficients of Phi in powers of w/W, shape (elements, terms, 4, 4).
 
     local: at the Gauss points, each (elements, stages). lengths: of the elements, in L, (elements,).
@@ -59,7 +57,7 @@ def element_propagators(
     y: Array = np.zeros((elements, stages, 4))
     theta: Array = np.zeros((elements, stages, 4))
     start = np.eye(4)  # the initial values belong to the term of w^0
-    while len(terms) < MOST_TERMS:
+    while len(terms) < MAX_TERMS:
         push, turn = W * gamma2 * y, W * gamma3 * theta
         right = np.concatenate([start[2] + h * (Q @ push), start[3] + h * (Q @ turn)], axis=1)
         solved = inverse @ right
@@ -81,5 +79,7 @@ def tail_of(local: LocalCoefficients) -> Array:
     stages = local.nu.shape[-1]
     x, weights = np.polynomial.legendre.leggauss(stages)
     last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
-    tails = [np.abs(values * weights @ last).max(axis=-1) / np.abs(values).max(axis=-1) for values in local[:5]]
+    tails = [
+        np.abs(values * weights @ last).max(axis=-1) / np.abs(values).max(axis=-1) for values in local[:5]
+    ]
     return np.nan_to_num(np.max(tails, axis=0))

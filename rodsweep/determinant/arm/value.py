@@ -1,17 +1,18 @@
 """D(w) of an arm from the propagators of its elements: two columns, kept orthonormal from clamp to tip.
 
-D is the determinant of the (s, m) x (s, m) block of the product of all propagators. The product itself loses
-all digits where exponentials grow, its action on the plane of the two clamped solutions does not: after each
-element the two columns are made orthonormal, and the logarithm of the determinant of what that takes away,
-which is real and positive, is added up. Of the derivative of the columns by w only what leaves their plane enters
-the next element; the rest is a logarithmic derivative of D, added up too.
+D is the determinant of the (s, m) x (s, m) block of the product of all propagators. The product loses all
+digits where exponentials grow, but its action on the plane of the two clamped solutions does not. After
+each element the two columns are made orthonormal; the factor R of this QR decomposition has a real positive
+determinant, whose logarithm is summed. The derivative of the columns by w is projected onto the complement
+of their plane; the trace of the removed part is a logarithmic derivative of D and is summed, too. Without
+the projection the derivative grows like the fastest exponential and D' loses its digits.
 """
 
 import math
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ..value import Value
 
@@ -20,7 +21,7 @@ UNIT = 4.440892098500626e-16
 
 
 @compiled
-def _applied(polynomial: Array, z: complex, Q: Array, T: Array, out_Q: Array, out_T: Array) -> None:
+def _applied(polynomial: Array, z: complex, Q: Complex, T: Complex, out_Q: Complex, out_T: Complex) -> None:
     """out_Q = Phi Q and out_T = Phi T + Phi' Q at z, all (4, 2); polynomial: (terms, 4, 4)."""
     terms = polynomial.shape[0]
     for i in range(4):
@@ -38,7 +39,7 @@ def _applied(polynomial: Array, z: complex, Q: Array, T: Array, out_Q: Array, ou
 
 
 @compiled
-def _inner(A: Array, i: int, B: Array, j: int) -> complex:
+def _inner(A: Complex, i: int, B: Complex, j: int) -> complex:
     """The inner product of column i of A and column j of B."""
     total = 0j
     for row in range(4):
@@ -47,7 +48,7 @@ def _inner(A: Array, i: int, B: Array, j: int) -> complex:
 
 
 @compiled
-def _orthonormal(Q: Array, T: Array) -> tuple[float, complex]:
+def _orthonormal(Q: Complex, T: Complex) -> tuple[float, complex]:
     """Makes the columns of Q orthonormal and those of T orthogonal to them, in place.
 
     Returns (log of the determinant taken off Q, trace of what is taken off T in the plane of Q).

@@ -1,12 +1,12 @@
-"""Constitutive laws: the energy of a rod per reference length, and what equilibria and small motions need of it.
+"""Constitutive laws: the energy of a rod per reference length, its derivatives, and the straight state.
 
-A law states U(h1, h2, kappa) = k1 W(h1) + k2 h2^2/2 + k3 B(h1) kappa^2/2 by the stretch energy W and the bending
-factor B, with W'(1) = 0, W''(1) = B(1) = 1: stiffnesses keep their meaning in the undeformed rod. A straight
-rod that carries the stress n1 = -F has the stretch nu with k1 W'(nu) = -F. The transverse linear problem
-contains the law through nu and B(nu) alone: kappa = 0 at rest, so that B' enters no linear term.
+A law is U(h1, h2, kappa) = k1 W(h1) + k2 h2^2/2 + k3 B(h1) kappa^2/2 with the stretch energy W and the
+bending factor B, where W'(1) = 0 and W''(1) = B(1) = 1: stiffnesses keep their meaning in the undeformed
+rod. The stretch nu of a straight rod under the stress n1 = -F solves k1 W'(nu) = -F. The transverse linear
+problem contains the law through nu and B(nu) alone: kappa = 0 at rest, so that B' enters no linear term.
 
-The laws are those of `physics`: a linear one, and an incompressible neo-Hookean one whose cross-section either
-keeps its size or swells as the rod shortens.
+Incompressible neo-Hookean rubber has two variants. The cross-section keeps its size, or it swells as the
+rod shortens: a fibre at the distance Y is stretched by h1 - Y h1^(-1/2) kappa.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ import numpy as np
 Values = Any
 """A float, or an array of floats of any shape."""
 
-MOST_STEPS = 60
+MAX_STEPS = 60
 """Newton steps for the compression of a neo-Hookean rod; the iteration converges in at most eight."""
 
 
@@ -40,8 +40,6 @@ class Law:
     bending_slope: Callable[[Values], Values]
     shortening: Callable[[Values], Values]
     largest_load: float = np.inf
-    sentence: str = ""
-    """The material and its section, as `check` names them."""
 
 
 def _neo_hookean_shortening(x: Values) -> Values:
@@ -49,7 +47,7 @@ def _neo_hookean_shortening(x: Values) -> Values:
     x = np.asarray(x, dtype=float)
     # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0.
     nu = np.where(x > 0.5, 1 / np.sqrt(3 * np.maximum(x, 0.5)), np.where(x < 0, 1 - 3 * x, 1.0))
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         step = (nu**3 + 3 * x * nu**2 - 1) / (3 * nu**2 + 6 * x * nu)
         nu = nu - step
         if (np.abs(step) <= 1e-15 * nu).all():
@@ -79,7 +77,6 @@ LINEAR = Law(
     bending_slope=_zeros,
     shortening=lambda x: x,
     largest_load=1.0,
-    sentence="a linear material",
 )
 NEO_HOOKEAN = Law(
     law="neo_hookean",
@@ -90,7 +87,6 @@ NEO_HOOKEAN = Law(
     bending=_ones,
     bending_slope=_zeros,
     shortening=_neo_hookean_shortening,
-    sentence="neo-Hookean rubber",
 )
 SWELLING = Law(
     law="neo_hookean",
@@ -101,7 +97,6 @@ SWELLING = Law(
     bending=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
     shortening=_neo_hookean_shortening,
-    sentence="neo-Hookean rubber with a swelling section",
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
 """All laws by name and section."""
@@ -114,5 +109,6 @@ def law_of(law: str, section: str) -> Law:
         if not sections:
             known = " or ".join(dict.fromkeys(name for name, _ in LAWS))
             raise ValueError(f"law = {law} is none of the known laws; it must be {known}")
-        raise ValueError(f"section = {section} is not known for law = {law}; it must be {' or '.join(sections)}")
+        known = " or ".join(sections)
+        raise ValueError(f"section = {section} is not known for law = {law}; it must be {known}")
     return LAWS[law, section]

@@ -1,9 +1,9 @@
 """Profiles along the arm: factors of stiffnesses and drags as functions of the material coordinate u.
 
-A profile is a table. Between two rows each factor is a monotone cubic (Fritsch and Carlson, 1980), which stays
-between the values of its ends; two rows at one u are a jump. A taper t multiplies the factors by those of a
-circular cone of radius r(u) = 1 - (1 - t) u: k1, k2 ~ r^2, k3 ~ r^4, gamma3 ~ r^2, while gamma1 and gamma2 stay
-constant but for a logarithm, which is left out.
+A profile is a table. Between two rows each factor is a monotone cubic (Fritsch and Carlson, 1980), which
+stays between its end values; two rows at one u are a jump. A taper t multiplies the factors by those of a
+circular cone of radius r(u) = 1 - (1 - t) u: k1, k2 ~ r^2, k3 ~ r^4, gamma3 ~ r^2. The drags gamma1 and
+gamma2 of a cone vary only by a logarithm, which is neglected.
 """
 
 from dataclasses import dataclass
@@ -39,11 +39,13 @@ class Profile:
         for number, value in enumerate(self.u):
             if self.u.count(value) > (1 if value in (0, 1) else 2):
                 most = "one row" if value in (0, 1) else "two rows, which are a jump"
-                raise ValueError(f"there are {self.u.count(value)} rows at u = {value:g}; there may be {most}")
+                raise ValueError(
+                    f"there are {self.u.count(value)} rows at u = {value:g}; there may be {most}"
+                )
             for name, factor in zip(FACTORS, self.rows[number], strict=True):
                 if not 0 < factor < np.inf:
                     raise ValueError(
-                        f"the factor of {name} at u = {value:g} is {factor:g}; it must be a finite number above 0"
+                        f"the factor of {name} at u = {value:g} is {factor:g}; it must be finite and above 0"
                     )
 
     @cached_property
@@ -77,7 +79,7 @@ class Profile:
 
 
 def _monotone_slopes(u: Array, values: Array) -> Array:
-    """Slopes at rows that keep cubics between them monotone, (rows, factors): harmonic means, one-sided ends."""
+    """Slopes at rows, (rows, factors), that keep the cubics between them monotone."""
     h = np.diff(u)[:, None]
     chords = np.diff(values, axis=0) / h
     slopes = np.zeros_like(values)
@@ -89,7 +91,9 @@ def _monotone_slopes(u: Array, values: Array) -> Array:
         inner = (w1 + w2) / (w1 / chords[:-1] + w2 / chords[1:])
     slopes[1:-1] = np.where(same, inner, 0.0)
     for end, near, next_one in ((0, 0, 1), (-1, -1, -2)):
-        slope = ((2 * h[near] + h[next_one]) * chords[near] - h[near] * chords[next_one]) / (h[near] + h[next_one])
+        slope = ((2 * h[near] + h[next_one]) * chords[near] - h[near] * chords[next_one]) / (
+            h[near] + h[next_one]
+        )
         slope = np.where(slope * chords[near] <= 0, 0.0, slope)
         turns = chords[near] * chords[next_one] <= 0
         slopes[end] = np.where(turns & (np.abs(slope) > 3 * np.abs(chords[near])), 3 * chords[near], slope)
