@@ -125,14 +125,14 @@ def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray
 
 
 def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
-    """An upper bound of |q| at the points for all |w| <= W."""
+    """An upper bound of |q| for all |w| <= W, at the points of `local`, shape (points,)."""
     w, force, c2, gamma3 = _as_uniform(W, F, local)
     square = w * (np.abs(local.g) * local.nu + c2 * gamma3 * w)
     return np.sqrt((c2 + gamma3) * w + np.abs(force * local.g) + 2 * np.sqrt(square))
 
 
 def local_waves(w: complex, F: float, local: LocalCoefficients) -> LocalWaves:
-    """The mean |q| of both pairs of exponents at the points, and the larger |dq/dw|; w != 0."""
+    """Mean |q| of both pairs of exponents and the larger |dq/dw|, each (points,); w != 0."""
     v, force, c2, gamma3 = _as_uniform(w, F, local)
     T, X = c2 + gamma3, c2 * gamma3
     P = np.sqrt(v * (local.g * local.nu + X * v) + 0j)

@@ -23,6 +23,8 @@ STAGES = 12
 MAX_TERMS = 24
 NEGLIGIBLE = 1e-18
 """Most terms in w/W, and the size of a term, relative to the first one, behind which none is needed."""
+TINY = 1e-300
+"""Divisor in place of 0."""
 
 
 @cache
@@ -79,7 +81,9 @@ def tail_of(local: LocalCoefficients) -> Array:
     stages = local.nu.shape[-1]
     x, weights = np.polynomial.legendre.leggauss(stages)
     last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
-    tails = [
-        np.abs(values * weights @ last).max(axis=-1) / np.abs(values).max(axis=-1) for values in local[:5]
-    ]
-    return np.nan_to_num(np.max(tails, axis=0))
+    tails = []
+    for values in local[:5]:
+        size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
+        tails.append(np.abs(values * weights @ last).max(axis=-1) / size)
+    largest: Array = np.max(tails, axis=0)
+    return largest

@@ -77,7 +77,7 @@ def _orthonormal(Q: Complex, T: Complex) -> tuple[float, complex]:
 
 @compiled
 def chain_value(w: complex, W: float, polynomials: Array) -> Value:
-    """D and D' = dD/dw times exp(-S), from the propagators for |w| <= W, (elements, terms, 4, 4)."""
+    """D and D' = dD/dw times exp(-S), from propagators for |w| <= W, shape (elements, terms, 4, 4)."""
     z = w / W
     Q, T = np.zeros((4, 2), np.complex128), np.zeros((4, 2), np.complex128)
     next_Q, next_T = np.empty((4, 2), np.complex128), np.empty((4, 2), np.complex128)

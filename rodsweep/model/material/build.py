@@ -74,11 +74,14 @@ class Build:
 
     @cached_property
     def breaks(self) -> Array:
-        """The u between which all coefficients are smooth, increasing, both ends included."""
+        """The u between which all coefficients are smooth, increasing, both ends included, (breaks,)."""
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
     def local(self, F: float, at_base: Mapping[str, float], u: Array) -> LocalCoefficients:
-        """Coefficients at points that are no break, under the force F; at_base: parameters at u = 0."""
+        """Coefficients at points u, any shape (...,), under the force F; at_base: parameters at u = 0.
+
+        No point may be a break of the profile.
+        """
         ones: Array = np.ones((len(FACTORS), *u.shape))
         factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))
         radius = 1 - (1 - self.taper) * u

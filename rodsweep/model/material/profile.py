@@ -50,7 +50,7 @@ class Profile:
 
     @cached_property
     def breaks(self) -> Array:
-        """The u between which all factors are smooth, increasing, both ends included."""
+        """The u between which all factors are smooth, increasing, both ends included, (breaks,)."""
         return np.unique(self.u)
 
     @cached_property

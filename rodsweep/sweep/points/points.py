@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,4 +97,5 @@ class Points:
 
         Raises Crushed.
         """
-        return Rod(**{**NEUTRAL, **self.values(index), **beside})
+        parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
+        return Rod(**parameters)
