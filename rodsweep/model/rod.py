@@ -117,7 +117,7 @@ class Rod:
         return self._coefficients
 
     def local(self, u: Array) -> LocalCoefficients:
-        """Coefficients of the transverse operator at points u, (points,), that are no break of the profile."""
+        """Coefficients of the transverse operator at points u, (points,), none of them a break."""
         return self.build.local(self.F, scaled(self.values), u)
 
     @property
