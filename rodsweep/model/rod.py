@@ -11,7 +11,9 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from ..arrays import Array
 from .balance import Material, first_component
+from .material.build import STANDARD, Build, LocalCoefficients
 from .parameters import LINEAR_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
 
 Decorated = TypeVar("Decorated")
@@ -20,7 +22,11 @@ ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.
 
 
 class Crushed(ValueError):
-    """The refusal of a rod whose force is not below its stretch stiffness."""
+    """The refusal of a rod whose force is not below the force that crushes it."""
+
+
+class NotUniform(ValueError):
+    """The refusal to state constant coefficients of an arm that varies or whose law is not linear."""
 
 
 class Coefficients(NamedTuple):
@@ -74,8 +80,9 @@ def with_parameters(cls: type[Decorated]) -> type[Decorated]:
 class Rod:
     """A rod under its follower force: one point of parameter space, with every parameter of the table.
 
-    The annotations are those that code asks for by name; the others are fields too. Raises ValueError for a
-    parameter outside the range that the table states, Crushed for F >= k1.
+    The annotations are those that code asks for by name; the others are fields too. build: constitutive law,
+    taper and profile. Raises ValueError for a parameter outside the range that the table states, Crushed
+    for a force that is not below `crushing_force`.
     """
 
     F: float
@@ -83,10 +90,10 @@ class Rod:
     k2: float
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral
+    build: Build = field(default=STANDARD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
-    coefficients: Coefficients = field(init=False, repr=False, compare=False)
-    """What the transverse operator contains of this rod, as floats."""
+    _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         values: dict[str, float] = {}
@@ -94,16 +101,50 @@ class Rod:
             values[name] = value = getattr(self, name)
             if not contains(value):
                 PARAMETERS[name].require(value)
-        coefficients = coefficients_of(values)
-        if not coefficients.nu > 0:
-            raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
         object.__setattr__(self, "values", values)
-        object.__setattr__(self, "coefficients", coefficients)
+        coefficients = coefficients_of(values) if self.build.standard else None
+        object.__setattr__(self, "_coefficients", coefficients)
+        if coefficients is None and not self.crushing_force > self.F:
+            raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes the arm")
+        if coefficients is not None and not coefficients.nu > 0:
+            raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
+
+    @property
+    def coefficients(self) -> Coefficients:
+        """Coefficients of the transverse operator; NotUniform where they vary or the law is not linear."""
+        if self._coefficients is None:
+            raise NotUniform(f"{self} is no uniform rod of linear material")
+        return self._coefficients
+
+    def local(self, u: Array) -> LocalCoefficients:
+        """Coefficients of the transverse operator at points u, (points,), none of them a break."""
+        return self.build.local(self.F, scaled(self.values), u)
+
+    @property
+    def crushing_force(self) -> float:
+        """The force that crushes the arm where it is weakest, in k3/L^2; inf where no force does."""
+        return self.build.crushing_share * self.stretch_stiffness
+
+    @property
+    def equivalent(self) -> tuple["Rod", float]:
+        """(linear rod, rate): the eigenvalues of a uniform rod of any law are `rate` times those of that rod.
+
+        With K = B(nu) the coefficients (F/K, nu, c2 K, gamma3) are those of a linear rod, whose time runs K
+        times as fast. NotUniform for an arm that varies.
+        """
+        if not self.build.uniform:
+            raise NotUniform(f"{self} is not uniform")
+        law = self.build.constitutive_law
+        shortening = float(law.shortening(self.F * self.c1))
+        K = float(law.bending(1 - shortening))
+        F = self.F / K
+        k1 = F / shortening if shortening else self.stretch_stiffness / K
+        return Rod(F=F, k1=k1, k2=1 / (self.c2 * K) if self.c2 else inf, gamma3=self.rotational_drag), K
 
     @property
     def linear(self) -> "Rod":
         """The rod with the same straight state: parameters that only cycles depend on have their defaults."""
-        return Rod(**{name: getattr(self, name) for name in LINEAR_PARAMETERS})
+        return Rod(**{name: getattr(self, name) for name in LINEAR_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:
         """Where the rod stands along a parameter: 1/k of a stiffness k, or the value."""
@@ -115,7 +156,8 @@ class Rod:
 
     def changed(self, **values: float) -> "Rod":
         """The rod with other values of some parameters; ValueError where the model has none."""
-        return Rod(**{**self.values, **values})  # `dataclasses.replace` takes a third longer
+        # `dataclasses.replace` takes a third longer.
+        return Rod(**{**self.values, **values}, build=self.build)
 
     @property
     def stretch_stiffness(self) -> float:
@@ -130,7 +172,7 @@ class Rod:
     @property
     def c2(self) -> float:
         """Shear compliance; 0 for an unshearable rod."""
-        return self.coefficients.c2
+        return 1 / float(scaled(self.values)["k2"])
 
     @property
     def nu(self) -> float:
@@ -145,7 +187,7 @@ class Rod:
     @property
     def rotational_drag(self) -> float:
         """Drag on the angular velocity, in gamma2 L^2."""
-        return self.coefficients.gamma3
+        return float(scaled(self.values)["gamma3"])
 
     @property
     def axial_drag(self) -> float:

@@ -14,7 +14,7 @@ from rodsweep.results.layouts.variables import DIMENSIONS
 
 
 def test_the_rod_has_all_parameters():
-    assert tuple(field.name for field in fields(Rod) if field.init) == NONLINEAR_PARAMETERS
+    assert tuple(field.name for field in fields(Rod) if field.init) == (*NONLINEAR_PARAMETERS, "build")
     assert NONLINEAR_PARAMETERS[:4] == LINEAR_PARAMETERS
     assert all_but("F") == LINEAR_PARAMETERS[1:]
     assert set(CRUSHING) <= set(LINEAR_PARAMETERS)

@@ -9,6 +9,7 @@ often it was interrupted.
 
 from dataclasses import dataclass
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 
@@ -86,7 +87,8 @@ class Neighbour:
     def from_arrays(cls, arrays: Arrays) -> "Neighbour":
         """The reverse of `arrays`, of the shapes given there."""
         here, there = (OrbitMesh(*map(int, arrays[name])) for name in ("mesh", "next_mesh"))
-        rod = Rod(**dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True)))
+        parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
+        rod = Rod(**parameters)
         symmetry = REFLECTION if arrays["symmetric"] else NONE
         form = StressForm(rod, here.grid)
         orbit = Orbit(form, symmetry, here.intervals, here.stages, arrays["orbit"])

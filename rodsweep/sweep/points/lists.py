@@ -4,7 +4,7 @@ import csv
 from array import array
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -80,8 +80,9 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
+    parameters: dict[str, Any] = {**NEUTRAL, **dict(zip(header, numbers, strict=True))}
     try:
-        Rod(**{**NEUTRAL, **dict(zip(header, numbers, strict=True))})
+        Rod(**parameters)
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
     return numbers

@@ -5,6 +5,7 @@ Rods are made on demand: a grid takes the memory of the axes only.
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,4 +103,5 @@ class Points:
 
         Raises Crushed.
         """
-        return Rod(**{**NEUTRAL, **self.values(index), **beside})
+        parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
+        return Rod(**parameters)

@@ -83,7 +83,7 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: arrays of all wanted units, shapes as in `TracedHalf`."""
+        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
         plane = self.plane
         if plane is None:
             return []
@@ -121,7 +121,9 @@ class DiagramCurves:
         if len(finite) < 2:
             return None
         axes = self.task.config.parameters.axes
-        not_crushed = {name: float(axis.array()[-1 if name == "k1" else 0]) for name, axis in axes.items()}
+        not_crushed: dict[str, Any] = {
+            name: float(axis.array()[-1 if name == "k1" else 0]) for name, axis in axes.items()
+        }
         abscissa, ordinate = (
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
             for name, values in ((line, self.task.line), (row, finite))

@@ -47,8 +47,9 @@ class HopfLine:
             start = max(start, self.fixed["F"] / (1 - SHORT_OF_CRUSHED))
         if not start < stop:
             return None
+        at_start: dict[str, Any] = self.fixed | {self.name: start}
         try:
-            return pair_crossings(Path(Rod(**self.fixed, **{self.name: start}), self.name), start, stop)
+            return pair_crossings(Path(Rod(**at_start), self.name), start, stop)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
 

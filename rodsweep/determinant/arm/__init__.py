@@ -1,0 +1,1 @@
+"""D(w) of arms that are not uniform, from the propagators of their elements."""

@@ -1,0 +1,153 @@
+"""D(w) of one arm at any w: elements that suit the size of w, made when they are first needed.
+
+The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements.
+They are so short that the fastest local exponential grows by exp(`LONGEST`) at most and that the Gauss
+points resolve the coefficients; a break of the profile is always an end of an element.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...model.material.build import LocalCoefficients
+from ...model.rod import Rod
+from ..value import Value
+from .propagators import STAGES, element_propagators, gauss_method, tail_of
+from .value import chain_value
+
+LONGEST = 2.4
+"""Largest |q| h of an element: twelve stages integrate exp(2.4) to 1e-17."""
+TO_THE_TIP = 0.5
+"""Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
+RESOLVED = 1e-9
+"""Tail of the coefficients' Legendre series, relative, above which an element is halved. The error of a Gauss
+method is about the square of the tail."""
+MAX_HALVINGS = 12
+SAMPLES = 33
+"""Points between two breaks at which the local exponents are looked up."""
+MIN_LEVEL = 2
+"""The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
+MAX_ELEMENTS = 4000
+KEPT = 16
+"""Arms whose propagators are kept."""
+
+
+class LocalWaves(NamedTuple):
+    """|q| of the fastest exponential at points of the arm, and |dq/dw|, each of the shape of the points."""
+
+    number: Array
+    rate: Array
+
+
+class ArmDeterminant:
+    """D(w) of one arm; raises FloatingPointError where no `MAX_ELEMENTS` elements resolve it."""
+
+    def __init__(self, rod: Rod):
+        self.rod = rod
+        self._levels: dict[int, tuple[float, Array]] = {}
+        breaks = rod.build.breaks
+        inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        self._points: Array = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
+        self._weights: Array = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
+        self._local = rod.local(self._points)
+
+    def value(self, w: complex) -> Value:
+        """D and D' = dD/dw at w, times exp(-S)."""
+        W, polynomials = self._level(abs(w))
+        return chain_value(complex(w), W, polynomials)
+
+    def elements(self, size: float) -> int:
+        """The number of elements that D takes at |w| = size."""
+        return len(self._level(size)[1])
+
+    def waves(self, w: complex) -> LocalWaves:
+        """The local exponents at w, as if the arm were uniform there."""
+        return local_waves(w, self.rod.F, self._local)
+
+    def wave_number(self, w: complex) -> float:
+        """The mean |q| of the fastest exponential along the arm, in 1/L."""
+        return float(self._weights @ self.waves(w).number)
+
+    def length(self, w: complex) -> float:
+        """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
+        return 1 / max(float(self._weights @ self.waves(w).rate), 1e-300)
+
+    def _level(self, size: float) -> tuple[float, Array]:
+        """(W, propagators) for |w| = size."""
+        level = MIN_LEVEL
+        if size > 4.0**MIN_LEVEL:
+            level = math.ceil(math.log(size) / math.log(4) - 1e-12)
+        if level not in self._levels:
+            W = max(4.0**level, size)
+            self._levels[level] = W, self._propagators(W)
+        return self._levels[level]
+
+    def _propagators(self, W: float) -> Array:
+        edges = self._edges(W)
+        points, _, _ = gauss_method(STAGES)
+        for _ in range(MAX_HALVINGS):
+            if not len(edges) <= MAX_ELEMENTS:
+                break
+            lengths = np.diff(edges)
+            local = self.rod.local(edges[:-1, None] + lengths[:, None] * points)
+            coarse = tail_of(local) > RESOLVED
+            if not coarse.any():
+                return element_propagators(self.rod.F, local, lengths, W)
+            middles = (edges[:-1] + edges[1:])[coarse] / 2
+            edges = np.sort(np.append(edges, middles))
+        raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
+
+    def _edges(self, W: float) -> Array:
+        """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
+        density = bound_of_waves(W, self.rod.F, self._local) / LONGEST
+        if self.rod.build.taper != 1:
+            apex = 1 / (1 - self.rod.build.taper)
+            density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - self._points)))
+        edges = [np.zeros(1)]
+        breaks = self.rod.build.breaks
+        shares = np.split(density, len(breaks) - 1)
+        for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
+            mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
+            count = max(1, math.ceil(mass[-1]))
+            places = np.linspace(start, stop, SAMPLES + 1)
+            edges.append(np.interp(np.linspace(0, mass[-1], count + 1)[1:], mass, places))
+            edges[-1][-1] = stop
+        return np.concatenate(edges)
+
+
+def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
+    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that the arm is at each point."""
+    return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
+
+
+def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
+    """An upper bound of |q| for all |w| <= W, at the points of `local`, shape (points,)."""
+    w, force, c2, gamma3 = _as_uniform(W, F, local)
+    square = w * (np.abs(local.g) * local.nu + c2 * gamma3 * w)
+    return np.sqrt((c2 + gamma3) * w + np.abs(force * local.g) + 2 * np.sqrt(square))
+
+
+def local_waves(w: complex, F: float, local: LocalCoefficients) -> LocalWaves:
+    """Mean |q| of both pairs of exponents and the larger |dq/dw|, each (points,); w != 0."""
+    v, force, c2, gamma3 = _as_uniform(w, F, local)
+    T, X = c2 + gamma3, c2 * gamma3
+    P = np.sqrt(v * (local.g * local.nu + X * v) + 0j)
+    M = T * v - force * local.g
+    roots = np.sqrt(np.abs(M + 2 * P)), np.sqrt(np.abs(M - 2 * P))
+    turn = np.where(P == 0, 0, (local.g * local.nu + 2 * X * v) / np.where(P == 0, 1, P))
+    # Where both squares are close D depends on P^2, which has no branch point, and not on P.
+    turn = turn * np.minimum(1.0, np.abs(P) / np.maximum(1.0, np.maximum(*roots)))
+    rates = [
+        np.abs(T + sign * turn) / (2 * np.maximum(1.0, q)) for sign, q in ((1, roots[0]), (-1, roots[1]))
+    ]
+    return LocalWaves((roots[0] + roots[1]) / 2, np.maximum(*rates) * local.gamma2 * local.c3)
+
+
+@lru_cache(maxsize=KEPT)
+def arm_determinant(rod: Rod) -> ArmDeterminant:
+    """D of the arm, kept for the next question about it."""
+    return ArmDeterminant(rod)

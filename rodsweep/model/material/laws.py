@@ -1,0 +1,114 @@
+"""Constitutive laws: the energy of a rod per reference length, its derivatives, and the straight state.
+
+A law is U(h1, h2, kappa) = k1 W(h1) + k2 h2^2/2 + k3 B(h1) kappa^2/2 with the stretch energy W and the
+bending factor B, where W'(1) = 0 and W''(1) = B(1) = 1: stiffnesses keep their meaning in the undeformed
+rod. The stretch nu of a straight rod under the stress n1 = -F solves k1 W'(nu) = -F. The transverse linear
+problem contains the law through nu and B(nu) alone: kappa = 0 at rest, so that B' enters no linear term.
+
+Incompressible neo-Hookean rubber has two variants. The cross-section keeps its size, or it swells as the
+rod shortens: a fibre at the distance Y is stretched by h1 - Y h1^(-1/2) kappa.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Values = Any
+"""A float, or an array of floats of any shape."""
+
+MAX_STEPS = 60
+"""Newton steps for the compression of a neo-Hookean rod; the iteration converges in at most eight."""
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """One constitutive law. All functions take and return floats or arrays.
+
+    energy: W(h1). stress: W'(h1). stiffness: W''(h1). bending: B(h1). bending_slope: B'(h1).
+    shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
+    largest_load: the x at which the rod is crushed, inf where no force crushes it.
+    """
+
+    law: str
+    section: str
+    energy: Callable[[Values], Values]
+    stress: Callable[[Values], Values]
+    stiffness: Callable[[Values], Values]
+    bending: Callable[[Values], Values]
+    bending_slope: Callable[[Values], Values]
+    shortening: Callable[[Values], Values]
+    largest_load: float = np.inf
+
+
+def _neo_hookean_shortening(x: Values) -> Values:
+    """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Newton's method on nu, then on e where e is small."""
+    x = np.asarray(x, dtype=float)
+    # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0.
+    nu = np.where(x > 0.5, 1 / np.sqrt(3 * np.maximum(x, 0.5)), np.where(x < 0, 1 - 3 * x, 1.0))
+    for _ in range(MAX_STEPS):
+        step = (nu**3 + 3 * x * nu**2 - 1) / (3 * nu**2 + 6 * x * nu)
+        nu = nu - step
+        if (np.abs(step) <= 1e-15 * nu).all():
+            break
+    e = 1 - nu
+    for _ in range(2):  # the residual in e has no cancellation
+        residual = 3 * x * (1 - e) ** 2 - 3 * e + 3 * e**2 - e**3
+        e = e + residual / (3 * (1 - e) ** 2 + 6 * x * (1 - e))
+    return e if e.ndim else float(e)
+
+
+def _ones(h1: Values) -> Values:
+    return np.ones_like(np.asarray(h1, dtype=float))
+
+
+def _zeros(h1: Values) -> Values:
+    return np.zeros_like(np.asarray(h1, dtype=float))
+
+
+LINEAR = Law(
+    law="linear",
+    section="fixed",
+    energy=lambda h: (h - 1) ** 2 / 2,
+    stress=lambda h: h - 1,
+    stiffness=_ones,
+    bending=_ones,
+    bending_slope=_zeros,
+    shortening=lambda x: x,
+    largest_load=1.0,
+)
+NEO_HOOKEAN = Law(
+    law="neo_hookean",
+    section="fixed",
+    energy=lambda h: (h**2 + 2 / h - 3) / 6,
+    stress=lambda h: (h - 1 / h**2) / 3,
+    stiffness=lambda h: (1 + 2 / h**3) / 3,
+    bending=_ones,
+    bending_slope=_zeros,
+    shortening=_neo_hookean_shortening,
+)
+SWELLING = Law(
+    law="neo_hookean",
+    section="swelling",
+    energy=NEO_HOOKEAN.energy,
+    stress=NEO_HOOKEAN.stress,
+    stiffness=NEO_HOOKEAN.stiffness,
+    bending=lambda h: (1 + 2 / h**3) / (3 * h),
+    bending_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
+    shortening=_neo_hookean_shortening,
+)
+LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
+"""All laws by name and section."""
+
+
+def law_of(law: str, section: str) -> Law:
+    """The law of a name and a section; ValueError for a pair that is none."""
+    if (law, section) not in LAWS:
+        sections = [s for name, s in LAWS if name == law]
+        if not sections:
+            known = " or ".join(dict.fromkeys(name for name, _ in LAWS))
+            raise ValueError(f"law = {law} is none of the known laws; it must be {known}")
+        known = " or ".join(sections)
+        raise ValueError(f"section = {section} is not known for law = {law}; it must be {known}")
+    return LAWS[law, section]

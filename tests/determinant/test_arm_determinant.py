@@ -1,0 +1,107 @@
+"""D of arms against the closed form of uniform rods, against an ODE solver, and against published digits."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.value import scaled_determinant
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import FACTORS, Profile
+from rodsweep.model.rod import Rod
+
+PLACES = (0.3 + 0j, -2.0 + 0j, 40j, -300 + 700j, -3000 + 20j, 2e4j, 1e6j)
+JUMP = Profile(
+    (0.0, 0.3, 0.3, 0.7, 1.0),
+    tuple(
+        tuple(dict(zip(FACTORS, row, strict=True)).values())
+        for row in (
+            (1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
+            (1.2, 0.8, 1.1, 1.0, 1.0, 2.0),
+            (0.1, 0.2, 0.05, 1.0, 0.7, 0.5),
+            (0.2, 0.2, 0.04, 1.0, 0.9, 0.5),
+            (0.2, 0.1, 0.02, 1.0, 0.9, 0.1),
+        )
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    "rod",
+    [
+        Rod(F=37.0, k1=1e4, k2=1e4, gamma3=1e-4),
+        Rod(F=2000.0, k1=np.inf, k2=np.inf, gamma3=0.0),
+        Rod(F=90.0, k1=100.0, k2=20.0, gamma3=0.5),
+        Rod(F=-40.0, k1=300.0, k2=200.0, gamma3=1e-3),
+    ],
+    ids=["stiff", "filament", "soft", "pulled"],
+)
+@pytest.mark.parametrize("w", PLACES)
+def test_uniform_rods_have_the_closed_form(rod, w):
+    found, closed = ArmDeterminant(rod).value(w), scaled_determinant(w, rod.coefficients)
+    ratio = found.D / closed.D * np.exp(found.S - closed.S)
+    assert abs(ratio - 1) <= 2e-13 + 4 * closed.noise / abs(closed.D)
+    assert abs(found.D_w / found.D / (closed.D_w / closed.D) - 1) <= 2e-11 + 40 * closed.noise / abs(closed.D)
+
+
+def by_ode(rod, w):
+    """D at w by an explicit Runge-Kutta method of order eight between the breaks."""
+    columns = np.zeros((4, 2), complex)
+    columns[2, 0] = columns[3, 1] = 1.0
+
+    def rates(u, x):
+        nu, c2, c3, gamma2, gamma3, g = (values[0] for values in rod.local(np.array([u])))
+        y, theta, s, m = x.reshape(4, 2)
+        rows = nu * theta + c2 * s, c3 * m, w * gamma2 * y + rod.F * c3 * m, w * gamma3 * theta - g * s
+        return np.concatenate(rows)
+
+    for a, b in zip(rod.build.breaks[:-1], rod.build.breaks[1:], strict=True):
+        inside = (a + 1e-13, b - 1e-13)  # at a break itself the coefficients are those of one side
+        solution = solve_ivp(rates, inside, columns.ravel(), method="DOP853", rtol=1e-13, atol=1e-14)
+        columns = solution.y[:, -1].reshape(4, 2)
+    return columns[2, 0] * columns[3, 1] - columns[2, 1] * columns[3, 0]
+
+
+@pytest.mark.parametrize(
+    "build",
+    [
+        Build(taper=0.2),
+        Build(taper=3.0),
+        Build(law="neo_hookean"),
+        Build(law="neo_hookean", section="swelling", taper=0.6),
+        Build(profile=JUMP),
+        Build(law="neo_hookean", section="swelling", taper=0.7, profile=JUMP),
+    ],
+    ids=["thin tip", "thick tip", "rubber", "swelling cone", "jump", "everything"],
+)
+@pytest.mark.parametrize("w", [-2.0 + 0j, 60j, -40 + 90j])
+def test_arms_that_vary_agree_with_an_ode_solver(build, w):
+    rod = Rod(F=1.5, k1=300.0, k2=80.0, gamma3=0.02, build=build)
+    found = ArmDeterminant(rod).value(w)
+    expected = by_ode(rod, w)
+    assert abs(found.D * np.exp(found.S) / expected - 1) < 1e-9
+    step = 1e-4 * abs(w)
+    after, before = (ArmDeterminant(rod).value(w + sign * step) for sign in (1, -1))
+    slope = (after.D * np.exp(after.S) - before.D * np.exp(before.S)) / (2 * step)
+    assert abs(found.D_w * np.exp(found.S) / slope - 1) < 1e-6
+
+
+def test_cone_of_radius_ratio_one_half_flutters_where_collocation_says():
+    """Issue-independent digits: F = 15.4627583986, frequency 175.530930682 (collocation at two sizes)."""
+    rod = Rod(F=15.4627583986, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(taper=0.5))
+    here = ArmDeterminant(rod).value(175.530930682j)
+    assert abs(here.D / here.D_w) < 1e-8
+
+
+@pytest.mark.parametrize("law", ["neo_hookean"])
+@pytest.mark.parametrize("section", ["fixed", "swelling"])
+@pytest.mark.parametrize("F", [-50.0, 1e-3, 60.0, 900.0])
+def test_uniform_rods_of_rubber_are_equivalent_to_linear_ones(law, section, F):
+    rod = Rod(F=F, k1=500.0, k2=70.0, gamma3=0.01, build=Build(law=law, section=section))
+    linear, rate = rod.equivalent
+    for w in PLACES[:5]:
+        found = ArmDeterminant(rod).value(w)
+        closed = scaled_determinant(w / rate, linear.coefficients)
+        assert abs(found.D * np.exp(found.S - closed.S) / closed.D - 1) <= 1e-12 + 8 * closed.noise / abs(
+            closed.D
+        )

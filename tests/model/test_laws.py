@@ -1,0 +1,77 @@
+"""Every constitutive law: derivatives against differences, and the straight state against the stress."""
+
+import numpy as np
+import pytest
+
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.laws import LAWS, law_of
+from rodsweep.model.rod import Crushed, NotUniform, Rod
+
+STRETCHES = np.array([0.2, 0.55, 0.9, 1.0, 1.3, 2.5])
+EVERY_LAW = pytest.mark.parametrize("law", LAWS.values(), ids=["-".join(key) for key in LAWS])
+
+
+def slope(function, h, step=1e-4):
+    """The derivative by a difference of fourth order."""
+    near, far = function(h + step) - function(h - step), function(h + 2 * step) - function(h - 2 * step)
+    return (8 * near - far) / (12 * step)
+
+
+@EVERY_LAW
+def test_derivatives_of_the_energy(law):
+    np.testing.assert_allclose(law.stress(STRETCHES), slope(law.energy, STRETCHES), rtol=1e-8, atol=1e-10)
+    np.testing.assert_allclose(law.stiffness(STRETCHES), slope(law.stress, STRETCHES), rtol=1e-8)
+    np.testing.assert_allclose(
+        law.bending_slope(STRETCHES), slope(law.bending, STRETCHES), rtol=1e-8, atol=1e-10
+    )
+
+
+@EVERY_LAW
+def test_stiffnesses_keep_their_meaning_in_the_undeformed_rod(law):
+    one = np.ones(1)
+    assert law.energy(one) == law.stress(one) == 0
+    assert law.stiffness(one) == law.bending(one) == 1
+
+
+@EVERY_LAW
+def test_straight_state_carries_the_load(law):
+    load = np.array([-30.0, -0.3, -1e-9, 1e-12, 1e-5, 0.4, 0.9, 3.0, 1e4])
+    load = load[load < law.largest_load]
+    shortening = law.shortening(load)
+    np.testing.assert_allclose(law.stress(1 - shortening), -load, rtol=1e-9, atol=1e-15)
+    small = np.abs(load) < 1e-8
+    np.testing.assert_allclose(shortening[small], load[small], rtol=3e-9)
+
+
+@EVERY_LAW
+def test_bending_factor_does_not_grow_under_stretch(law):
+    """Bounds of coefficients over an element are taken at its ends."""
+    assert (law.bending_slope(np.linspace(0.05, 5, 200)) <= 0).all()
+
+
+def test_unknown_laws_are_refused():
+    with pytest.raises(ValueError, match="law = hooke is none of the known laws; it must be linear or"):
+        law_of("hooke", "fixed")
+    with pytest.raises(
+        ValueError, match="section = swelling is not known for law = linear; it must be fixed"
+    ):
+        law_of("linear", "swelling")
+
+
+def test_only_the_linear_material_is_crushed():
+    """A cone of linear material is crushed where it is thinnest; rubber carries any force."""
+    arm = {"k1": 100.0, "k2": 50.0, "gamma3": 0.01}
+    with pytest.raises(Crushed, match="not below 25,"):
+        Rod(F=25.0, **arm, build=Build(taper=0.5))
+    assert Rod(F=24.0, **arm, build=Build(taper=0.5)).crushing_force == 25
+    assert Rod(F=1000.0, **arm, build=Build(law="neo_hookean", taper=0.5)).crushing_force == np.inf
+
+
+def test_an_arm_that_varies_states_no_constant_coefficients():
+    with pytest.raises(NotUniform):
+        _ = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, build=Build(taper=0.5)).coefficients
+
+
+def test_a_rod_elsewhere_keeps_its_build():
+    rod = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, build=Build(law="neo_hookean", taper=0.5))
+    assert rod.changed(F=2.0).build == rod.with_coordinate("k1", 0.0).build == rod.linear.build == rod.build

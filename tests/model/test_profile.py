@@ -1,0 +1,69 @@
+"""Profiles: smooth between rows, monotone, jumps where two rows stand at one u, bad tables refused."""
+
+import numpy as np
+import pytest
+
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import FACTORS, Profile
+from rodsweep.model.rod import Rod
+
+
+def profile(u, k3):
+    """A profile in which k3 alone varies."""
+    return Profile(tuple(u), tuple(tuple(v if name == "k3" else 1.0 for name in FACTORS) for v in k3))
+
+
+def test_factors_meet_the_rows_and_stay_between_them():
+    u, k3 = [0.0, 0.2, 0.5, 0.9, 1.0], [1.0, 4.0, 4.5, 0.01, 0.02]
+    table = profile(u, k3)
+    inside = np.linspace(0, 1, 4001)[1:-1]
+    values = table.factors(inside)[FACTORS.index("k3")]
+    np.testing.assert_allclose(np.interp(u[1:-1], inside, values), k3[1:-1], rtol=1e-3)
+    for a, b, low, high in zip(u[:-1], u[1:], k3[:-1], k3[1:], strict=True):
+        between = values[(inside > a) & (inside < b)]
+        assert min(low, high) <= between.min() and between.max() <= max(low, high)
+    slopes = np.diff(values) / np.diff(inside)
+    assert np.abs(np.diff(slopes)).max() < 0.2  # no corner: a chord's slope jumps by 15 at u = 0.2
+
+
+def test_two_rows_at_one_place_are_a_jump():
+    table = profile([0.0, 0.4, 0.4, 1.0], [1.0, 1.0, 100.0, 50.0])
+    before, after = table.factors(np.array([0.4 - 1e-12, 0.4 + 1e-12]))[FACTORS.index("k3")]
+    assert before == 1
+    assert after == pytest.approx(100, rel=1e-9)
+    np.testing.assert_allclose(table.factors(np.array([0.7]))[FACTORS.index("k3")], 75)  # two rows: a line
+
+
+@pytest.mark.parametrize(
+    ("u", "k3", "sentence"),
+    [
+        ((0.1, 1.0), (1, 1), "the first row must be at u = 0"),
+        ((0.0, 0.9), (1, 1), "the last at u = 1"),
+        ((0.0, 0.6, 0.5, 1.0), (1, 1, 1, 1), "u = 0.5 follows u = 0.6"),
+        ((0.0, 0.5, 0.5, 0.5, 1.0), (1, 1, 1, 1, 1), "there are 3 rows at u = 0.5"),
+        ((0.0, 0.0, 1.0), (1, 1, 1), "there are 2 rows at u = 0"),
+        ((0.0, 1.0), (1, 0), "the factor of k3 at u = 1 is 0; it must be finite and above 0"),
+        ((0.0, 1.0), (1, np.inf), "the factor of k3 at u = 1 is inf"),
+    ],
+)
+def test_tables_that_are_no_profile_are_refused(u, k3, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        profile(u, k3)
+
+
+@pytest.mark.parametrize("taper", [0.0, -1.0, np.inf, np.nan])
+def test_a_taper_of_a_point_is_refused(taper):
+    with pytest.raises(ValueError, match="is not a finite number above 0"):
+        Build(taper=taper)
+
+
+def test_a_cone_scales_as_its_radius():
+    """r = 0.75 in the middle of a cone of radius ratio 1/2."""
+    rod = Rod(F=3.0, k1=100.0, k2=50.0, gamma3=0.01, build=Build(taper=0.5))
+    here = rod.local(np.array([0.5]))
+    np.testing.assert_allclose(1 / here.c2, 50 * 0.75**2)
+    np.testing.assert_allclose(1 / here.c3, 0.75**4)
+    np.testing.assert_allclose(here.gamma3, 0.01 * 0.75**2)
+    np.testing.assert_allclose(here.nu, 1 - 3 / (100 * 0.75**2))
+    np.testing.assert_allclose(here.g, here.nu + 3 * here.c2)
+    assert here.gamma2 == 1
