@@ -46,7 +46,7 @@ class OverAlgebra(Generic[P, R]):
         return self._compiled[g]
 
     def written_out(self, g: Algebra) -> Callable[P, R]:
-        """The function written out for one algebra, not compiled; its callees of the same kind are compiled."""
+        """The function written out for one algebra, not compiled; callees of its kind are compiled."""
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
