@@ -1,4 +1,4 @@
-"""That no eigenvalue crosses a vertical line which moves while the rod changes along a path: proved.
+"""Proof that no eigenvalue crosses a vertical line that moves while the rod changes along a path.
 
 The line Re w = l(p) < 0 is straight in p. All eigenvalues right of it lie in the a-priori box of the whole
 interval of p, so that their number is the same for every p in it where D has no zero on

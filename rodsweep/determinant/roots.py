@@ -23,7 +23,7 @@ from .value import TYPICAL_NOISE, distance_to_next, newton_correction, scaled_de
 A_ROOT = 1e-2
 """Newton correction, in units of the length over which D changes, that still stands for a root of D."""
 CLOSE_ROOTS = 0.1
-"""The same for one of two that are refined together."""
+"""Newton correction, in the same unit, for eigenvalues that are refined in pairs."""
 REFINED_TOGETHER = 4.0
 """Distance of two eigenvalues, in units of their corrections, within which they are refined together."""
 ON_THE_AXIS = 1e-13
@@ -31,7 +31,7 @@ ON_THE_AXIS = 1e-13
 BLURRED = 1e-11
 """Relative Newton correction beyond which a double root may be the reason."""
 SAME_ROOT = 4.0
-"""Distance of two roots, in units of their errors, within which they may be the same."""
+"""Distance of two roots, in units of their errors, below which both may be one root."""
 
 
 class Roots(NamedTuple):
@@ -85,7 +85,7 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 
 @compiled
 def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
-    """Moves those that are closer than their errors to the two roots near them; says which it moved."""
+    """Moves pairs closer than their errors to the two roots near them; returns a mask of moved roots."""
     moved = np.zeros(len(w), dtype=np.bool_)
     for i in range(len(w)):
         if moved[i]:
@@ -127,7 +127,7 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 @compiled
 def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
-    """Those eigenvalues of a mesh that stand for a root of D.
+    """Eigenvalues of a mesh that approximate roots of D, refined to these roots.
 
     raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
     `rodsweep.determinant.certificate.box.squared_amplification`; most_waves: |q| that the mesh can stand for.
@@ -165,7 +165,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
 def _refined_all(
     first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
-    """(the roots near the first guesses, which of them are one); error and wave become those of the roots."""
+    """(roots near the first guesses, mask of true roots); sets error and wave at the roots."""
     w = first.copy()
     moved = _separate(w, error, coefficients)
     stands = moved | near

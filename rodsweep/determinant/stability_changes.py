@@ -1,4 +1,4 @@
-"""Where a rod changes between two forces, from its leading eigenvalues at both.
+"""Changes of a rod's stability between two forces, from the leading eigenvalues at both.
 
 Where the leading growth rate changes its sign a pair crosses the imaginary axis: D(0) = 1, so no eigenvalue
 passes through 0. The eigenvalues on both sides are starts for Newton's method on D(i eta; F) = 0. Where the

@@ -29,7 +29,7 @@ class RodOnMesh(ABC):
     @property
     @abstractmethod
     def kept(self) -> tuple[int, ...]:
-        """Which components of V are unknowns."""
+        """Indices of the components of V that are unknowns."""
 
     @abstractmethod
     def stresses(self, x: Values) -> Values:
@@ -41,7 +41,7 @@ class RodOnMesh(ABC):
 
     @cached_property
     def layout(self) -> StateLayout:
-        """Where each field of a state lies."""
+        """Positions of the fields in a state."""
         return plane_layout(self.mesh.nodes, self.kept)
 
     @property

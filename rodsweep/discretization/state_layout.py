@@ -1,4 +1,4 @@
-"""Where each field of a flat state lies: stresses at the nodes but the tip, then unknown velocities.
+"""Positions of the fields in a flat state: stresses at all nodes but the tip, then unknown velocities.
 
 No other module computes indices into a state. Python code asks a `StateLayout`. Compiled code asks
 `stress_place` and `velocity_place` for indices, because an array view costs as much there as a sum over the

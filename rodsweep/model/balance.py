@@ -27,7 +27,7 @@ Values = NDArray[Any]
 """Real, or complex for a derivative by complex step."""
 
 IN_SPACE = [0, 1, 5]
-"""Where the plane's components stand among those of space."""
+"""Indices of the plane's components among the six components in space."""
 
 
 def ad(E: Values, V: Values) -> Values:

@@ -43,7 +43,7 @@ class Parameter:
     rigid: str = ""
     """What a rod is called whose value is inf; empty where inf is not allowed."""
     default: float | None = None
-    """Value in a grid that does not name it; None where it must be named."""
+    """Value for grids that do not name the parameter; None for a parameter that every grid must name."""
     scales: tuple[str, ...] = ()
     """Stiffnesses or drags that the value multiplies; empty where the parameter is itself a load, a stiffness
     or a drag. One parameter scales either stiffnesses or drags, so that the equations are affine in its
@@ -142,11 +142,11 @@ NONLINEAR_PARAMETERS = tuple(PARAMETERS)
 LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
 """Names of the parameters of the linear problem."""
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
-"""(parameter, stiffness or drag that it multiplies) of all that multiply any."""
+"""(parameter, multiplied stiffness or drag) for every parameter with `scales`."""
 CRUSHING = ("F", "k1")
 """The parameters that crush the rod where the first reaches the second."""
 
 
 def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """The parameters, by default those of the linear problem, that stay where one varies."""
+    """The parameters except `varied`; by default parameters of the linear problem."""
     return tuple(name for name in names if name != varied)

@@ -46,7 +46,7 @@ def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
 
 
 def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Loads, stiffnesses and drags by name: parameters, multiplied by those that scale them."""
+    """Loads, stiffnesses and drags by name: each parameter times the factors in the table that scale it."""
     if not SCALINGS:
         return values
     own = dict(values)
@@ -147,7 +147,7 @@ class Rod:
         return Rod(**{name: getattr(self, name) for name in LINEAR_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:
-        """Where the rod stands along a parameter: 1/k of a stiffness k, or the value."""
+        """Coordinate of the rod along a parameter: 1/k of a stiffness k, or the value."""
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
@@ -155,7 +155,7 @@ class Rod:
         return self.changed(**{name: PARAMETERS[name].value(coordinate)})
 
     def changed(self, **values: float) -> "Rod":
-        """The rod with other values of some parameters; ValueError where the model has none."""
+        """The rod with other values of some parameters; ValueError for values outside the model."""
         # `dataclasses.replace` takes a third longer.
         return Rod(**{**self.values, **values}, build=self.build)
 

@@ -21,7 +21,7 @@ TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 LONGEST_UNIT = 40
 """Characters of a unit."""
 COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
-"""Units of arms that are often written with other blanks, or other capital letters."""
+"""Units that users often write with different blanks or capital letters."""
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
 FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
@@ -126,7 +126,7 @@ def written_in(value: float, unit: str, si: str) -> float:
 
 
 def share_of_flutter(given: Given) -> float | None:
-    """The load over that at which an arm flutters, of a text that says so; None of any other."""
+    """Load divided by the flutter load, read from a text such as "1.2 of flutter"; None for other texts."""
     if not isinstance(given, str):
         return None
     if found := OF_FLUTTER.fullmatch(given):

@@ -1,4 +1,4 @@
-"""Where transverse eigenvalues can lie: an a-priori box for every eigenvalue with Re w >= -depth.
+"""An a-priori box that contains every transverse eigenvalue with Re w >= -depth.
 
 Testing the eigenproblem of Sec. VI with its own eigenfunction, y with weight 1 and theta with a
 weight rho > 0, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),

@@ -1,4 +1,4 @@
-"""Where eigenvalues cross the imaginary axis along a path of rods: all points, proved.
+"""All crossings of the imaginary axis along a path of rods, with a proof that none is missed.
 
 Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The part of
 the (eta, p) plane that the a-priori bounds leave is divided into boxes until each is

@@ -1,4 +1,4 @@
-"""Where one exponential of D outweighs all the rest: there D has no zero, and its phase is known.
+"""Discs in which one exponential of D outweighs the rest: D has no zero there, and its phase is known.
 
 With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 

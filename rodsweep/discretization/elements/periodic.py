@@ -13,7 +13,7 @@ from ...model.compiled.compilation import compiled_for_vectors
 EXTREMUM_STEPS = 8
 """Newton steps from the largest sample to the maximum."""
 EXTREMUM_FOUND = 1e-9
-"""Last step in periods; what it leaves of the maximum is its square."""
+"""Largest last step, in periods, of a converged search; the error of the maximum is about its square."""
 BISECTIONS = 50
 
 

@@ -170,7 +170,7 @@ class _Inside:
 
     @classmethod
     def of(cls, K: Complex, numbering: _Numbering) -> Self:
-        """Of the K of an element, (local, local)."""
+        """Elimination of the interior of an element from its matrix K, (local, local)."""
         inside, ends = numbering.inside, numbering.ends
         factors = _factorised(K[np.ix_(inside, inside)])
         leaving, entering = K[np.ix_(inside, ends)], K[np.ix_(ends, inside)]

@@ -46,7 +46,7 @@ class MixedForm:
 
     @cached_property
     def layout(self) -> StateLayout:
-        """Where each field of X lies: all of V is unknown."""
+        """Positions of the fields in X; every component of V is an unknown."""
         return plane_layout(self.mesh.nodes, tuple(range(COMPONENTS)))
 
     @property

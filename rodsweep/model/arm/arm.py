@@ -138,12 +138,12 @@ class SlenderArm:
 
     @property
     def load(self) -> str | None:
-        """Which of the loads is given, "pressure" or "force"; None for an arm without load."""
+        """Name of the given load, "pressure" or "force"; None for an arm without load."""
         return next((name for name in LOADS if getattr(self, name) is not None), None)
 
     @property
     def share_of_flutter(self) -> float | None:
-        """The load over that at which the arm flutters, where it is given so."""
+        """Load divided by the flutter load, if the load is given in this way."""
         return None if self.load is None else share_of_flutter(getattr(self, self.load))
 
     @property

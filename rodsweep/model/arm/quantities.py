@@ -9,11 +9,11 @@ from ...errors import InputError
 from ..units import Given, in_si, share_of_flutter
 
 LOADS = ("pressure", "force")
-"""What may push the tip; an arm has one of them or none."""
+"""Names of the loads on the tip; an arm has at most one load."""
 
 
 class Quantity(NamedTuple):
-    """A quantity of an arm: its SI unit, what it is, and how it may be written where it has a unit."""
+    """A quantity of an arm: SI unit, meaning, and accepted notations of a quantity with a unit."""
 
     unit: str
     meaning: str
@@ -49,11 +49,11 @@ QUANTITIES = {
 }
 """All quantities that may be given."""
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
-"""SI unit of each quantity that has one, and how it may be written."""
+"""SI unit and accepted notations of each quantity with a unit."""
 RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
 """Loads in units of that at which the arm flutters first, with the likeliest drag."""
 SECTION_SIDES = ("radius", "inner_radius"), ("width", "height")
-"""What makes a round section, and what a rectangular one."""
+"""Quantities that define a round section, and quantities that define a rectangular section."""
 ARM_UNITS = {
     "tau2": Quantity("s", "unit of time, gamma2 L^4/k3"),
     "force_scale": Quantity("N", "unit of force, k3/L^2"),

@@ -35,7 +35,7 @@ VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version_
 SEAL = 32
 """Bytes of SHA-256 at the start of a file, of what follows: it shows a file that was cut off."""
 _first_parts: dict[FunctionType, Part] = {}
-"""Each function as it was when first needed: what numba has put into the code that it compiled then."""
+"""Description of each function at its first use, which is the state that numba compiled."""
 
 
 class KernelCache(_Cache):
@@ -48,7 +48,7 @@ class KernelCache(_Cache):
 
     @property
     def cache_path(self) -> str | None:
-        """Where numba says that the function is kept."""
+        """Cache file of the function, as numba reports it."""
         return str(self._directories[0]) if self._directories else None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

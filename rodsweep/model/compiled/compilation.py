@@ -22,7 +22,7 @@ PACKAGE = Path(__file__).parents[2]
 
 
 def cache_directories() -> list[Path]:
-    """Where compiled code is kept: NUMBA_CACHE_DIR, or the package and, where that is read-only, ~/.cache."""
+    """Directories of compiled code: NUMBA_CACHE_DIR, or the package and, if it is read-only, ~/.cache."""
     if place := os.environ.get("NUMBA_CACHE_DIR"):
         return [Path(place) / "rodsweep"]
     caches = [PACKAGE / "__pycache__"]

@@ -25,7 +25,7 @@ PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
 
 
 class Part(NamedTuple):
-    """One function of a kernel: its code and constants as text, and the functions that it calls in turn."""
+    """One function of a kernel: code and constants as text, and the called functions."""
 
     text: str
     called: list["Kernel"]
@@ -123,7 +123,7 @@ class _Values:
         self.called: list[Kernel] = []
 
     def text(self, value: Any) -> str:
-        """TypeError: there is no such text for values of this type."""
+        """Raises TypeError: values of this type have no text."""
         if isinstance(value, PLAIN):
             return repr(value)
         if isinstance(value, Mapping):

@@ -46,7 +46,7 @@ class OverAlgebra(Generic[P, R]):
         return self._compiled[g]
 
     def written_out(self, g: Algebra) -> Callable[P, R]:
-        """The function for one algebra before it is compiled, calling others like it that are."""
+        """The function written out for one algebra, not compiled; callees of its kind are compiled."""
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
@@ -70,7 +70,8 @@ class OverAlgebra(Generic[P, R]):
 
 
 class _Shared(NamedTuple):
-    """Of one function. lists: names of lists whose items are variables; others: functions like it."""
+    """State shared by the rewriting of one function. lists: names of lists whose items are variables; others:
+    rewritten functions of the same kind."""
 
     lists: set[str]
     others: set[str]
@@ -79,7 +80,7 @@ class _Shared(NamedTuple):
 
 
 class _Writer(ast.NodeVisitor):
-    """Makes of a statement or an expression what `known` leaves of it; what it reads is not changed."""
+    """Rewrites statements and expressions with the constants in `known`; the tree it reads is not changed."""
 
     def __init__(self, known: Mapping[str, Any], shared: _Shared) -> None:
         self.known, self.shared = known, shared

@@ -1,4 +1,4 @@
-"""How an arm is built: its constitutive law, its taper and its profile, and its coefficients along u."""
+"""Build of an arm: constitutive law, taper and profile, and the coefficients along u that follow."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_info
 from . import petsc  # noqa: F401 - what is not loaded yet is not seen
 
 NAMELESS = "unknown"
-"""What is said of a library that does not tell its name, such as the reference BLAS."""
+"""Name reported for a library without a name, such as the reference BLAS."""
 
 
 def blas() -> str:
@@ -29,6 +29,6 @@ def blas() -> str:
 
 
 def _owner(path: str) -> str:
-    """Whose a library is: wheels of NumPy and SciPy bring their own, any other is the system's or PETSc's."""
+    """Owner of a library: NumPy's or SciPy's wheel, or else the system or PETSc."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     return "NumPy" if "numpy" in names else "SciPy" if "scipy" in names else "PETSc"

@@ -20,7 +20,7 @@ Object = TypeVar("Object", bound=Destroyable)
 
 
 class Kept(Generic[Key, Object]):
-    """At most so many objects, made by `create` of their keys; the one not asked for longest goes first."""
+    """A pool of objects made by `create` from keys; a full pool drops the least recently used object."""
 
     def __init__(self, create: Callable[[Key], Object], most: int) -> None:
         self._create, self._most = create, most

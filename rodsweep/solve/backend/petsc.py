@@ -1,4 +1,4 @@
-"""The one place that starts PETSc and SLEPc, and says what they can do."""
+"""Start of PETSc and SLEPc, and the capabilities of this installation."""
 
 from functools import cache
 
@@ -30,7 +30,7 @@ SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 
 @cache
 def sparse_package() -> str | None:
-    """The first of SPARSE_PACKAGES that this PETSc has; None if it has none."""
+    """First of SPARSE_PACKAGES in this PETSc; None for a PETSc without sparse direct solvers."""
     for name in SPARSE_PACKAGES:
         if PETSc.Sys.hasExternalPackage({"umfpack": "suitesparse", "klu": "suitesparse"}.get(name, name)):
             return name

@@ -16,7 +16,7 @@ class BoundaryProblem(Protocol[Curve]):
     """What the curves through numbered points of rows must know of themselves."""
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """Which of the points that lie on no curve the next curve starts from."""
+        """Index of the point, among points on no curve, from which the next curve starts."""
 
     def lacking(self, seed: int) -> list[int]:
         """Units of work without whose results the curve from a point is not known."""

@@ -76,7 +76,7 @@ class StepControl:
     most: int = 5000
 
     def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
-        """A solution that is the next one of the same curve; raises Unsolvable where it may not be."""
+        """Next solution of the same curve; raises Unsolvable if it may lie on another curve."""
         if not there.off <= self.far:
             raise Unsolvable("the solution is far from its prediction")
         if not _angle(there.cosine) <= self.sharpest:
@@ -92,7 +92,7 @@ class StepControl:
 
 
 def _angle(cosine: float) -> float:
-    """In radians, of a cosine that rounding may have put beyond 1."""
+    """Angle in radians of a cosine that rounding may have moved beyond 1."""
     return acos(min(1.0, max(-1.0, cosine)))
 
 
@@ -165,7 +165,7 @@ def follow(
 
 
 def crossed(before: Array, after: Array) -> int:
-    """Which of the margins, (margins,), falls below 0 first on a straight way, -1 for none."""
+    """Index of the margin, of (margins,), that falls below 0 first along a straight step; -1 if none does."""
     falls = (after < 0) & (after < before)
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
     first = int(np.argmin(share))
