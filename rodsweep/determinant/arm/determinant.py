@@ -132,15 +132,16 @@ def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
 
 
 def local_waves(w: complex, F: float, local: LocalCoefficients) -> LocalWaves:
-    """Mean |q| of both pairs of exponents and the larger |dq/dw|, each (points,); w != 0."""
+    """Mean |q| of both pairs of exponents and the larger |dq/dw|, each (points,)."""
     v, force, c2, gamma3 = _as_uniform(w, F, local)
     T, X = c2 + gamma3, c2 * gamma3
     P = np.sqrt(v * (local.g * local.nu + X * v) + 0j)
     M = T * v - force * local.g
     roots = np.sqrt(np.abs(M + 2 * P)), np.sqrt(np.abs(M - 2 * P))
-    turn = np.where(P == 0, 0, (local.g * local.nu + 2 * X * v) / np.where(P == 0, 1, P))
+    size = np.abs(P)
+    towards = np.where(size == 0, 1, np.conj(P) / np.where(size == 0, 1, size))
     # Where both squares are close D depends on P^2, which has no branch point, and not on P.
-    turn = turn * np.minimum(1.0, np.abs(P) / np.maximum(1.0, np.maximum(*roots)))
+    turn = (local.g * local.nu + 2 * X * v) * towards / np.maximum(size, np.maximum(1.0, np.maximum(*roots)))
     rates = [
         np.abs(T + sign * turn) / (2 * np.maximum(1.0, q)) for sign, q in ((1, roots[0]), (-1, roots[1]))
     ]

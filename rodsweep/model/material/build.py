@@ -52,6 +52,11 @@ class Build:
         return self.taper == 1 and self.profile is None
 
     @cached_property
+    def continuous(self) -> bool:
+        """Whether no coefficient jumps along the arm."""
+        return self.profile is None or len(self.profile.breaks) == len(self.profile.u)
+
+    @cached_property
     def standard(self) -> bool:
         """Whether the arm is uniform and of linear material, so that D has its closed form."""
         return self.uniform and self.constitutive_law is LINEAR

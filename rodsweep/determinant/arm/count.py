@@ -1,0 +1,172 @@
+"""How many transverse eigenvalues of an arm lie right of a vertical line, without mesh or shift.
+
+The number is the change of arg D along the upper half of a box that contains them, over pi, as in
+`rodsweep.determinant.certificate.winding_number`. Between two nodes the phase is that of the tangents
+log D(w) + L (v - w), L = D'/D, at both, which meet between them, if each is off by less than pi/2 there.
+
+Outside the hull of the spectrum this is proved from D'/D alone. D is entire of order 1/2, so that D = prod
+(1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
+
+    Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
+    |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
+
+Inside, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimate with the largest |f| on a circle
+bounds its change. That maximum is taken from `CIRCLE` points, with a factor for what lies between them: here
+the count is an estimate, as are the rounding errors of D and the error of its elements.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Complex
+from ..certificate.winding_number import LEAST_HEIGHT, WIDTH_ADDED, WIDTH_FACTOR, Count
+from ..value import Value
+from .determinant import ArmDeterminant
+from .hull import Hull, clearance
+
+LARGEST_TURN = 1.5
+"""Error of the phase of a tangent, in radians, up to which it is used: two of them are below pi."""
+CIRCLE = 8
+"""Points of a circle about a node inside the hull."""
+BETWEEN_POINTS = 1.5
+"""Factor on the largest of these points."""
+CLEARANCE = 0.9
+"""Share of |D| up to which f may change."""
+ROUNDING_OF_D = 100.0
+"""Rounding error of D in units of its noise that a node must exceed."""
+RADII = (3.0, 1.5, 0.75)
+"""Radii of circles that are tried, in units of the length over which D changes."""
+STEEPEST = 1.0
+"""Largest |L| times the unit of these radii: close to a zero of D the circle must be as small as its distance."""
+SMALLEST_REACH = 1e-12
+"""Reach in units of |w| below which the line is taken to run through a zero of D."""
+MAX_NODES = 5000
+STRIDE = 1.9
+"""Distance of the next node that is tried, in units of the reach of this one."""
+UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.arange(CIRCLE) + 0.5) / CIRCLE)
+
+
+class Node(NamedTuple):
+    """A point w: D exp(-S) there, L = D'/D, and how far the phase is known from them."""
+
+    w: complex
+    D: complex
+    L: complex
+    reach: float
+
+
+class PhaseLost(ArithmeticError):
+    """The refusal to state a change of phase; nodes: how many were used."""
+
+    def __init__(self, nodes: int):
+        super().__init__("an eigenvalue lies too close to the line, or the box is too large")
+        self.nodes = nodes
+
+
+def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Count:
+    """The number of transverse eigenvalues with Re w > line, for a line <= 0 or above.
+
+    Raises nothing: what cannot be told is a Count without a number.
+    """
+    if not math.isfinite(hull.a):
+        return Count(None, 0, "no a-priori bound on the eigenvalues applies")
+    real, imag = hull.box(max(-line, 0.0))
+    if line >= real:
+        return Count(0, 0)
+    corner = complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
+    top = complex(line, corner.imag)
+    nodes, total = 0, 0.0
+    try:
+        for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
+            change, used = phase_change(start, end, determinant, hull)
+            total += change
+            nodes += used
+    except PhaseLost as lost:
+        return Count(None, nodes + lost.nodes, str(lost))
+    except FloatingPointError as unresolved:
+        return Count(None, nodes, str(unresolved))
+    number = round(total / math.pi)
+    if abs(total / math.pi - number) > 1e-3:
+        return Count(None, nodes, "the winding number is not an integer within rounding")
+    return Count(number, nodes)
+
+
+def phase_change(
+    start: complex, end: complex, determinant: ArmDeterminant, hull: Hull
+) -> tuple[float, int]:
+    """(change of arg D along the segment, nodes used); `PhaseLost` where it cannot be told."""
+    length = abs(end - start)
+    direction = (end - start) / length
+    t, total, nodes = 0.0, 0.0, 1
+    here = node_at(start, determinant, hull)
+    while t < length:
+        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MAX_NODES:
+            raise PhaseLost(nodes)
+        ahead = min(STRIDE * here.reach, length - t)
+        while True:
+            there = node_at(end if ahead == length - t else start + direction * (t + ahead), determinant, hull)
+            nodes += 1
+            if abs(there.w - here.w) < here.reach + there.reach:
+                break
+            # The next node does not reach back: it is placed where this one reaches on its own.
+            ahead = 0.99 * here.reach if ahead > here.reach else ahead / 2
+        total += _turn(here, there)
+        t = length if there.w == end else t + ahead
+        here = there
+    return total, nodes
+
+
+def _turn(here: Node, there: Node) -> float:
+    """The change of phase between two nodes whose reaches meet."""
+    step = there.w - here.w
+    share = here.reach / (here.reach + there.reach)
+    expected = (here.L * step * share + there.L * step * (1 - share)).imag
+    return expected + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -expected)))
+
+
+def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> Node:
+    """The node about w."""
+    value = determinant.value(w)
+    if not abs(value.D) > ROUNDING_OF_D * value.noise:
+        return Node(w, value.D, 0j, 0.0)
+    L = value.D_w / value.D
+    distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
+    reach = 0.0
+    if distance > 0:
+        S = max((normal * L).real, 0.0) / distance
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
+    if not reach > determinant.length(w):
+        reach = max(reach, _reach_inside(w, value, L, determinant))
+    return Node(w, value.D, L, reach)
+
+
+def _reach_inside(w: complex, value: Value, L: complex, determinant: ArmDeterminant) -> float:
+    """The reach of a node from circles about it."""
+    length = min(determinant.length(w), STEEPEST / max(abs(L), 1e-300))
+    room = CLEARANCE - ROUNDING_OF_D * value.noise / abs(value.D)
+    best = 0.0
+    for factor in RADII:
+        rho = factor * length
+        M = BETWEEN_POINTS * _largest_on_circle(w, rho, value, L, determinant)
+        q = room / M if M > 0 else math.inf
+        reach = rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q < math.inf else 0.0
+        if reach <= best:
+            break
+        best = reach
+    return best
+
+
+def _largest_on_circle(
+    w: complex, rho: float, value: Value, L: complex, determinant: ArmDeterminant
+) -> float:
+    """The largest |f/f(w)| of the points of a circle; inf where it overflows."""
+    size = -math.inf
+    for step in (rho * UNIT_CIRCLE).tolist():
+        there = determinant.value(w + step)
+        if there.D != 0:
+            size = max(size, math.log(abs(there.D)) + there.S - (L * step).real)
+    excess = size - math.log(abs(value.D)) - value.S
+    return math.exp(excess) if excess < 700 else math.inf

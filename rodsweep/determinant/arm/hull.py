@@ -1,0 +1,177 @@
+"""A convex region that contains every transverse eigenvalue of an arm with profiles and any law.
+
+Testing the eigenproblem with alpha(u) y* and theta*, alpha > 0 continuous, gives with N^2 = int alpha gamma2
+|y|^2 + gamma3 |theta|^2 and n^2 N^2 = int alpha c2 |s|^2 + c3 |m|^2
+
+    w N^2 = -n^2 N^2 + int (g - alpha nu) theta* s - F int alpha c3 y* m - int alpha' y* s.
+
+The last three terms are at most a n N^2, where a is the largest norm of the matrix
+
+    [[alpha'/(alpha sqrt(gamma2 c2)), F sqrt(alpha c3/gamma2)], [(g - alpha nu)/sqrt(gamma3 alpha c2), 0]]
+
+along the arm. Where gamma3 = 0 the term with theta is bounded by theta(0) = 0 instead: it is at most
+c n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
+
+    Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
+
+a convex region bounded by a parabola. Of several alpha the one with the smallest region is taken. With alpha
+= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
+`rodsweep.determinant.certificate.box`.
+
+Extremes along the arm are looked up at points between the breaks, with `MARGIN` for what lies between them.
+"""
+
+from collections.abc import Iterator
+from math import inf, isfinite, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...model.compiled.compilation import compiled
+from ...model.material.build import LocalCoefficients
+from ...model.rod import Rod
+
+POINTS = 25
+"""Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
+MARGIN = 1.05
+"""Factor on a, for extremes between the points and for rounding."""
+INSIDE = 1e-9
+"""Distance of the first and last point from the ends of a piece, in units of its length."""
+LARGEST_SHARE = 0.9
+"""Largest c: the region grows beyond use where c approaches 1."""
+MIDDLES = (0.0, 0.5, 1.0)
+"""Factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha that are tried."""
+WEIGHTS = 41
+"""Constant weights alpha that are tried, between the smallest and the largest g/nu."""
+DIRECTIONS = 48
+"""Normals of the region that are tried for the distance of a point."""
+
+
+class Hull(NamedTuple):
+    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf where none is known."""
+
+    a: float
+    c: float
+
+    def box(self, depth: float = 0.0) -> tuple[float, float]:
+        """(max Re w, max |Im w|) of the eigenvalues with Re w >= -depth, depth >= 0."""
+        a, b = self.a, 1 - self.c
+        n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
+        # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
+        pad = 0.01 * depth + 1e-6
+        return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
+
+
+UNKNOWN = Hull(inf, 0.0)
+"""The region where no bound applies."""
+
+
+@compiled
+def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
+    """(distance of w, Im w >= 0, from the hull, unit normal towards w); at most 0 for w inside.
+
+    The distance is a lower bound, and the normal n has <n, w - v> >= distance for every v in the hull.
+    """
+    b = 1 - c
+    best, normal = -inf, 1 + 0j
+    for k in range(DIRECTIONS):
+        # Close to the imaginary axis the support function grows without bound.
+        T = (k / (DIRECTIONS - k)) ** 2
+        if not c * T < b:
+            break
+        size = sqrt(1 + T * T)
+        support = a * a * (1 + T) * (1 + T) / (4 * (b - c * T))
+        distance = (w.real + T * w.imag - support) / size
+        if distance > best:
+            best, normal = distance, complex(1 / size, T / size)
+    return best, normal
+
+
+def hull_of(rod: Rod) -> Hull:
+    """The smallest region of those that can be shown for the arm; `UNKNOWN` if there is none."""
+    pieces = _pieces(rod)
+    candidates = [*_constant(rod.F, pieces), *_following(rod, pieces), *_by_clamp(rod.F, pieces)]
+    best = min(candidates, key=lambda hull: hull.a**2 / (1 - hull.c), default=UNKNOWN)
+    return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
+
+
+class Piece(NamedTuple):
+    """Coefficients at the Chebyshev points of a smooth piece, increasing u; u has the shape (POINTS,)."""
+
+    u: Array
+    local: LocalCoefficients
+
+
+def _pieces(rod: Rod) -> list[Piece]:
+    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    breaks = rod.build.breaks
+    grids = [a + (b - a) * (x + 1) / 2 for a, b in zip(breaks[:-1], breaks[1:], strict=True)]
+    return [Piece(u, rod.local(u)) for u in grids]
+
+
+def _joined(pieces: list[Piece]) -> LocalCoefficients:
+    """The coefficients of all pieces, one behind another."""
+    return LocalCoefficients(*(np.concatenate(rows) for rows in zip(*(p.local for p in pieces), strict=True)))
+
+
+def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
+    """The regions by constant alpha; none where gamma3 = 0 lets an arm that shears rotate freely."""
+    nu, c2, c3, gamma2, gamma3, g = _joined(pieces)
+    push = F**2 * float((c3 / gamma2).max())
+    if not c2.any():  # then g = nu
+        yield Hull(sqrt(push), 0.0)
+        return
+    if not gamma3.all():
+        return
+    ratio = np.abs(g / nu)
+    alphas = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
+    for alpha in np.append(alphas, 1.0):
+        turn = float(((g - alpha * nu) ** 2 / (gamma3 * alpha * c2)).max())
+        yield Hull(sqrt(max(alpha * push, turn)), 0.0)
+
+
+def _following(rod: Rod, pieces: list[Piece]) -> Iterator[Hull]:
+    """The regions by an alpha that follows g/nu, which must be above 0 and without jumps."""
+    nu, c2, _, _, _, g = _joined(pieces)
+    if not (g > 0).all() or not (c2 > 0).all() or not rod.build.continuous:
+        return
+    for factor in MIDDLES:
+        yield Hull(max(_norm(rod.F, piece, factor) for piece in pieces), 0.0)
+
+
+def _norm(F: float, piece: Piece, factor: float) -> float:
+    """The largest norm of the matrix along a piece."""
+    nu, c2, c3, gamma2, gamma3, g = piece.local
+    level = factor * abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
+    alpha = g / (nu + level)
+    slope = _derivative(piece.u, np.log(alpha))
+    A = slope / np.sqrt(gamma2 * c2)
+    B = F * np.sqrt(alpha * c3 / gamma2)
+    e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
+    C = np.where(e == 0, 0.0, e / np.sqrt(np.where(e == 0, 1.0, gamma3 * alpha * c2)))
+    total, product = A**2 + B**2 + C**2, B * C
+    largest = (total + np.sqrt(np.maximum(total**2 - 4 * product**2, 0.0))) / 2
+    return sqrt(float(largest.max()))
+
+
+def _derivative(u: Array, values: Array) -> Array:
+    """The derivative of the interpolant through Chebyshev points."""
+    series = np.polynomial.Chebyshev.fit(u, values, len(u) - 1, domain=[u[0], u[-1]])
+    derivative: Array = series.deriv()(u)
+    return derivative
+
+
+def _by_clamp(F: float, pieces: list[Piece]) -> Iterator[Hull]:
+    """The region by alpha = 1 and theta(0) = 0, which needs no rotational drag."""
+    below, integral = 0.0, 0.0  # of c3, and of what bounds the term with theta
+    for u, (_, c2, c3, _, _, _) in pieces:
+        primitive = np.polynomial.Chebyshev.fit(u, c3, len(u) - 1, domain=[u[0], u[-1]]).integ(lbnd=u[0])
+        turned = below + primitive(u)
+        density = np.polynomial.Chebyshev.fit(u, c2 * turned, len(u) - 1, domain=[u[0], u[-1]])
+        integral += float(density.integ(lbnd=u[0])(u[-1]))
+        below = float(turned[-1])
+    c = MARGIN * abs(F) * sqrt(max(integral, 0.0)) / 2
+    local = _joined(pieces)
+    if c < LARGEST_SHARE:
+        yield Hull(abs(F) * sqrt(float((local.c3 / local.gamma2).max())), c)

@@ -1,0 +1,167 @@
+"""Eigenvalues of a mesh refined to roots of D, for arms that are not uniform.
+
+The rules are those of `rodsweep.determinant.roots`, with D from propagators in place of the closed form.
+"""
+
+import cmath
+import math
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ..newton import MOST_REFINEMENTS, REAL_BELOW
+from ..roots import (
+    A_ROOT,
+    BLURRED,
+    CLOSE_ROOTS,
+    ON_THE_AXIS,
+    REFINED_TOGETHER,
+    SAME_ROOT,
+    Roots,
+    sort_descending,
+)
+from ..value import SECOND_STEP, TYPICAL_NOISE
+from .determinant import ArmDeterminant
+from .hull import Hull
+
+
+def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
+    """D'' exp(-S) at w by a difference of D'; real where w is."""
+    h = SECOND_STEP * abs(w)
+    after, before = determinant.value(w + h), determinant.value(w - h)
+    second = (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
+    return complex(second.real, 0.0) if w.imag == 0 else second
+
+
+def root_error(w: complex, determinant: ArmDeterminant) -> float:
+    """How far from w a root of D lies, in 1/tau2, next to a double root too."""
+    D, D_w, S, noise = determinant.value(w)
+    e = max(abs(D), TYPICAL_NOISE * noise)
+    error = e / max(abs(D_w), 1e-300)
+    if error > BLURRED * abs(w):
+        second = abs(second_derivative(w, S, determinant))
+        if abs(D_w) ** 2 < 16 * e * second:
+            spread = math.sqrt(2 * e / second)
+            error = min(max(error, spread), abs(D_w) / second + spread)
+    return error
+
+
+def refined(w: complex, determinant: ArmDeterminant) -> complex:
+    """The eigenvalue near w by Newton's method, until rounding keeps the steps from getting smaller.
+
+    A real guess stays real.
+    """
+    real = w.imag == 0
+    last = math.inf
+    for _ in range(MOST_REFINEMENTS):
+        value = determinant.value(w)
+        if value.D_w == 0:
+            break
+        step = value.D / value.D_w
+        if real:
+            step = complex(step.real, 0.0)
+        if not abs(step) < last / 2:
+            break
+        last = abs(step)
+        w -= step
+        if abs(w.imag) <= REAL_BELOW * abs(w):
+            w = complex(w.real, 0.0)
+    return w
+
+
+def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
+    """The two roots near `middle` by the quadratic that D is about it; near a real one two real or a pair."""
+    D, D_w, S, _ = determinant.value(middle)
+    if middle.imag == 0:
+        D, D_w = complex(D.real, 0.0), complex(D_w.real, 0.0)
+    second = second_derivative(middle, S, determinant)
+    if second == 0:
+        return middle, middle
+    root = cmath.sqrt(D_w * D_w - 2 * D * second)
+    return middle + (root - D_w) / second, middle - (root + D_w) / second
+
+
+def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float) -> Roots:
+    """Eigenvalues of a mesh that approximate roots of D, refined to these roots.
+
+    raw: eigenvalues of a mesh, complex, shape (n,). most_waves: |q| that the mesh can stand for. Eigenvalues
+    that are infinite but for rounding lie outside the hull or beyond the mesh, or have no root near.
+    """
+    first = np.where(np.abs(raw.imag) <= REAL_BELOW * np.abs(raw), raw.real + 0j, raw)
+    first[~np.isfinite(raw)] = np.inf
+    inside = np.array([_inside(w, hull) for w in first.tolist()], dtype=bool)
+    error: Array = np.full(len(raw), math.inf)
+    length: Array = np.ones(len(raw))
+    wave: Array = np.full(len(raw), math.inf)
+    for i in np.flatnonzero(inside).tolist():
+        w = complex(first[i])
+        wave[i] = determinant.wave_number(w)
+        if wave[i] <= most_waves:
+            error[i], length[i] = root_error(w, determinant), determinant.length(w)
+    near = inside & (wave <= most_waves) & (error <= CLOSE_ROOTS * length)
+    chosen = np.flatnonzero(near)
+    start, error, length = first[chosen], error[chosen], length[chosen]
+    w, moved = _separated(start, error, determinant)
+    stands = moved | (error <= A_ROOT * length)
+    _refine(w, start, moved, stands, determinant)
+    kept = np.flatnonzero(stands)
+    order = np.arange(len(kept))
+    sort_descending(w[kept], order)
+    kept = kept[order]
+    w = w[kept]
+    error = np.array([root_error(value, determinant) for value in w.tolist()])
+    wave = np.array([determinant.wave_number(value) for value in w.tolist()])
+    displacement = np.abs(w - start[kept]) / np.maximum(np.abs(w), length[kept])
+    _tell_apart(w, error, determinant)
+    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
+    return Roots(chosen[kept], w, error, displacement, wave, axis, int(ahead))
+
+
+def _inside(w: complex, hull: Hull) -> bool:
+    """Whether the box at the depth of w contains it."""
+    if not cmath.isfinite(w):
+        return False
+    real, imag = hull.box(max(-w.real, 0.0))
+    return w.real <= real and abs(w.imag) <= imag
+
+
+def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Array]:
+    """(w, mask): pairs closer than their errors, marked by the mask, are moved to the two roots near them."""
+    w, moved = w.copy(), np.zeros(len(w), dtype=bool)
+    for i in range(len(w)):
+        others = [j for j in range(len(w)) if j != i and not moved[j]]
+        if moved[i] or not others:
+            continue
+        partner = min(others, key=lambda j: abs(w[j] - w[i]))
+        if abs(w[partner] - w[i]) <= REFINED_TOGETHER * (error[i] + error[partner]):
+            middle = complex(w[i] + w[partner]) / 2
+            if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
+                middle = complex(middle.real, 0.0)
+            w[i], w[partner] = two_roots(middle, determinant)
+            moved[i] = moved[partner] = True
+    return w, moved
+
+
+def _refine(w: Complex, start: Complex, moved: Array, stands: Array, determinant: ArmDeterminant) -> None:
+    """Replaces each w that stands for a root by the root; the second of a pair is the first's conjugate."""
+    for i in np.flatnonzero(stands).tolist():
+        pair = i > 0 and stands[i - 1] and w[i].imag != 0 and not moved[i - 1] and not moved[i]
+        if pair and start[i] == start[i - 1].conjugate():
+            w[i] = w[i - 1].conjugate()
+        else:
+            w[i] = refined(complex(w[i]), determinant)
+
+
+def _tell_apart(w: Complex, error: Array, determinant: ArmDeterminant) -> None:
+    """Raises the errors of two that are the same root to the distance of the next one, 2 |D'/D''|."""
+    for i in range(len(w)):
+        for j in range(i + 1, len(w)):
+            apart = abs(w[i] - w[j])
+            if apart <= SAME_ROOT * (error[i] + error[j]):
+                value = determinant.value(complex(w[i]))
+                second = abs(second_derivative(complex(w[i]), value.S, determinant))
+                next_root = 2 * abs(value.D_w) / max(second, 1e-300)
+                if apart < next_root / 4:
+                    error[i] = max(error[i], next_root)
+                    error[j] = max(error[j], next_root)
