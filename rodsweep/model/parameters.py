@@ -42,6 +42,8 @@ class Parameter:
     """Whether the transverse linear problem contains it."""
     rigid: str = ""
     """What a rod is called whose value is inf; empty where inf is not allowed."""
+    optional: bool = False
+    """Whether a sweep has the parameter only where its config names it, and stores it only then."""
     default: float | None = None
     """Value for grids that do not name the parameter; None for a parameter that every grid must name."""
     scales: tuple[str, ...] = ()
@@ -85,6 +87,10 @@ class Parameter:
         """ValueError where the value is not allowed; F < k1 is for `Rod` to check."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
+
+
+SMALLEST_TAPER, LARGEST_TAPER = 0.01, 100.0
+"""Range of the taper. A point, taper 0, has no stiffness at the tip where the force is."""
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
@@ -133,14 +139,30 @@ PARAMETERS = {
             linear=False,
             default=1.0,
         ),
+        Parameter(
+            name="taper",
+            symbol=r"r(1)/r(0)",
+            unit="1",
+            meaning="tip radius over base radius",
+            remark=" of a circular cone",
+            allowed=Range(
+                lambda value: SMALLEST_TAPER <= value <= LARGEST_TAPER,
+                f"a number from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g}",
+                {"minimum": SMALLEST_TAPER, "maximum": LARGEST_TAPER},
+            ),
+            optional=True,
+            default=1.0,
+        ),
     )
 }
 """All parameters by name, in the order used everywhere."""
 
-NONLINEAR_PARAMETERS = tuple(PARAMETERS)
-"""Names of the parameters of the nonlinear rod."""
-LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
-"""Names of the parameters of the linear problem."""
+NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
+"""Names of the parameters of the nonlinear rod, without optional ones."""
+LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].linear)
+"""Names of the parameters of the linear problem, without optional ones."""
+OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
+"""Names of the optional parameters."""
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
 """(parameter, multiplied stiffness or drag) for every parameter with `scales`."""
 CRUSHING = ("F", "k1")

@@ -14,9 +14,11 @@ import numpy as np
 from ..arrays import Array
 from .balance import Material, first_component
 from .material.build import STANDARD, Build, LocalCoefficients
-from .parameters import LINEAR_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
+from .parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
 
 Decorated = TypeVar("Decorated")
+OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+"""Names of all parameters that the transverse problem may contain."""
 ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """The test of each parameter's range: rods are made often."""
 
@@ -80,8 +82,8 @@ def with_parameters(cls: type[Decorated]) -> type[Decorated]:
 class Rod:
     """A rod under its follower force: one point of parameter space, with every parameter of the table.
 
-    The annotations are those that code asks for by name; the others are fields too. build: constitutive law,
-    taper and profile. Raises ValueError for a parameter outside the range that the table states, Crushed
+    The annotations are those that code asks for by name; the others are fields too. build: constitutive law
+    and profile. Raises ValueError for a parameter outside the range that the table states, Crushed
     for a force that is not below `crushing_force`.
     """
 
@@ -90,6 +92,7 @@ class Rod:
     k2: float
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral
+    taper: float = PARAMETERS["taper"].neutral
     build: Build = field(default=STANDARD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
@@ -102,7 +105,7 @@ class Rod:
             if not contains(value):
                 PARAMETERS[name].require(value)
         object.__setattr__(self, "values", values)
-        coefficients = coefficients_of(values) if self.build.standard else None
+        coefficients = coefficients_of(values) if self.build.standard and self.taper == 1 else None
         object.__setattr__(self, "_coefficients", coefficients)
         if coefficients is None and not self.crushing_force > self.F:
             raise Crushed(f"F = {self.F} is not below {self.crushing_force:.15g}, which crushes the arm")
@@ -123,7 +126,17 @@ class Rod:
     @property
     def crushing_force(self) -> float:
         """The force that crushes the arm where it is weakest, in k3/L^2; inf where no force does."""
-        return self.build.crushing_share * self.stretch_stiffness
+        return self.build.crushing_share(self.taper) * self.stretch_stiffness
+
+    @property
+    def uniform(self) -> bool:
+        """Whether stiffnesses and drags are the same all along the rod."""
+        return self.taper == 1 and self.build.profile is None
+
+    @property
+    def standard(self) -> bool:
+        """Whether the rod is uniform and of linear material, so that D has its closed form."""
+        return self._coefficients is not None
 
     @property
     def equivalent(self) -> tuple["Rod", float]:
@@ -132,7 +145,7 @@ class Rod:
         With K = B(nu) the coefficients (F/K, nu, c2 K, gamma3) are those of a linear rod, whose time runs K
         times as fast. NotUniform for an arm that varies.
         """
-        if not self.build.uniform:
+        if not self.uniform:
             raise NotUniform(f"{self} is not uniform")
         law = self.build.constitutive_law
         shortening = float(law.shortening(self.F * self.c1))
@@ -144,7 +157,7 @@ class Rod:
     @property
     def linear(self) -> "Rod":
         """The rod with the same straight state: parameters that only cycles depend on have their defaults."""
-        return Rod(**{name: getattr(self, name) for name in LINEAR_PARAMETERS}, build=self.build)
+        return Rod(**{name: self.values[name] for name in OF_TRANSVERSE_PROBLEM}, build=self.build)
 
     def coordinate(self, name: str) -> float:
         """Coordinate of the rod along a parameter: 1/k of a stiffness k, or the value."""

@@ -62,16 +62,16 @@ def test_only_the_linear_material_is_crushed():
     """A cone of linear material is crushed where it is thinnest; rubber carries any force."""
     arm = {"k1": 100.0, "k2": 50.0, "gamma3": 0.01}
     with pytest.raises(Crushed, match="not below 25,"):
-        Rod(F=25.0, **arm, build=Build(taper=0.5))
-    assert Rod(F=24.0, **arm, build=Build(taper=0.5)).crushing_force == 25
-    assert Rod(F=1000.0, **arm, build=Build(law="neo_hookean", taper=0.5)).crushing_force == np.inf
+        Rod(F=25.0, **arm, taper=0.5)
+    assert Rod(F=24.0, **arm, taper=0.5).crushing_force == 25
+    assert Rod(F=1000.0, **arm, taper=0.5, build=Build(law="neo_hookean")).crushing_force == np.inf
 
 
 def test_an_arm_that_varies_states_no_constant_coefficients():
     with pytest.raises(NotUniform):
-        _ = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, build=Build(taper=0.5)).coefficients
+        _ = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5).coefficients
 
 
 def test_a_rod_elsewhere_keeps_its_build():
-    rod = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, build=Build(law="neo_hookean", taper=0.5))
+    rod = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5, build=Build(law="neo_hookean"))
     assert rod.changed(F=2.0).build == rod.with_coordinate("k1", 0.0).build == rod.linear.build == rod.build

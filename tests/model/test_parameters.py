@@ -8,14 +8,22 @@ import pytest
 
 import rodsweep
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.model.parameters import CRUSHING, LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS, all_but
+from rodsweep.model.parameters import (
+    CRUSHING,
+    LINEAR_PARAMETERS,
+    NONLINEAR_PARAMETERS,
+    OPTIONAL_PARAMETERS,
+    PARAMETERS,
+    all_but,
+)
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.variables import DIMENSIONS
 
 
 def test_the_rod_has_all_parameters():
-    assert tuple(field.name for field in fields(Rod) if field.init) == (*NONLINEAR_PARAMETERS, "build")
+    assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "build")
     assert NONLINEAR_PARAMETERS[:4] == LINEAR_PARAMETERS
+    assert OPTIONAL_PARAMETERS == ("taper",)
     assert all_but("F") == LINEAR_PARAMETERS[1:]
     assert set(CRUSHING) <= set(LINEAR_PARAMETERS)
 
@@ -23,7 +31,7 @@ def test_the_rod_has_all_parameters():
 def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():
     for config in CONFIGS.values():
         keys = config.model_fields["parameters"].annotation.model_fields
-        assert {*NONLINEAR_PARAMETERS, "points", "arm"} == set(keys)
+        assert {*PARAMETERS, "points", "arm"} == set(keys)
     assert {DIMENSIONS[name] for name in PARAMETERS} == {(p.unit, p.long_name) for p in PARAMETERS.values()}
 
 
@@ -35,6 +43,7 @@ def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension
         ("k2", (1e-300, 1, inf), (0, -1.0, 1e-320, -inf)),
         ("gamma3", (0, 1e-320, 1e300), (-1e-320, inf)),
         ("gamma1", (1e-320, 1e300), (0, -1.0, inf)),
+        ("taper", (0.01, 100.0), (0, 0.009, -1.0, inf)),
     ],
 )
 def test_ranges(name, good, bad):

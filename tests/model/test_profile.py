@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTORS, Profile
 from rodsweep.model.rod import Rod
 
@@ -53,13 +52,13 @@ def test_tables_that_are_no_profile_are_refused(u, k3, sentence):
 
 @pytest.mark.parametrize("taper", [0.0, -1.0, np.inf, np.nan])
 def test_a_taper_of_a_point_is_refused(taper):
-    with pytest.raises(ValueError, match="is not a finite number above 0"):
-        Build(taper=taper)
+    with pytest.raises(ValueError, match="is not a number from 0.01 to 100"):
+        Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, taper=taper)
 
 
 def test_a_cone_scales_as_its_radius():
     """r = 0.75 in the middle of a cone of radius ratio 1/2."""
-    rod = Rod(F=3.0, k1=100.0, k2=50.0, gamma3=0.01, build=Build(taper=0.5))
+    rod = Rod(F=3.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5)
     here = rod.local(np.array([0.5]))
     np.testing.assert_allclose(1 / here.c2, 50 * 0.75**2)
     np.testing.assert_allclose(1 / here.c3, 0.75**4)

@@ -14,7 +14,8 @@ from ...discretization.elements.resolution import LARGEST_ORDER, Resolution
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ...solve.spectrum.krylov_schur import eigen_solver
-from ...solve.spectrum.search import SHIFT_ABOVE_GROWTH, SpectrumRequest, solve_spectrum
+from ...solve.spectrum.problem import SHIFT_ABOVE_GROWTH
+from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ..study import Contender
 
 WANTED_MODES = 4

@@ -40,7 +40,7 @@ ROUNDING_OF_D = 100.0
 RADII = (3.0, 1.5, 0.75)
 """Radii of circles that are tried, in units of the length over which D changes."""
 STEEPEST = 1.0
-"""Largest |L| times the unit of these radii: close to a zero of D the circle must be as small as its distance."""
+"""Largest |L| times the unit of these radii: close to a zero of D the circle is as small as its distance."""
 SMALLEST_REACH = 1e-12
 """Reach in units of |w| below which the line is taken to run through a zero of D."""
 MAX_NODES = 5000
@@ -49,7 +49,7 @@ STRIDE = 1.9
 UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.arange(CIRCLE) + 0.5) / CIRCLE)
 
 
-class Node(NamedTuple):
+class PhaseNode(NamedTuple):
     """A point w: D exp(-S) there, L = D'/D, and how far the phase is known from them."""
 
     w: complex
@@ -94,9 +94,7 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
     return Count(number, nodes)
 
 
-def phase_change(
-    start: complex, end: complex, determinant: ArmDeterminant, hull: Hull
-) -> tuple[float, int]:
+def phase_change(start: complex, end: complex, determinant: ArmDeterminant, hull: Hull) -> tuple[float, int]:
     """(change of arg D along the segment, nodes used); `PhaseLost` where it cannot be told."""
     length = abs(end - start)
     direction = (end - start) / length
@@ -107,7 +105,9 @@ def phase_change(
             raise PhaseLost(nodes)
         ahead = min(STRIDE * here.reach, length - t)
         while True:
-            there = node_at(end if ahead == length - t else start + direction * (t + ahead), determinant, hull)
+            there = node_at(
+                end if ahead == length - t else start + direction * (t + ahead), determinant, hull
+            )
             nodes += 1
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
@@ -119,7 +119,7 @@ def phase_change(
     return total, nodes
 
 
-def _turn(here: Node, there: Node) -> float:
+def _turn(here: PhaseNode, there: PhaseNode) -> float:
     """The change of phase between two nodes whose reaches meet."""
     step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
@@ -127,11 +127,11 @@ def _turn(here: Node, there: Node) -> float:
     return expected + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -expected)))
 
 
-def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> Node:
+def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> PhaseNode:
     """The node about w."""
     value = determinant.value(w)
     if not abs(value.D) > ROUNDING_OF_D * value.noise:
-        return Node(w, value.D, 0j, 0.0)
+        return PhaseNode(w, value.D, 0j, 0.0)
     L = value.D_w / value.D
     distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
     reach = 0.0
@@ -140,7 +140,7 @@ def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> Node:
         reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
     if not reach > determinant.length(w):
         reach = max(reach, _reach_inside(w, value, L, determinant))
-    return Node(w, value.D, L, reach)
+    return PhaseNode(w, value.D, L, reach)
 
 
 def _reach_inside(w: complex, value: Value, L: complex, determinant: ArmDeterminant) -> float:

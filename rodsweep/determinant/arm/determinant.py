@@ -5,14 +5,15 @@ They are so short that the fastest local exponential grows by exp(`LONGEST`) at 
 points resolve the coefficients; a break of the profile is always an end of an element.
 """
 
+import cmath
 import math
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..value import Value
@@ -36,13 +37,6 @@ KEPT = 16
 """Arms whose propagators are kept."""
 
 
-class LocalWaves(NamedTuple):
-    """|q| of the fastest exponential at points of the arm, and |dq/dw|, each of the shape of the points."""
-
-    number: Array
-    rate: Array
-
-
 class ArmDeterminant:
     """D(w) of one arm; raises FloatingPointError where no `MAX_ELEMENTS` elements resolve it."""
 
@@ -54,6 +48,7 @@ class ArmDeterminant:
         self._points: Array = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
         self._weights: Array = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
         self._local = rod.local(self._points)
+        self._sampled: Array = np.array(self._local)
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -64,17 +59,13 @@ class ArmDeterminant:
         """The number of elements that D takes at |w| = size."""
         return len(self._level(size)[1])
 
-    def waves(self, w: complex) -> LocalWaves:
-        """The local exponents at w, as if the arm were uniform there."""
-        return local_waves(w, self.rod.F, self._local)
-
     def wave_number(self, w: complex) -> float:
         """The mean |q| of the fastest exponential along the arm, in 1/L."""
-        return float(self._weights @ self.waves(w).number)
+        return mean_waves(w, self.rod.F, self._sampled, self._weights)[0]
 
     def length(self, w: complex) -> float:
         """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
-        return 1 / max(float(self._weights @ self.waves(w).rate), 1e-300)
+        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._weights)[1], 1e-300)
 
     def _level(self, size: float) -> tuple[float, Array]:
         """(W, propagators) for |w| = size."""
@@ -104,8 +95,8 @@ class ArmDeterminant:
     def _edges(self, W: float) -> Array:
         """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
         density = bound_of_waves(W, self.rod.F, self._local) / LONGEST
-        if self.rod.build.taper != 1:
-            apex = 1 / (1 - self.rod.build.taper)
+        if self.rod.taper != 1:
+            apex = 1 / (1 - self.rod.taper)
             density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - self._points)))
         edges = [np.zeros(1)]
         breaks = self.rod.build.breaks
@@ -131,21 +122,26 @@ def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
     return np.sqrt((c2 + gamma3) * w + np.abs(force * local.g) + 2 * np.sqrt(square))
 
 
-def local_waves(w: complex, F: float, local: LocalCoefficients) -> LocalWaves:
-    """Mean |q| of both pairs of exponents and the larger |dq/dw|, each (points,)."""
-    v, force, c2, gamma3 = _as_uniform(w, F, local)
-    T, X = c2 + gamma3, c2 * gamma3
-    P = np.sqrt(v * (local.g * local.nu + X * v) + 0j)
-    M = T * v - force * local.g
-    roots = np.sqrt(np.abs(M + 2 * P)), np.sqrt(np.abs(M - 2 * P))
-    size = np.abs(P)
-    towards = np.where(size == 0, 1, np.conj(P) / np.where(size == 0, 1, size))
-    # Where both squares are close D depends on P^2, which has no branch point, and not on P.
-    turn = (local.g * local.nu + 2 * X * v) * towards / np.maximum(size, np.maximum(1.0, np.maximum(*roots)))
-    rates = [
-        np.abs(T + sign * turn) / (2 * np.maximum(1.0, q)) for sign, q in ((1, roots[0]), (-1, roots[1]))
-    ]
-    return LocalWaves((roots[0] + roots[1]) / 2, np.maximum(*rates) * local.gamma2 * local.c3)
+@compiled
+def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[float, float]:
+    """(mean |q| of both pairs of exponents, mean of the larger |dq/dw|) along an arm.
+
+    local: the `LocalCoefficients` at points, (6, points); weights: of these points, (points,).
+    """
+    number, rate = 0.0, 0.0
+    for i in range(len(weights)):
+        nu, c2, c3, gamma2, gamma3, g = local[:, i]
+        v, T, X = w * gamma2 * c3, c2 / c3 + gamma3 / gamma2, c2 / c3 * gamma3 / gamma2
+        P = cmath.sqrt(v * (g * nu + X * v))
+        M, size = T * v - F * c3 * g, abs(P)
+        first, second = math.sqrt(abs(M + 2 * P)), math.sqrt(abs(M - 2 * P))
+        towards = P.conjugate() / size if size > 0 else 1 + 0j
+        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
+        turn = (g * nu + 2 * X * v) * towards / max(size, 1.0, first, second)
+        fast = max(abs(T + turn) / max(1.0, first), abs(T - turn) / max(1.0, second)) / 2
+        number += weights[i] * (first + second) / 2
+        rate += weights[i] * fast * gamma2 * c3
+    return number, rate
 
 
 @lru_cache(maxsize=KEPT)

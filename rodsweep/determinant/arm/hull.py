@@ -22,6 +22,7 @@ Extremes along the arm are looked up at points between the breaks, with `MARGIN`
 """
 
 from collections.abc import Iterator
+from functools import cache
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
@@ -125,10 +126,10 @@ def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
     if not gamma3.all():
         return
     ratio = np.abs(g / nu)
-    alphas = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
-    for alpha in np.append(alphas, 1.0):
-        turn = float(((g - alpha * nu) ** 2 / (gamma3 * alpha * c2)).max())
-        yield Hull(sqrt(max(alpha * push, turn)), 0.0)
+    some = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
+    alphas = np.append(some, 1.0)
+    turns = ((g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)).max(axis=1)
+    yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
 
 
 def _following(rod: Rod, pieces: list[Piece]) -> Iterator[Hull]:
@@ -145,7 +146,7 @@ def _norm(F: float, piece: Piece, factor: float) -> float:
     nu, c2, c3, gamma2, gamma3, g = piece.local
     level = factor * abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
     alpha = g / (nu + level)
-    slope = _derivative(piece.u, np.log(alpha))
+    slope = _chebyshev()[0] @ np.log(alpha) * 2 / (piece.u[-1] - piece.u[0])
     A = slope / np.sqrt(gamma2 * c2)
     B = F * np.sqrt(alpha * c3 / gamma2)
     e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
@@ -155,21 +156,24 @@ def _norm(F: float, piece: Piece, factor: float) -> float:
     return sqrt(float(largest.max()))
 
 
-def _derivative(u: Array, values: Array) -> Array:
-    """The derivative of the interpolant through Chebyshev points."""
-    series = np.polynomial.Chebyshev.fit(u, values, len(u) - 1, domain=[u[0], u[-1]])
-    derivative: Array = series.deriv()(u)
-    return derivative
+@cache
+def _chebyshev() -> tuple[Array, Array]:
+    """(derivative, integral from -1) of the interpolant through the points in [-1, 1], as matrices."""
+    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, POINTS - 1))
+    slopes = np.polynomial.chebyshev.chebder(to_series)
+    integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
+    derivative = np.polynomial.chebyshev.chebvander(x, POINTS - 2) @ slopes
+    return derivative, np.polynomial.chebyshev.chebvander(x, POINTS) @ integrals
 
 
 def _by_clamp(F: float, pieces: list[Piece]) -> Iterator[Hull]:
     """The region by alpha = 1 and theta(0) = 0, which needs no rotational drag."""
     below, integral = 0.0, 0.0  # of c3, and of what bounds the term with theta
     for u, (_, c2, c3, _, _, _) in pieces:
-        primitive = np.polynomial.Chebyshev.fit(u, c3, len(u) - 1, domain=[u[0], u[-1]]).integ(lbnd=u[0])
-        turned = below + primitive(u)
-        density = np.polynomial.Chebyshev.fit(u, c2 * turned, len(u) - 1, domain=[u[0], u[-1]])
-        integral += float(density.integ(lbnd=u[0])(u[-1]))
+        along = _chebyshev()[1] * (u[-1] - u[0]) / 2
+        turned = below + along @ c3
+        integral += float(along[-1] @ (c2 * turned))
         below = float(turned[-1])
     c = MARGIN * abs(F) * sqrt(max(integral, 0.0)) / 2
     local = _joined(pieces)

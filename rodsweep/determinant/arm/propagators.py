@@ -76,14 +76,18 @@ def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: f
     return np.stack(terms, axis=1)
 
 
-def tail_of(local: LocalCoefficients) -> Array:
-    """The last two coefficients of the Legendre series of the coefficients, relative, (elements,)."""
-    stages = local.nu.shape[-1]
+@cache
+def _last_terms(stages: int) -> Array:
+    """Matrix from values at the Gauss points to the last two Legendre coefficients, (stages, 2)."""
     x, weights = np.polynomial.legendre.leggauss(stages)
     last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
-    tails = []
-    for values in local[:5]:
-        size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
-        tails.append(np.abs(values * weights @ last).max(axis=-1) / size)
-    largest: Array = np.max(tails, axis=0)
+    terms: Array = weights[:, None] * last
+    return terms
+
+
+def tail_of(local: LocalCoefficients) -> Array:
+    """The last two coefficients of the Legendre series of the coefficients, relative, (elements,)."""
+    values = np.array(local[:5])
+    size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
+    largest: Array = (np.abs(values @ _last_terms(values.shape[-1])).max(axis=-1) / size).max(axis=0)
     return largest

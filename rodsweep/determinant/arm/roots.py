@@ -7,6 +7,7 @@ import cmath
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ..newton import MOST_REFINEMENTS, REAL_BELOW
@@ -23,6 +24,8 @@ from ..roots import (
 from ..value import SECOND_STEP, TYPICAL_NOISE
 from .determinant import ArmDeterminant
 from .hull import Hull
+
+Mask = NDArray[np.bool_]
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
@@ -94,10 +97,10 @@ def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: flo
     length: Array = np.ones(len(raw))
     wave: Array = np.full(len(raw), math.inf)
     for i in np.flatnonzero(inside).tolist():
-        w = complex(first[i])
-        wave[i] = determinant.wave_number(w)
+        guess = complex(first[i])
+        wave[i] = determinant.wave_number(guess)
         if wave[i] <= most_waves:
-            error[i], length[i] = root_error(w, determinant), determinant.length(w)
+            error[i], length[i] = root_error(guess, determinant), determinant.length(guess)
     near = inside & (wave <= most_waves) & (error <= CLOSE_ROOTS * length)
     chosen = np.flatnonzero(near)
     start, error, length = first[chosen], error[chosen], length[chosen]
@@ -126,7 +129,7 @@ def _inside(w: complex, hull: Hull) -> bool:
     return w.real <= real and abs(w.imag) <= imag
 
 
-def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Array]:
+def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Mask]:
     """(w, mask): pairs closer than their errors, marked by the mask, are moved to the two roots near them."""
     w, moved = w.copy(), np.zeros(len(w), dtype=bool)
     for i in range(len(w)):
@@ -143,7 +146,7 @@ def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[C
     return w, moved
 
 
-def _refine(w: Complex, start: Complex, moved: Array, stands: Array, determinant: ArmDeterminant) -> None:
+def _refine(w: Complex, start: Complex, moved: Mask, stands: Mask, determinant: ArmDeterminant) -> None:
     """Replaces each w that stands for a root by the root; the second of a pair is the first's conjugate."""
     for i in np.flatnonzero(stands).tolist():
         pair = i > 0 and stands[i - 1] and w[i].imag != 0 and not moved[i - 1] and not moved[i]

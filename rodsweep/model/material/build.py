@@ -1,9 +1,8 @@
-"""Build of an arm: constitutive law, taper and profile, and the coefficients along u that follow."""
+"""Build of an arm: constitutive law and profile, and the coefficients along u that follow."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from math import inf
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,9 @@ import numpy as np
 from ...arrays import Array
 from .laws import LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
+
+AREA_SAMPLES = 256
+"""Points between two rows of a profile at which the smallest area is looked up, beside the rows."""
 
 
 class LocalCoefficients(NamedTuple):
@@ -29,37 +31,23 @@ class LocalCoefficients(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """Law, taper and profile of an arm. Compares and hashes by its values.
+    """Law and profile of an arm. Compares and hashes by its values.
 
-    law, section: a key of `LAWS`. taper: tip radius over base radius of a circular cone. profile: factors of
-    stiffnesses and drags along the arm, or None. Raises ValueError for an unknown law and for a taper that is
-    no finite number above 0.
+    law, section: a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, or None. Raises
+    ValueError for an unknown law.
     """
 
     law: str = LINEAR.law
     section: str = LINEAR.section
-    taper: float = 1.0
     profile: Profile | None = None
 
     def __post_init__(self) -> None:
         law_of(self.law, self.section)
-        if not 0 < self.taper < inf:
-            raise ValueError(f"taper = {self.taper} is not a finite number above 0")
-
-    @cached_property
-    def uniform(self) -> bool:
-        """Whether stiffnesses and drags are constant along the arm."""
-        return self.taper == 1 and self.profile is None
-
-    @cached_property
-    def continuous(self) -> bool:
-        """Whether no coefficient jumps along the arm."""
-        return self.profile is None or len(self.profile.breaks) == len(self.profile.u)
 
     @cached_property
     def standard(self) -> bool:
-        """Whether the arm is uniform and of linear material, so that D has its closed form."""
-        return self.uniform and self.constitutive_law is LINEAR
+        """Whether the material is linear and the same all along the arm."""
+        return self.profile is None and self.constitutive_law is LINEAR
 
     @property
     def constitutive_law(self) -> Law:
@@ -67,20 +55,18 @@ class Build:
         return law_of(self.law, self.section)
 
     @cached_property
-    def crushing_share(self) -> float:
-        """The force that crushes the weakest section, in units of k1 at the base; inf if no force does.
-
-        A lower bound for an arm with a taper and a profile.
-        """
-        weakest = min(1.0, self.taper**2)
-        if self.profile is not None:
-            weakest *= min(row[FACTORS.index("k1")] for row in self.profile.rows)
-        return self.constitutive_law.largest_load * weakest
+    def continuous(self) -> bool:
+        """Whether no coefficient jumps along the arm."""
+        return self.profile is None or len(self.profile.breaks) == len(self.profile.u)
 
     @cached_property
     def breaks(self) -> Array:
         """The u between which all coefficients are smooth, increasing, both ends included, (breaks,)."""
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
+
+    def crushing_share(self, taper: float) -> float:
+        """The force that crushes the weakest section, in units of k1 at the base; inf if no force does."""
+        return self.constitutive_law.largest_load * _smallest_area(self.profile, taper)
 
     def local(self, F: float, at_base: Mapping[str, float], u: Array) -> LocalCoefficients:
         """Coefficients at points u, any shape (...,), under the force F; at_base: parameters at u = 0.
@@ -89,7 +75,7 @@ class Build:
         """
         ones: Array = np.ones((len(FACTORS), *u.shape))
         factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))
-        radius = 1 - (1 - self.taper) * u
+        radius = 1 - (1 - at_base["taper"]) * u
         for name, power in RADIUS_POWERS.items():
             factors[name] = factors[name] * radius**power
         law = self.constitutive_law
@@ -100,5 +86,19 @@ class Build:
         return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
 
 
+@lru_cache(maxsize=1024)
+def _smallest_area(profile: Profile | None, taper: float) -> float:
+    """The smallest k1 along the arm, in units of that at the base."""
+    ends = min(1.0, taper**2)
+    if profile is None:
+        return ends
+    k1 = FACTORS.index("k1")
+    rows = [(1 - (1 - taper) * u) ** 2 * row[k1] for u, row in zip(profile.u, profile.rows, strict=True)]
+    inside = (np.arange(AREA_SAMPLES) + 0.5) / AREA_SAMPLES
+    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
+    between = (1 - (1 - taper) * points) ** 2 * profile.factors(points)[k1]
+    return min(*rows, float(between.min()))
+
+
 STANDARD = Build()
-"""The uniform arm of linear material."""
+"""Linear material that is the same all along the arm."""

@@ -5,21 +5,17 @@ missing. What to do about it is `rodsweep.solve.spectrum.search`'s to decide.
 """
 
 from dataclasses import dataclass
-from math import sqrt
 from operator import truediv
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.certificate.box import squared_amplification
-from ...determinant.certificate.winding_number import Count, count_right_of
-from ...determinant.roots import Roots, roots
-from ...discretization.elements.resolution import Resolution
-from ...model.rod import Rod
+from ...determinant.certificate.winding_number import Count
+from ...determinant.roots import Roots
 from ..backend.petsc import PETSC_ERRORS
 from ..point import cause_of
-from .krylov_schur import eigen_solver, forget_solvers
+from .problem import Mesh, TransverseProblem, forget_solvers
 
 WAVES_A_NODE = 2.0
 """Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
@@ -41,7 +37,7 @@ class Candidates:
     vectors: the mesh's, shape (unknowns, k), or None; failure: why SLEPc or LAPACK gave nothing, or empty.
     """
 
-    resolution: Resolution
+    mesh: Mesh
     roots: Roots
     vectors: Complex | None
     failure: str = ""
@@ -67,10 +63,8 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(
-    rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool, tight: bool
-) -> Candidates:
-    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
+def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
+    """The eigenvalues nearest the problem's shift, at least `wanted` where they converge, without impostors.
 
     tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
     is no eigenvalue found: to them another mesh is another matrix, on which the same need not happen.
@@ -78,24 +72,23 @@ def attempt(
     raw: Complex = np.empty(0, complex)
     kept, failure = None, ""
     try:
-        solver = eigen_solver(resolution)
-        raw = solver.solve(rod, shift, wanted, tight)
+        solver = problem.solver(mesh)
+        raw = solver.solve(problem.rod, problem.shift, wanted, tight)
         kept = solver.vectors(len(raw)) if vectors else None
     except PETSC_ERRORS as error:
         forget_solvers()
         failure = cause_of(error)
-    most_waves = WAVES_A_NODE * resolution.elements * resolution.order
-    kept_roots = roots(raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves)
+    kept_roots = problem.roots(raw, WAVES_A_NODE * mesh.elements * mesh.order)
     kept = kept[:, kept_roots.chosen] if kept is not None else None
-    return Candidates(resolution, kept_roots, kept, failure)
+    return Candidates(mesh, kept_roots, kept, failure)
 
 
-def judge(rod: Rod, found: Roots, modes: int) -> Verdict:
+def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
     """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
     w: Any = found.w.tolist()  # so few that Python is faster than NumPy
     errors: Any = found.error.tolist()
     for line in lines(w, modes):
-        count = count_right_of(line, rod)
+        count = problem.count(line)
         if count.number is not None:
             break
     here = sum(value.real > line for value in w)

@@ -5,30 +5,19 @@ eigenvalues, and refines them on D. How far the mesh was off, the error that is 
 what to change next; all must be in order before a point is ok.
 """
 
-from dataclasses import dataclass
-from math import isfinite
+from dataclasses import dataclass, replace
 from typing import Any
 
-from ...determinant.certificate.box import squared_amplification
-from ...discretization.elements.resolution import (
-    MOST_UNKNOWNS,
-    expected_wave_number,
-    finer,
-    mesh_accuracy,
-    resolution_for,
-)
-from ...model.dispersion import most_amplified_wave
+from ...discretization.elements.resolution import MOST_UNKNOWNS, mesh_accuracy
 from ...model.rod import Rod
 from ..point import solved
 from .candidates import Candidates, Verdict, attempt, judge
-from .krylov_schur import forget_solvers
+from .problem import TransverseProblem, forget_solvers, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
-__all__ = ["SHIFT_ABOVE_GROWTH", "Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
+__all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
-SHIFT_ABOVE_GROWTH = 1.05
-"""Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
 SPARE_MODES = 1
 """Eigenvalues asked for beyond those that the winding number counts."""
 MOST_MESHES_TRIED = 12
@@ -65,7 +54,16 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
         forget_solvers()
         return no_spectrum(SpectrumStatus.failed, request, cause)
 
+    if rod.uniform and not rod.standard:
+        return _in_own_time(rod, request)
     return solved(lambda: Search(rod, request).outcome(), failed)
+
+
+def _in_own_time(rod: Rod, request: SpectrumRequest) -> Spectrum:
+    """The spectrum of a uniform rod of any law, from that of the linear rod to which it is equivalent."""
+    linear, rate = rod.equivalent
+    found = solve_spectrum(linear, request)
+    return replace(found, eigenvalues=rate * found.eigenvalues, error_estimate=rate * found.error_estimate)
 
 
 def warm_up() -> None:
@@ -80,13 +78,11 @@ class Search:
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
-        growth, wave = most_amplified_wave(rod)
-        self.rod, self.request, self.modes = rod, request, request.modes
+        self.problem, self.request, self.modes = problem_of(rod), request, request.modes
         self.with_vectors = request.vector_nodes > 0
-        self.shift = SHIFT_ABOVE_GROWTH * growth
-        self.bounded = isfinite(squared_amplification(rod))
-        self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if self.bounded else request.accuracy
-        self.mesh = resolution_for(expected_wave_number(request.modes, wave), self.aim)
+        bounded = self.problem.bounded
+        self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
+        self.mesh = self.problem.mesh_for(request.modes, self.aim)
         self.wanted = request.modes if wanted is None else wanted
         self.best: Judged | None = None
         self.stalled = self.failures = 0
@@ -102,16 +98,14 @@ class Search:
             if self.mesh.unknowns > MOST_UNKNOWNS or self.failures > MOST_FAILURES:
                 break
             tight = self.with_vectors or turn > 0
-            found = attempt(self.rod, self.mesh, self.wanted, self.shift, self.with_vectors, tight)
+            found = attempt(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
             judged = self.judged(found)
             if judged is None:
                 continue
             self.keep(judged)
             if judged.short <= SAFETY or self.stalled >= NO_PROGRESS:
                 break
-            # What the wave numbers now known ask for, at least the next finer one.
-            informed = resolution_for(float(found.roots.wave[: self.modes].max()), self.aim)
-            self.mesh = max(informed, finer(found.resolution), key=lambda mesh: mesh.unknowns)
+            self.mesh = self.problem.informed(found.mesh, found.roots.wave[: self.modes], self.aim)
         return self.concluded()
 
     def judged(self, found: Candidates) -> Judged | None:
@@ -120,11 +114,11 @@ class Search:
             # Too few converged, what converged stands for no root yet, or SLEPc failed: do both more.
             self.failures += bool(found.failure)
             self.why = found.failure or self.why
-            self.wanted, self.mesh = self.wanted + self.modes, finer(self.mesh)
+            self.wanted, self.mesh = self.wanted + self.modes, self.problem.finer(self.mesh)
             return None
-        verdict = judge(self.rod, found.roots, self.modes) if self.request.certify else None
+        verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
         if verdict is not None and verdict.count.number is None and found.roots.ahead:
-            self.unresolved, self.mesh = True, finer(self.mesh)
+            self.unresolved, self.mesh = True, self.problem.finer(self.mesh)
             return None
         if verdict is not None and verdict.count.number is not None and not verdict.agrees:
             self.lost = verdict
@@ -140,20 +134,20 @@ class Search:
         error = found.worst(self.modes) / self.request.accuracy
         if verdict is not None and verdict.agrees and not self.with_vectors:
             return error
-        allowed = LARGEST_DISPLACEMENT if self.bounded else UNBOUNDED_DISPLACEMENT
+        allowed = LARGEST_DISPLACEMENT if self.problem.bounded else UNBOUNDED_DISPLACEMENT
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def search_more(self, number: int, here: int) -> None:
         """Asks for more after a count of `number`, of which `here` were found."""
         if number <= here:  # impostors, or a line that the mesh leaves within the errors
-            self.mesh = finer(self.mesh)
+            self.mesh = self.problem.finer(self.mesh)
             return
         more = number + SPARE_MODES
         if more <= self.wanted:  # enough were asked for: they are farther from the shift, or beyond the mesh
-            more, self.mesh = self.wanted + number - here + SPARE_MODES, finer(self.mesh)
+            more, self.mesh = self.wanted + number - here + SPARE_MODES, self.problem.finer(self.mesh)
         while more > self.mesh.unknowns // 6 and self.mesh.unknowns <= MOST_UNKNOWNS:
-            self.mesh = finer(self.mesh)
+            self.mesh = self.problem.finer(self.mesh)
         self.wanted = more
 
     def keep(self, judged: Judged) -> None:
@@ -167,7 +161,7 @@ class Search:
     def concluded(self) -> Spectrum:
         """The best that was found, or why there is nothing."""
         if self.best is not None:
-            return _result(self.best, self.rod, self.request)
+            return _result(self.best, self.problem, self.request)
         if self.lost is not None:
             counted = f"the winding number counts {self.lost.count.number}"
             return no_spectrum(SpectrumStatus.modes_missing, self.request, counted)
@@ -176,7 +170,7 @@ class Search:
         return no_spectrum(SpectrumStatus.failed, self.request, self.why)
 
 
-def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
+def _result(best: Judged, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The outcome with its numbers, and how far they are proved."""
     found, verdict = best.found.roots, best.verdict
     status = SpectrumStatus.ok if best.short <= STALLED_SAFETY else SpectrumStatus.accuracy_not_reached
@@ -199,8 +193,8 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
         error_estimate=found.error[: request.modes],
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
-        elements=best.found.resolution.elements,
-        order=best.found.resolution.order,
-        vectors=vectors_on_nodes(rod, request, best.found.resolution, best.found.vectors),
+        elements=best.found.mesh.elements,
+        order=best.found.mesh.order,
+        vectors=vectors_on_nodes(problem, request, best.found.mesh, best.found.vectors),
         message=message,
     )

@@ -7,10 +7,8 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.elements.quadrature import lobatto_points
-from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.pencil import tip_scale
-from ...model.rod import Rod
-from .krylov_schur import eigen_solver
+from .problem import Mesh, TransverseProblem
 from .status import SpectrumStatus
 
 
@@ -65,7 +63,7 @@ class Spectrum:
 
 
 def vectors_on_nodes(
-    rod: Rod, request: SpectrumRequest, resolution: Resolution, found: Complex | None
+    problem: TransverseProblem, request: SpectrumRequest, mesh: Mesh, found: Complex | None
 ) -> Complex | None:
     """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), of a mesh's vectors, (unknowns, k).
 
@@ -73,9 +71,8 @@ def vectors_on_nodes(
     """
     if found is None:
         return None
-    pencil = eigen_solver(resolution).pencil
-    y, theta = pencil.fields(found[:, : request.modes], rod)
-    matrix, scale = pencil.evaluation(lobatto_points(request.vector_nodes)), tip_scale(y, theta)
+    y, theta = problem.fields(mesh, found[:, : request.modes])
+    matrix, scale = problem.evaluation(mesh, lobatto_points(request.vector_nodes)), tip_scale(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 

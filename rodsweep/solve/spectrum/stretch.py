@@ -19,8 +19,8 @@ from ...model.rod import Rod, coefficients_of
 from ..point import FAILURES
 from .carried_count import best_gap, carry, judge_points, leading, line_in
 from .following import follow
-from .krylov_schur import forget_solvers
 from .prediction import Track, part
+from .problem import forget_solvers
 from .search import Search, Spectrum, SpectrumRequest, solve_spectrum
 from .search import warm_up as warm_up_search
 from .status import SpectrumStatus

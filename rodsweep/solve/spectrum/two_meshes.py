@@ -12,19 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.elements.resolution import (
-    MOST_UNKNOWNS,
-    Resolution,
-    expected_wave_number,
-    finer,
-    mesh_accuracy,
-    resolution_for,
-)
-from ...model.dispersion import most_amplified_wave
+from ...discretization.elements.resolution import MOST_UNKNOWNS, mesh_accuracy
 from ...model.rod import Rod
 from ..point import Unsolvable, solved
-from .krylov_schur import eigen_solver, forget_solvers
-from .search import SHIFT_ABOVE_GROWTH
+from .problem import Mesh, TransverseProblem, forget_solvers, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
@@ -53,19 +44,19 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    growth, wave = most_amplified_wave(rod)
-    shift, modes = SHIFT_ABOVE_GROWTH * growth, request.modes
+    problem, modes = problem_of(rod), request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
-    mesh = resolution_for(expected_wave_number(modes, wave), aim)
-    before = _leading(rod, mesh, modes, shift)
+    mesh: Mesh = problem.mesh_for(modes, aim)
+    before = _leading(problem, mesh, modes)
     best: Spectrum | None = None
     for _ in range(MOST_FINER):
-        mesh = finer(mesh)
+        mesh = problem.finer(mesh)
         if mesh.unknowns > MOST_UNKNOWNS:
             break
-        found = _leading(rod, mesh, modes, shift)
+        found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
-            here = _spectrum(rod, request, mesh, found, _errors(found.w, before.w, abs(shift) + rod.F**2))
+            scale = abs(problem.shift) + rod.F**2
+            here = _spectrum(problem, request, mesh, found, _errors(found.w, before.w, scale))
             if here.status == SpectrumStatus.ok:
                 return here
             best = here if best is None else min(best, here, key=_worst)  # the finest may round most
@@ -83,14 +74,14 @@ class _Found(NamedTuple):
     indices: NDArray[np.intp]
 
 
-def _leading(rod: Rod, mesh: Resolution, modes: int, shift: float) -> _Found:
+def _leading(problem: TransverseProblem, mesh: Mesh, modes: int) -> _Found:
     """At least so many leading eigenvalues of a mesh among all that were found on it.
 
     None of a mesh so coarse that twice as many cannot be asked for.
     """
-    solver, wanted, before = eigen_solver(mesh), modes + SPARE, np.empty(0, complex)
+    solver, wanted, before = problem.solver(mesh), modes + SPARE, np.empty(0, complex)
     while True:
-        raw = solver.solve(rod, shift, wanted, tight=True)
+        raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         same = len(leading) == len(before) == modes and np.allclose(leading, before, rtol=UNCHANGED, atol=0)
@@ -122,13 +113,15 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     return errors
 
 
-def _spectrum(rod: Rod, request: SpectrumRequest, mesh: Resolution, found: _Found, error: Array) -> Spectrum:
+def _spectrum(
+    problem: TransverseProblem, request: SpectrumRequest, mesh: Mesh, found: _Found, error: Array
+) -> Spectrum:
     """The outcome of a mesh; error: absolute, of all its eigenvalues, (k,)."""
     w, modes = found.w, request.modes
     enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
     if request.vector_nodes and enough:
-        vectors = eigen_solver(mesh).vectors(len(w))[:, found.indices]
+        vectors = problem.solver(mesh).vectors(len(w))[:, found.indices]
     unstable = int((w.real > 0).sum())
     decide = slice(max(modes, unstable + 1))  # what is sorted behind decays faster
     known = unstable < len(w) and not (np.abs(w.real) <= error)[decide].any()
@@ -139,5 +132,5 @@ def _spectrum(rod: Rod, request: SpectrumRequest, mesh: Resolution, found: _Foun
         unstable_count=unstable if known else -1,
         elements=mesh.elements,
         order=mesh.order,
-        vectors=vectors_on_nodes(rod, request, mesh, vectors),
+        vectors=vectors_on_nodes(problem, request, mesh, vectors),
     )

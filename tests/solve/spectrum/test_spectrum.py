@@ -11,9 +11,10 @@ from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
-from rodsweep.solve.spectrum import candidates as candidates_module
-from rodsweep.solve.spectrum.krylov_schur import DENSE_UP_TO, MOST_KEPT, eigen_solver
+from rodsweep.solve.spectrum import problem as problem_module
+from rodsweep.solve.spectrum.krylov_schur import MOST_KEPT, eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.shift_invert import DENSE_UP_TO
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -183,9 +184,9 @@ class Forgetful:
 def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remembers_from, status):
     rod = Rod(F=50.0, k1=1e4, k2=1e4, gamma3=1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    real = candidates_module.eigen_solver
+    real = problem_module.eigen_solver
     monkeypatch.setattr(
-        candidates_module, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
+        problem_module, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
     )
     result = solve_spectrum(rod, TIGHT)
     assert result.status == status
@@ -236,8 +237,8 @@ class Failing:
 def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    failing = Failing(candidates_module.eigen_solver, failures, PETSc.Error(76))
-    monkeypatch.setattr(candidates_module, "eigen_solver", failing)
+    failing = Failing(problem_module.eigen_solver, failures, PETSc.Error(76))
+    monkeypatch.setattr(problem_module, "eigen_solver", failing)
     result = solve_spectrum(rod, TIGHT)
     assert (result.status, result.unstable_count, result.certified) == (SpectrumStatus.ok, 0, True)
     assert np.allclose(result.eigenvalues, whole.eigenvalues, rtol=1e-12)
@@ -247,9 +248,9 @@ def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
 def test_lasting_error_inside_slepc_is_told(monkeypatch):
     # A PETSc.Error that PETSc did not raise speaks of the last one that it did.
     failing = Failing(
-        candidates_module.eigen_solver, 10**9, SystemError("Error in LAPACK subroutine trexc: info=1")
+        problem_module.eigen_solver, 10**9, SystemError("Error in LAPACK subroutine trexc: info=1")
     )
-    monkeypatch.setattr(candidates_module, "eigen_solver", failing)
+    monkeypatch.setattr(problem_module, "eigen_solver", failing)
     result = solve_spectrum(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert (result.status, len(failing.meshes)) == (SpectrumStatus.failed, 4)
     assert result.message == "Error in LAPACK subroutine trexc: info=1"

@@ -1,0 +1,176 @@
+"""The transverse eigenproblem of an arm with profiles and any law as a sparse matrix pencil.
+
+The form is that of `rodsweep.discretization.straight.pencil` with weights c2(u), c3(u), nu(u), g(u) at the
+Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. An element ends where a coefficient jumps, so that
+the solution is smooth within each. The matrix is not affine in any parameter: it is filled for every arm.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...model.rod import Rod
+from ..elements.basis import differentiation, interpolation
+from ..elements.quadrature import gauss, gauss_lobatto
+from .pencil import LEAST_ANGLE_WEIGHT, SHEAR_WEIGHT
+
+INSIDE = 1e-9
+"""Distance of the outer nodes of an element from its ends, in units of its length, where coefficients are
+taken: at a jump an element has those of its own side."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArmMesh:
+    """Elements between `edges`, from 0 to 1, all of one order."""
+
+    edges: tuple[float, ...]
+    order: int
+
+    @property
+    def elements(self) -> int:
+        """The number of elements."""
+        return len(self.edges) - 1
+
+    @property
+    def nodes(self) -> int:
+        """The number of Lobatto nodes without the clamp."""
+        return self.elements * self.order
+
+    @property
+    def unknowns(self) -> int:
+        """The number of unknowns y, theta and s."""
+        return 3 * self.nodes
+
+
+class Matrices(NamedTuple):
+    """The pencil of one arm.
+
+    A: entries in the order of the pattern, (nnz,). B: its diagonal, (unknowns,). scale: what y and theta at
+    the nodes are in units of the unknowns, (2, nodes).
+    """
+
+    A: Array
+    B: Array
+    scale: Array
+
+
+class ArmPencil:
+    """The pattern of the pencil on a mesh, and its entries for any arm whose breaks are edges of the mesh.
+
+    rows, columns: of the pattern, (nnz,), sorted by row, then column, diagonal included. The unknowns are
+    (y, theta, s), `mesh.nodes` of each.
+    """
+
+    def __init__(self, mesh: ArmMesh):
+        self.mesh = mesh
+        self.order, self.nodes, self.unknowns = mesh.order, mesh.nodes, mesh.unknowns
+        edges = np.array(mesh.edges)
+        self._h = np.diff(edges)
+        self._x, self._w = gauss_lobatto(mesh.order)
+        xg, self._wg = gauss(mesh.order)
+        self._value = interpolation(self._x, xg)
+        self._slope = self._value @ differentiation(self._x)
+        self._gauss_points: Array = edges[:-1, None] + self._h[:, None] * (xg + 1) / 2
+        inner = np.clip((self._x + 1) / 2, INSIDE, 1 - INSIDE)
+        self._lobatto_points: Array = edges[:-1, None] + self._h[:, None] * inner
+        self._y: NDArray[np.int64] = (
+            np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
+        )
+        self.rows, self.columns, self._where = self._pattern()
+
+    @cached_property
+    def positions(self) -> Array:
+        """u of all nodes, both ends included, shape (nodes + 1,)."""
+        inner = (self._x[1:] + 1) / 2
+        starts = np.array(self.mesh.edges[:-1])[:, None]
+        positions: Array = np.append(0.0, (starts + self._h[:, None] * inner).ravel())
+        positions[self.order :: self.order] = self.mesh.edges[1:]
+        return positions
+
+    def finite(self, rod: Rod) -> int:
+        """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
+        return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
+
+    def matrices(self, rod: Rod) -> Matrices:
+        """The pencil of an arm."""
+        inside, at_nodes = rod.local(self._gauss_points), rod.local(self._lobatto_points)
+        weight = self._wg * self._h[:, None] / 2
+        S, V, wg = self._slope, self._value, self._wg
+        shape = (self.mesh.elements, self.order + 1, self.order)
+        blocks = [
+            np.broadcast_to(-S.T * wg, shape),
+            np.broadcast_to(wg[:, None] * S, (shape[0], shape[2], shape[1])),
+            -np.einsum("gi,eg,gj->eij", S, wg / inside.c3 * (2 / self._h[:, None]), S),
+            np.broadcast_to(rod.F * (S.T * wg) @ V, (shape[0], shape[1], shape[1])),
+            V.T * (weight * inside.g)[:, None, :],
+            -(weight * inside.nu)[:, :, None] * V,
+            -weight * inside.c2,
+        ]
+        entries = np.concatenate([*(block.ravel() for block in blocks), [-rod.F]])
+        summed = np.bincount(self._where, entries, minlength=len(self.rows) + 1)[: len(self.rows)]
+        lumped = self._w * self._h[:, None] / 2
+        push, turn = self._at_nodes(lumped * at_nodes.gamma2), self._at_nodes(lumped * at_nodes.gamma3)
+        least = LEAST_ANGLE_WEIGHT**2 * self._at_nodes(lumped)
+        angle = np.maximum(turn, least)
+        masses = np.concatenate([push, angle, weight.ravel() * SHEAR_WEIGHT**2])
+        scale = 1 / np.sqrt(masses)
+        B = np.concatenate([np.ones(self.nodes), turn / angle, np.zeros(self.nodes)])
+        A = summed * scale[self.rows] * scale[self.columns]
+        return Matrices(A, B, scale[: 2 * self.nodes].reshape(2, -1))
+
+    def dense(self, rod: Rod) -> tuple[Array, Array]:
+        """(A, diagonal of B) of the arm as whole arrays, shapes (unknowns, unknowns) and (unknowns,)."""
+        found = self.matrices(rod)
+        A = np.zeros((self.unknowns, self.unknowns))
+        A[self.rows, self.columns] = found.A
+        return A, found.B
+
+    def fields(self, vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
+        """(y, theta) at all nodes, the clamp included, (nodes + 1, k), of k vectors; scale: of `matrices`."""
+        clamp = np.zeros((1, vectors.shape[1]))
+        y = vectors[: self.nodes] * scale[0][:, None]
+        theta = vectors[self.nodes : 2 * self.nodes] * scale[1][:, None]
+        return np.vstack([clamp, y]), np.vstack([clamp, theta])
+
+    def evaluation(self, points: Array) -> Array:
+        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
+        edges = np.array(self.mesh.edges)
+        element = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.mesh.elements - 1)
+        matrix = np.zeros((len(points), self.nodes + 1))
+        for e in np.unique(element):
+            here = np.nonzero(element == e)[0]
+            local = 2 * (points[here] - edges[e]) / self._h[e] - 1
+            first = int(e) * self.order
+            matrix[here, first : first + self.order + 1] = interpolation(self._x, local)
+        return matrix
+
+    def _at_nodes(self, values: Array) -> Array:
+        """Sums over elements of values at their nodes, (elements, order + 1), without the clamp, (nodes,)."""
+        place = (self._y + 1).ravel()
+        return np.asarray(np.bincount(place, values.ravel(), minlength=self.nodes + 1)[1:], float)
+
+    def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+        """(rows, columns, place of each entry of the blocks); the clamp's entries go behind the last one."""
+        n, size, y = self.nodes, self.unknowns, self._y
+        theta = np.where(y < 0, -1, y + n)
+        s = 2 * n + np.arange(n).reshape(self.mesh.elements, self.order)
+        pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
+        keys = [_keys(rows, columns, size) for rows, columns in pairs]
+        keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]
+        every = np.concatenate(keys)
+        diagonal = np.arange(size) * (size + 1)
+        pattern = np.unique(np.concatenate([every[every >= 0], diagonal]))
+        where = np.where(every < 0, len(pattern), np.searchsorted(pattern, every))
+        rows, columns = np.divmod(pattern, size)
+        return rows.astype(np.int32), columns.astype(np.int32), where
+
+
+def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
+    """row * size + column of each entry of the elements' blocks; negative where one of them is the clamp."""
+    keys = rows[:, :, None] * size + columns[:, None, :]
+    clamped = (rows < 0)[:, :, None] | (columns < 0)[:, None, :]
+    return np.where(clamped, -1, keys).ravel()

@@ -1,0 +1,73 @@
+"""How fine a mesh of an arm must be: where its elements end, and their order."""
+
+from math import ceil, hypot, log, pi
+
+import numpy as np
+
+from ...arrays import Array
+from ...model.dispersion import local_growth
+from ...model.rod import Rod
+from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WAVE_FACTOR, required_order
+from .arm_pencil import ArmMesh
+
+SAMPLES = 33
+"""Points of each smooth piece at which local waves are looked up."""
+LARGEST_RATIO = 2.2
+"""Largest ratio of the radii at the ends of an element: order 12 then gives eigenvalues to 1e-4."""
+FOR_PROFILES = 2
+"""Orders added where coefficients vary within an element."""
+
+
+def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
+    """The mesh that should give so many leading eigenvalues to a relative accuracy."""
+    breaks = rod.build.breaks
+    inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
+    weights = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
+    local = rod.local(points)
+    at_rest = (local.gamma2 * local.c3) ** 0.25
+    at_rest /= weights @ at_rest
+    _, amplified = local_growth(rod, points)
+    waves = np.hypot(WAVE_FACTOR * amplified, (modes - MODE_OFFSET) * pi * at_rest)
+    shares = (waves * weights).reshape(len(breaks) - 1, -1).sum(axis=1)
+    edges, largest = [0.0], 0.0
+    for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
+        ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
+        count = max(1, ceil(ratio / log(LARGEST_RATIO)), _elements_for(float(share), accuracy))
+        edges += _edges(rod, start, stop, count)
+        largest = max(largest, float(share) / count)
+    order = max(SMALLEST_ORDER, ceil(required_order(hypot(largest, 1.0), accuracy)))
+    return ArmMesh(tuple(edges), order + (0 if rod.uniform else FOR_PROFILES))
+
+
+def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
+    """The next mesh after one that proved too coarse: a third more order, or twice the elements."""
+    order = ceil(mesh.order * 4 / 3)
+    if order <= LARGEST_ORDER:
+        return ArmMesh(mesh.edges, order)
+    edges = [0.0]
+    for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
+        edges += _edges(rod, start, stop, 2)
+    return ArmMesh(tuple(edges), ceil(2 / 3 * mesh.order))
+
+
+def _elements_for(share: float, accuracy: float) -> int:
+    """The number of elements of the largest order that resolve a piece whose waves turn by `share`."""
+    count = 1
+    while required_order(share / count, accuracy) > LARGEST_ORDER:
+        count += 1
+    return count
+
+
+def _radius(rod: Rod, u: float) -> float:
+    return 1 - (1 - rod.taper) * u
+
+
+def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
+    """The ends of `count` elements from start to stop, with equal ratios of radii."""
+    if rod.taper == 1:
+        inner: Array = np.linspace(start, stop, count + 1)[1:]
+    else:
+        radii = np.geomspace(_radius(rod, start), _radius(rod, stop), count + 1)[1:]
+        inner = (1 - radii) / (1 - rod.taper)
+    return [*inner[:-1].tolist(), float(stop)]

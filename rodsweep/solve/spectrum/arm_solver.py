@@ -1,0 +1,54 @@
+"""Krylov-Schur for arms that are not uniform, on elements that end where coefficients jump."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil, Matrices
+from ...model.rod import Rod
+from ..backend.kept import Kept
+from .shift_invert import Loaded, ShiftInvertSolver
+
+MOST_KEPT = 8
+"""Solvers kept for the next point on an equal mesh."""
+
+
+class ArmSolver(ShiftInvertSolver):
+    """Krylov-Schur for one mesh."""
+
+    matrices: Matrices
+    """Of the arm that was solved last."""
+
+    def __init__(self, mesh: ArmMesh):
+        self.pencil = ArmPencil(mesh)
+        n = self.pencil.unknowns
+        super().__init__(self.pencil, np.full(self.pencil.nodes, 1 / self.pencil.nodes))
+        self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
+
+    def load(self, rod: Rod, shift: float) -> Loaded:
+        self.matrices = found = self.pencil.matrices(rod)
+        if not np.isfinite(found.A.sum() + found.B.sum() + shift):
+            raise FloatingPointError("the parameters overflow the matrix entries")
+        self.B.setValuesCSR(self.line, self.line[:-1], found.B)
+        self.B.assemble()
+        values = found.A.copy()
+        values[self.diagonal] -= shift * found.B
+        if self.dense:
+            flat = self.A.getDenseArray().T.reshape(-1)  # stored by columns
+            flat[:] = 0.0
+            flat[self._places] = values
+        else:
+            self.A.setValuesCSR(self.indptr, self.indices, values)
+        return Loaded(self.pencil.finite(rod), shift)
+
+
+_kept = Kept(ArmSolver, MOST_KEPT)
+
+
+def arm_solver(mesh: ArmMesh) -> ArmSolver:
+    """The solver for a mesh, kept for the next point."""
+    return _kept.get(mesh)
+
+
+def forget_arm_solvers() -> None:
+    """Drops every kept solver: a PETSc object is not usable after an error inside it."""
+    _kept.clear()

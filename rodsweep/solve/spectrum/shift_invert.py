@@ -1,0 +1,163 @@
+"""Krylov-Schur of SLEPc for the eigenvalues of a pencil nearest a real shift, by shift-and-invert.
+
+The matrices of a solver are created once and filled with new values for every rod. The shift enters the
+values: the pencil (A - shift B, B) is solved about 0, so that a diagonal B meets a dense A and nothing is
+copied. B is singular; its null vectors belong to infinite eigenvalues, which shift-and-invert sends
+to zero and never returns. The factorisation pivots: LAPACK's where the matrix is small or PETSc has
+nothing else, otherwise a sparse one.
+"""
+
+from abc import ABC, abstractmethod
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...model.rod import Rod
+from ...watch import report
+from ..backend.petsc import PETSc, SLEPc, sparse_package
+
+DENSE_UP_TO = 300
+"""Unknowns up to which the dense factorisation is no slower than a sparse one; it rounds less."""
+START_TOLERANCE, START_SPARE = 1e-4, 5
+"""Krylov tolerance, and Krylov vectors beyond the wanted eigenvalues, where these are refined on D."""
+TIGHT_TOLERANCE, TIGHT_SPARE = 1e-14, 13
+"""The same where nothing refines them, nor their vectors: the mesh is to be the only error."""
+MOST_RESTARTS = 200
+STEPS_OF_INFINITY = 2
+"""Steps of shift-and-invert after which nothing of infinite eigenvalues is left: one, or two where k2 = inf.
+All that a Krylov space has beyond these and the finite ones is rounding, in which LAPACK may fail (trexc)."""
+START_WIDTH = 3.3
+"""Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
+every mode moves, as smooth as the wanted modes are. It saves two steps of eleven."""
+SPECTRUM_PREFIX = "spectrum_"
+"""Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
+
+
+class Pattern(Protocol):
+    """What a solver asks of a pencil: its pattern and its nodes."""
+
+    @property
+    def rows(self) -> NDArray[np.int32]:
+        """Of each entry of the pattern, (nnz,)."""
+
+    @property
+    def columns(self) -> NDArray[np.int32]:
+        """Of each entry of the pattern, (nnz,)."""
+
+    @property
+    def positions(self) -> Array:
+        """u of all nodes, the clamp included, (nodes + 1,)."""
+
+    @property
+    def nodes(self) -> int:
+        """The number of nodes without the clamp."""
+
+    @property
+    def unknowns(self) -> int:
+        """The number of unknowns."""
+
+
+class Loaded(NamedTuple):
+    """What a solver was filled with.
+
+    finite: number of finite eigenvalues. shift: in units of the pencil. pace: eigenvalues of the pencil are
+    those of the rod times pace^2, and its y those of the rod over pace.
+    """
+
+    finite: int
+    shift: float
+    pace: float = 1.0
+
+
+class ShiftInvertSolver(ABC):
+    """Krylov-Schur for pencils of one pattern; `solve` may be called any number of times.
+
+    mass: of the nodes without the clamp, (nodes,), for the first Krylov vector.
+    """
+
+    def __init__(self, pattern: Pattern, mass: Array):
+        self.nodes, n = pattern.nodes, pattern.unknowns
+        package = sparse_package()
+        self.dense = n <= DENSE_UP_TO or package is None
+        self.diagonal = pattern.rows == pattern.columns
+        self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
+        self.indices = pattern.columns.astype(PETSc.IntType)
+        self.A, self.B = PETSc.Mat(), PETSc.Mat()
+        if self.dense:
+            self.A.createDense([n, n], comm=PETSc.COMM_SELF).setUp()
+        else:
+            values = np.ones(len(self.indices))
+            self.A.createAIJ([n, n], csr=(self.indptr, self.indices, values), comm=PETSc.COMM_SELF)
+        self.line = np.arange(n + 1, dtype=PETSc.IntType)
+        self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
+        first = np.zeros(n)
+        distance = (1 - pattern.positions[1:]) * pattern.nodes / START_WIDTH
+        first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
+        self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
+        self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
+        self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
+        self.eps = self._solver("petsc" if self.dense else package)
+        self.loaded = Loaded(0, 0.0)
+
+    def _solver(self, package: str | None) -> "SLEPc.EPS":
+        eps = SLEPc.EPS().create(PETSc.COMM_SELF)
+        eps.setOptionsPrefix(SPECTRUM_PREFIX)
+        eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
+        eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
+        eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
+        eps.setTarget(0.0)
+        transform = eps.getST()
+        transform.setType(SLEPc.ST.Type.SINVERT)
+        transform.setMatMode(SLEPc.ST.MatMode.INPLACE)
+        ksp = transform.getKSP()
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.getPC().setType(PETSc.PC.Type.LU)
+        ksp.getPC().setFactorSolverType(package)
+        eps.setFromOptions()
+        return eps
+
+    @abstractmethod
+    def load(self, rod: Rod, shift: float) -> Loaded:
+        """Fills A - shift B and B for a rod."""
+
+    def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
+        """At least `wanted` eigenvalues nearest the shift where they converge, unsorted; none is left out.
+
+        Complex, shape (k,), in 1/tau2. tight: to the last digit of the mesh, not just to start from.
+        Raises PETSc.Error where PETSc fails.
+        """
+        report()
+        self.loaded = self.load(rod, shift)
+        self.A.assemble()
+        self.eps.setOperators(self.A, self.B)
+        most = self.loaded.finite
+        wanted = min(wanted, most - 1)  # a pair may be one more
+        spare, tolerance = (TIGHT_SPARE, TIGHT_TOLERANCE) if tight else (START_SPARE, START_TOLERANCE)
+        krylov = self.users_krylov or max(2 * wanted, wanted + spare)
+        self.eps.setTolerances(self.users_tolerance or tolerance, MOST_RESTARTS)
+        krylov = min(krylov, most + STEPS_OF_INFINITY)
+        self.eps.setDimensions(wanted, krylov, krylov)
+        self.eps.setInitialSpace(self.start)
+        self.eps.solve()
+        found = self.eps.getConverged()
+        w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
+        return (w + self.loaded.shift) / self.loaded.pace**2
+
+    def vectors(self, found: int) -> Complex:
+        """The vectors of what the last `solve` found, shape (unknowns, found)."""
+        real, imag = self.A.createVecs()
+        X = np.empty((len(self.line) - 1, found), dtype=complex)
+        for i in range(found):
+            self.eps.getEigenvector(i, real, imag)
+            X[:, i] = real.array + 1j * imag.array
+        X[: self.nodes] *= self.loaded.pace
+        real.destroy()
+        imag.destroy()
+        return X
+
+    def destroy(self) -> None:
+        """Gives the objects of PETSc and SLEPc back."""
+        for held in (self.eps, self.A, self.B, self.start):
+            held.destroy()
