@@ -8,6 +8,7 @@ from ..config.arm.section import ArmSection
 from ..config.document.call_arguments import unknown
 from ..config.document.reading import validated, yaml_of
 from ..config.document.refusals import nearest
+from ..config.material import Material, with_profile_read
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
@@ -79,7 +80,7 @@ def known_load(arm: ArmKind) -> ArmKind:
 @signals_held
 def job_from(tree: Tree) -> Job:
     """The validated job of a config tree; InputError, in the words of the command line, for bad input."""
-    config = validated(tree)
+    config = validated(with_profile_read(tree, Path()))
     job = job_of(Path(config.task), config, yaml_of(tree))
     size = job.points.count * job.layout.bytes_per_point
     if size > memory():
@@ -94,7 +95,8 @@ def _sections(task: str) -> dict[str, Collection[str]]:
     """Known keys of each section of a task by the section's name; "" is the top level."""
     fields = CONFIGS[task].model_fields
     inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
-    top = [name for name in Config.model_fields if name not in ("task", "parameters")]
+    inner["material"] = Material
+    top = [name for name in Config.model_fields if name not in ("task", "parameters", "material")]
     return {name: tuple(section.model_fields) for name, section in inner.items()} | {"": top}
 
 

@@ -2,18 +2,22 @@
 
 from collections.abc import Callable, Mapping
 from inspect import Parameter, Signature, signature
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
+from pydantic import ValidationError
 
-from ..config.axes import words
+from ..config.axes import DEFAULTS, words
 from ..config.document.call_arguments import in_sentences, unknown
-from ..config.document.refusals import hint_of, nearest
+from ..config.document.refusals import hint_of, nearest, sentence_of
+from ..config.material import Material, with_profile_read
 from ..config.tasks import CONFIGS
 from ..config.values import as_number, short
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.parameters import PARAMETERS
+from ..model.material.build import STANDARD
+from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
 from .asking import job_from, known_load, tree_of
@@ -34,16 +38,26 @@ class SoftRod:
     F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which find it. k1: stretch
     stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid rod. gamma3: rotational drag, gamma2 L^2.
     gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not given.
+    taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean". section:
+    "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to lists.
 
     Every task is a method with the task's name. It takes the options of the config as keywords, with the same
     defaults, and returns an `Answer`. Raises InputError, with the command line's message, for values outside
     their range.
     """
 
-    __slots__ = ("_values",)
+    __slots__ = ("_material", "_values")
 
     @in_sentences("rs.Rod(F=30, k1=1e4, k2=100, gamma3=0.01)")
-    def __init__(self, *, arm: SlenderArm | None = None, **parameters: float | None):
+    def __init__(
+        self,
+        *,
+        arm: SlenderArm | None = None,
+        law: str | None = None,
+        section: str | None = None,
+        profile: str | Mapping[str, Any] | None = None,
+        **parameters: float | None,
+    ):
         given = {name: value for name, value in {**parameters, "arm": arm}.items() if value is not None}
         for name in parameters:
             if name not in PARAMETERS:
@@ -55,9 +69,11 @@ class SoftRod:
         for name in REQUIRED:
             if name not in given:
                 raise InputError(f"parameters.{name} is missing; give {words(REQUIRED, 'and')}")
-        values = {name: given.get(name, parameter.default) for name, parameter in PARAMETERS.items()}
+        values = {name: given.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
-        refuse_axes({name: np.array([value]) for name, value in self._values.items()})
+        self._material = _material({"law": law, "section": section, "profile": profile})
+        build = STANDARD if self._material is None else self._material.build
+        refuse_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -66,9 +82,14 @@ class SoftRod:
 
     @in_sentences("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
-        """A copy with new values of some parameters."""
-        values: dict[str, Any] = self._values | changed
+        """A copy with new values of some parameters, or of law, section and profile."""
+        values: dict[str, Any] = self._values | self._given_material | changed
         return SoftRod(**values)
+
+    @property
+    def _given_material(self) -> dict[str, Any]:
+        """The keys of the material that differ from their defaults."""
+        return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @in_sentences("rod.spectrum(modes=4)")
     def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
@@ -127,18 +148,42 @@ class SoftRod:
         options = dict(options)
         progress = options.pop("progress", None)
         taken = CONFIGS[task].taken_of_a_rod(options)
-        values = {name: self._values[name] for name in taken if name in self._values}
-        data, messages = solve_here(job_from(tree_of(task, values | options)), progress=progress)
+        names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
+        values: dict[str, Any] = {name: self._values[name] for name in names}
+        tree = tree_of(task, values | self._given_material | options)
+        data, messages = solve_here(job_from(tree), progress=progress)
         return Answer(repr(self), data, messages[0])
 
     def __repr__(self) -> str:
-        return f"Rod({', '.join(f'{name}={value:.15g}' for name, value in self._values.items())})"
+        values = [f"{name}={value:.15g}" for name, value in self._values.items()]
+        material = [f"{name}={short(value)}" for name, value in self._given_material.items()]
+        return f"Rod({', '.join([*values, *material])})"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, SoftRod) and self._values == other._values
+        if not isinstance(other, SoftRod):
+            return False
+        return self._values == other._values and self._given_material == other._given_material
 
     def __hash__(self) -> int:
-        return hash(tuple(self._values.items()))
+        return hash((*self._values.items(), repr(self._given_material)))
+
+
+def _material(given: Mapping[str, Any]) -> Material | None:
+    """The material of a rod, None for the standard one; InputError for one that is not known."""
+    tree = {name: plain(value) for name, value in given.items() if value is not None}
+    if not tree:
+        return None
+    read = with_profile_read({"material": tree}, Path())["material"]
+    try:
+        return Material.model_validate(read)
+    except ValidationError as error:
+        raise InputError(sentence_of(CONFIGS["spectrum"], _in_material(error))) from None
+
+
+def _in_material(error: ValidationError) -> dict[str, Any]:
+    """The first problem of a material, at its place in a config."""
+    problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
+    return problem | {"loc": ("material", *problem["loc"])}
 
 
 def _of_arm(arm: object) -> dict[str, Any]:
@@ -146,7 +191,7 @@ def _of_arm(arm: object) -> dict[str, Any]:
     if not isinstance(arm, SlenderArm):
         raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
     known = known_load(arm)
-    names = [name for name in PARAMETERS if name != "F" or known.load is not None]
+    names = [name for name in NONLINEAR_PARAMETERS if name != "F" or known.load is not None]
     return {name: known.parameter(name) for name in names}
 
 
@@ -161,4 +206,5 @@ def _number(name: str, value: Any) -> float:
 _KEYWORDS = [
     Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=float | None) for name in PARAMETERS
 ]
-SoftRod.__signature__ = Signature([*_KEYWORDS, signature(SoftRod).parameters["arm"]])  # type: ignore[attr-defined]
+_OF_MATERIAL = [signature(SoftRod).parameters[name] for name in ("arm", "law", "section", "profile")]
+SoftRod.__signature__ = Signature([*_KEYWORDS, *_OF_MATERIAL])  # type: ignore[attr-defined]

@@ -5,13 +5,13 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, create_model, model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from .arm.axes import MOST_POINTS, moved_by, names_over
 from .arm.section import ArmSection
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
-DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None}
+DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
 
 
 def _section(base: type[Strict], names: tuple[str, ...], kind: Any) -> Any:
@@ -20,7 +20,7 @@ def _section(base: type[Strict], names: tuple[str, ...], kind: Any) -> Any:
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section(Strict, LINEAR_PARAMETERS, Values)
+LinearAxes: Any = _section(Strict, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), Values)
 
 
 class Axes(LinearAxes):
@@ -31,8 +31,8 @@ class Axes(LinearAxes):
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given beside it replaces the arm's value."""
 
-    of_arm: ClassVar[tuple[str, ...]] = LINEAR_PARAMETERS
-    """Parameters whose values an arm provides."""
+    of_arm: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+    """Parameters that an arm, or the axes beside it, may provide."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are rows of a phase diagram, which need a grid of parameters."""
 
@@ -89,7 +89,7 @@ class Axes(LinearAxes):
 
     @property
     def _given(self) -> dict[str, Any]:
-        return {name: getattr(self, name, None) for name in NONLINEAR_PARAMETERS}
+        return {name: getattr(self, name, None) for name in PARAMETERS}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
         """Raises ValueError unless all axes `names`, an arm or, if allowed, a file of points is given."""
@@ -135,7 +135,7 @@ class DiagramParameters(LinearParameters):
 class NonlinearParameters(AllAxes):
     """Parameters of the nonlinear rod."""
 
-    of_arm: ClassVar[tuple[str, ...]] = NONLINEAR_PARAMETERS
+    of_arm: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
 
 
 def words(names: tuple[str, ...], last: str) -> str:

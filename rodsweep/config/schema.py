@@ -8,8 +8,10 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS
+from ..model.material.build import STANDARD, Build
+from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .axes import Axes, LinearParameters
+from .material import Material
 from .values import Number, Strict, Text
 
 Modes = Annotated[int, Field(ge=1, le=100)]
@@ -27,6 +29,11 @@ class Config(Strict):
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode."""
 
+    material: Annotated[Material | None, Field(description="a mapping of law, section and profile")] = None
+    """Constitutive law and profile of the arm; by default linear and the same all along the arm."""
+
+    takes_arms: ClassVar[bool] = False
+    """Whether the task solves arms that vary along their length, or are not of linear material."""
     into_crushed: ClassVar[bool] = False
     """Whether a grid may contain crushed rods, because they are one of the task's states."""
 
@@ -37,8 +44,20 @@ class Config(Strict):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters of a point of the sweep."""
-        return self.taken_of_a_rod({})
+        """Parameters of a point of the sweep: those that the task needs, and optional ones that are given."""
+        given = (name for name in OPTIONAL_PARAMETERS if name in self.parameters.given_axes)
+        return (*self.taken_of_a_rod({}), *given)
+
+    @property
+    def build(self) -> Build:
+        """Law and profile of the arm."""
+        return STANDARD if self.material is None else self.material.build
+
+    @property
+    def standard(self) -> bool:
+        """Whether all rods are uniform and of linear material."""
+        tapers = self.parameters.given_axes.get("taper")
+        return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
@@ -68,6 +87,8 @@ class Config(Strict):
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
         numbers = dict(self.parameters.numbers)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
+        if self.material is not None and not self.build.standard:
+            meant["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
             return meant
         if self.parameters.over:  # the grid's axes do not contain parameters with one value
@@ -80,6 +101,20 @@ class Config(Strict):
         """Raises ValueError, with the reason, if a parameter is given that the task finds."""
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
+
+    @model_validator(mode="after")
+    def _arms_only_where_solved(self) -> "Config":
+        if self.takes_arms:
+            return self
+        asked = "material" if not self.build.standard else ""
+        for name in OPTIONAL_PARAMETERS:
+            asked = f"parameters.{name}" if name in self.parameters.given_axes else asked
+        if asked:
+            raise ValueError(
+                f"{asked} is given, but the task {self.task} solves uniform arms of linear material only; "
+                "remove it"
+            )
+        return self
 
 
 class LinearConfig(Config):

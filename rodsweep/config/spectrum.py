@@ -5,6 +5,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
+from ..model.arm.quantities import RELATIVE
 from ..model.parameters import LINEAR_PARAMETERS
 from .schema import LinearConfig, Modes, Nodes
 from .values import Strict
@@ -36,6 +37,7 @@ class SpectrumConfig(LinearConfig):
     spectrum: SpectrumOptions = SpectrumOptions()
 
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+    takes_arms: ClassVar[bool] = True
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
@@ -62,7 +64,7 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def _could_follow(self) -> bool:
-        return self.certifies and not (self.spectrum.vectors or self.parameters.is_list)
+        return self.certifies and self.standard and not (self.spectrum.vectors or self.parameters.is_list)
 
     @property
     def meaning(self) -> dict[str, Any]:
@@ -81,5 +83,16 @@ class SpectrumConfig(LinearConfig):
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:
             raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
+        if self.spectrum.longitudinal and not self.standard:
+            raise ValueError(
+                "spectrum.longitudinal is true, but longitudinal modes are known for uniform arms of linear "
+                "material only; remove it"
+            )
+        arm = self.parameters.arm
+        if not self.standard and arm is not None and arm.load_axis in RELATIVE:
+            raise ValueError(
+                f"parameters.arm.{arm.load} is relative to flutter, which is searched for uniform arms of "
+                "linear material only; give the load in its unit"
+            )
         self.refuse_unused()
         return self

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..config.schema import Config
 from ..model.parameters import PARAMETERS, Parameter
 from ..sweep.points.points import Points
 from ..wording import counted
@@ -45,6 +46,7 @@ class ProvedTask(Task):
         what, why = self.left_out
         return [
             *rod_parts(self.moved),
+            *material_parts(self.config, self.points),
             *self.asked(),
             ("certificate", *self.certificate()),
             (what, False, why),
@@ -78,6 +80,30 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
         *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
         ("rotational drag", dragged, "gamma3 > 0" if dragged else "gamma3 = 0"),
     ]
+
+
+def material_parts(config: Config, points: Points) -> list[Part]:
+    """What varies along the arm, and its law; empty for uniform arms of linear material."""
+    if config.standard:
+        return []
+    tapers = points.by_name.get("taper", np.ones(1))
+    shapes = [] if (tapers == 1).all() else [f"a cone of radius ratio {_span(tapers)}"]
+    profile = config.build.profile
+    if profile is not None:
+        jumps = len(profile.u) - len(profile.breaks)
+        shapes.append(f"a profile of {counted(len(profile.u), 'row')} with {counted(jumps, 'jump')}")
+    law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
+    swelling = " with a swelling section" if config.build.section == "swelling" else ""
+    return [
+        ("variation along the arm", bool(shapes), " and ".join(shapes) or "uniform"),
+        ("law", True, law + swelling),
+    ]
+
+
+def _span(values: np.ndarray) -> str:
+    """The range of some numbers in words."""
+    low, high = float(values.min()), float(values.max())
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def _deformation(parameter: Parameter, values: np.ndarray) -> Part:

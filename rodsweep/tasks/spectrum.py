@@ -65,8 +65,8 @@ class SpectrumTask(ProvedTask):
         return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change their stability."""
-        return force_changes(self.points, values)
+        """Forces at which the rods change their stability; not searched for arms that are not uniform."""
+        return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"

@@ -75,7 +75,7 @@ class ArmPencil:
         self._value = interpolation(self._x, xg)
         self._slope = self._value @ differentiation(self._x)
         self._gauss_points: Array = edges[:-1, None] + self._h[:, None] * (xg + 1) / 2
-        inner = np.clip((self._x + 1) / 2, INSIDE, 1 - INSIDE)
+        inner: Array = np.minimum(np.maximum((self._x + 1) / 2, INSIDE), 1 - INSIDE)
         self._lobatto_points: Array = edges[:-1, None] + self._h[:, None] * inner
         self._y: NDArray[np.int64] = (
             np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from ...model.arm.quantities import ALL_QUANTITIES
-from ...model.parameters import NONLINEAR_PARAMETERS
+from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED
 from .content import is_users
 from .recent import journalled_points, put_in, unfolded
@@ -81,7 +81,7 @@ class View:
     @property
     def axes(self) -> dict[str, np.ndarray]:
         """Parameters in the file: axes of a grid, or columns of a list, each (n,)."""
-        return {name: self.variables[name] for name in NONLINEAR_PARAMETERS if name in self.variables}
+        return {name: self.variables[name] for name in PARAMETERS if name in self.variables}
 
     @property
     def quantities(self) -> dict[str, np.ndarray]:

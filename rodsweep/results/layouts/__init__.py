@@ -2,8 +2,10 @@
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
+from ...model.parameters import OPTIONAL_PARAMETERS
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
 from .variables import Increase, Layout, Variable
@@ -40,7 +42,9 @@ def layout_of(config: dict[str, Any]) -> Layout:
     task = config["task"]
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
-    return with_si(LAYOUTS[task](config), config)
+    layout = LAYOUTS[task](config)
+    optional = tuple(name for name in OPTIONAL_PARAMETERS if name in config["parameters"])
+    return with_si(replace(layout, parameters=(*layout.parameters, *optional)), config)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:

@@ -10,6 +10,7 @@ from ...config.arm.axes import CRUSHED, NO_FLUTTER, SLENDER
 from ...config.arm.section import ArmSection, UncoveredArm
 from ...model.arm.arm import CRUSHED_FROM, SlenderArm
 from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
+from ...model.material.build import STANDARD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from .points import Points
 
@@ -18,7 +19,11 @@ FlutterOf = Callable[[SlenderArm], float]
 
 
 def grid_of_arms(
-    section: ArmSection, beside: Mapping[str, Array], names: tuple[str, ...], flutter: FlutterOf
+    section: ArmSection,
+    beside: Mapping[str, Array],
+    names: tuple[str, ...],
+    flutter: FlutterOf,
+    build: Build = STANDARD,
 ) -> Points:
     """Grid over the arm's quantities, and over parameters of `beside` with several values.
 
@@ -43,7 +48,10 @@ def grid_of_arms(
             covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     if "F" in table:
-        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"], shape)
+        tapers = table.get("taper", np.ones(1))
+        shares = np.array([build.crushing_share(taper) for taper in tapers.ravel().tolist()])
+        crushing = CRUSHED_FROM * table["k1"] * shares.reshape(tapers.shape)
+        crushed = np.broadcast_to(table["F"] >= crushing, shape)
         covered[(covered == SLENDER) & crushed] = CRUSHED
     if (covered != SLENDER).all():
         _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()))
@@ -53,7 +61,8 @@ def grid_of_arms(
         {name: np.broadcast_to(column, shape).ravel() for name, column in each.items()}
         for each in ({name: table[name] for name in names}, units)
     )
-    return Points(names, tuple(columns.values()), False, over, at_points, covered.astype(np.int8).ravel())
+    codes = covered.astype(np.int8).ravel()
+    return Points(names, tuple(columns.values()), False, over, at_points, covered=codes)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:

@@ -12,6 +12,7 @@ from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
 from ...config.schema import Config
 from ...errors import InputError
 from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
 from .arm_grid import grid_of_arms
 from .lists import read_points
@@ -31,33 +32,36 @@ def points_of(config: Config, directory: Path) -> Points:
     for name, value in parameters.numbers.items():
         refuse_outside(PARAMETERS[name].allowed, name, (value,))
     if parameters.points is not None:
-        columns = read_points(directory / parameters.points, config.names)
+        columns = read_points(directory / parameters.points, config.names, config.build)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     if parameters.arm is not None and parameters.over:
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:
-            return grid_of_arms(parameters.arm, axes, config.names, _first_flutter)
+            return grid_of_arms(parameters.arm, axes, config.names, _first_flutter, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.names}
-    covered = None if parameters.arm is None else _partly_crushed(named)
-    refuse_axes(axes, config.into_crushed or covered is not None)
+    covered = None if parameters.arm is None else _partly_crushed(named, config.build)
+    refuse_axes(axes, config.into_crushed or covered is not None, config.build)
     return Points(config.names, tuple(named.values()), is_grid=True, covered=covered)
 
 
-def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
+def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
     """Codes of `covered`, (points,), for a grid of parameters with some points crushed by an arm's load.
 
     None if all points are crushed or no point is, and for grids of more than MOST_POINTS points.
     """
     count = math.prod(map(len, axes.values()))
-    if not set(CRUSHING) <= axes.keys() or axes["F"].max() < axes["k1"].min() or count > MOST_POINTS:
+    if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:
         return None
-    F, k1 = (axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in CRUSHING)
+    along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
+    shares = crushing_shares(build, along.get("taper", np.ones(1)))
+    if axes["F"].max() < axes["k1"].min() * shares.min():
+        return None
     shape = tuple(map(len, axes.values()))
-    crushed = np.broadcast_to(CRUSHED_FROM * k1 <= F, shape).ravel()
+    crushed = np.broadcast_to(CRUSHED_FROM * along["k1"] * shares <= along["F"], shape).ravel()
     return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
@@ -82,15 +86,29 @@ def refuse_outside(
         )
 
 
-def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
+def crushing_shares(build: Build, tapers: Array) -> Array:
+    """The force that crushes arms of these tapers, in units of their k1, of the shape of `tapers`, (...,)."""
+    shares = [build.crushing_share(taper) for taper in tapers.ravel().tolist()]
+    return np.array(shares).reshape(tapers.shape)
+
+
+def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build = STANDARD) -> None:
     """Raises InputError for a forbidden value on an axis, each (n,), and for crushed rods.
 
     into_crushed: whether the grid may contain crushed rods, as long as not all are crushed.
     """
     for name, column in axes.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
-    if set(CRUSHING) <= axes.keys():
+    if not set(CRUSHING) <= axes.keys():
+        return
+    shares = crushing_shares(build, axes.get("taper", np.ones(1)))
+    if (shares == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
+    elif axes["F"].max() >= axes["k1"].min() * shares.min():
+        raise InputError(
+            f"parameters.F reaches {axes['F'].max():.15g}, but the weakest section of the arms is crushed at "
+            f"{axes['k1'].min() * shares.min():.15g}; F must stay below"
+        )
 
 
 def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:

@@ -12,6 +12,7 @@ from ...arrays import Array
 from ...config.axes import words
 from ...config.values import as_number, overflows, short
 from ...errors import InputError
+from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from .points import NEUTRAL
@@ -21,7 +22,7 @@ LONGEST_LINE = 10_000
 memory."""
 
 
-def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
+def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> tuple[Array, ...]:
     """Columns `names`, each (n,), of a CSV file with the names as header, in any order.
 
     Raises InputError for an unreadable file, a wrong header, no point, or an impossible rod.
@@ -36,7 +37,7 @@ def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
                 raise InputError(f"{path}: {_header_fault(header)}; it must name {words(names, 'and')}")
             columns = [array("d") for _ in header]  # a Python list would take eight times the memory
             for row in filter(None, rows):
-                numbers = _row(row, header, f"{path}, line {rows.line_num}")
+                numbers = _row(row, header, f"{path}, line {rows.line_num}", build)
                 for column, number in zip(columns, numbers, strict=True):
                     column.append(number)
     except MemoryError:
@@ -65,7 +66,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
         yield line
 
 
-def _row(row: list[str], header: list[str], where: str) -> list[float]:
+def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
     """Numbers of a line of the file.
 
     Raises InputError for a cell without a number, and for an impossible rod.
@@ -82,7 +83,7 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
     parameters: dict[str, Any] = {**NEUTRAL, **dict(zip(header, numbers, strict=True))}
     try:
-        Rod(**parameters)
+        Rod(**parameters, build=build)
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
     return numbers

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.axes import SLENDER, moved_by
+from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
@@ -37,6 +38,8 @@ class Points:
     """Axes of a grid over an arm's quantities, in SI units."""
     units: dict[str, Array] = field(default_factory=dict)
     """Units of length, time and so on of the arm at every point of a grid over quantities, (points,)."""
+    build: Build = STANDARD
+    """Law and profile of all rods."""
     covered: NDArray[np.int8] | None = None
     """Codes of `rodsweep.config.arm.axes`: whether a rod covers each point of an arm, (points,)."""
 
@@ -104,4 +107,4 @@ class Points:
         Raises Crushed.
         """
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
-        return Rod(**parameters)
+        return Rod(**parameters, build=self.build)

@@ -124,5 +124,5 @@ def job_of(path: Path, config: Config, text: str) -> Job:
             f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
             f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
         )
-    points = points_of(config, path.parent)
+    points = replace(points_of(config, path.parent), build=config.build)
     return Job(path, config, text, points, TASKS[config.task](config, points))

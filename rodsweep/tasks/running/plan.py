@@ -17,7 +17,7 @@ from .job import Job
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
     """Plan of a config on given points, without attributes and flags."""
-    return _plan(TASKS[config.task](config, points), canonical(config))
+    return _plan(TASKS[config.task](config, replace(points, build=config.build)), canonical(config))
 
 
 def _plan(task: Task, resolved: dict[str, Any]) -> Plan:

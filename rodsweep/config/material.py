@@ -1,0 +1,126 @@
+"""The section `material` of a config: constitutive law, cross-section, and a profile along the arm."""
+
+import csv
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from ..errors import InputError
+from ..model.material.build import Build
+from ..model.material.profile import FACTORS, Profile
+from .values import Number, Strict, as_number, overflows, short
+
+MOST_ROWS = 1000
+"""Largest number of rows of a profile."""
+LARGEST_FILE = 1_000_000
+"""Largest number of characters in a profile's file."""
+Column = Annotated[list[Number], Field(max_length=MOST_ROWS)]
+
+
+class ProfileTable(Strict):
+    """Factors along the arm: columns of one length. A column that is left out is 1 all along the arm."""
+
+    u: Column
+    """Material coordinate, from 0 at the base to 1 at the tip, not decreasing; a value twice is a jump."""
+    k1: Column | None = None
+    """Factor of the stretch stiffness at each u."""
+    k2: Column | None = None
+    """Factor of the shear stiffness at each u."""
+    k3: Column | None = None
+    """Factor of the bending stiffness at each u."""
+    gamma1: Column | None = None
+    """Factor of the axial drag at each u."""
+    gamma2: Column | None = None
+    """Factor of the normal drag at each u."""
+    gamma3: Column | None = None
+    """Factor of the rotational drag at each u."""
+
+    @cached_property
+    def profile(self) -> Profile:
+        """The profile; ValueError for a table that is none."""
+        columns = {name: getattr(self, name) or [1.0] * len(self.u) for name in FACTORS}
+        for name, column in columns.items():
+            if len(column) != len(self.u):
+                raise ValueError(f"{name} has {len(column)} values and u has {len(self.u)}")
+        return Profile(tuple(self.u), tuple(zip(*columns.values(), strict=True)))
+
+    @model_validator(mode="after")
+    def _is_a_profile(self) -> "ProfileTable":
+        assert self.profile
+        return self
+
+
+class Material(Strict):
+    """What the arm is made of, and how it varies along its length."""
+
+    law: Literal["linear", "neo_hookean"] = "linear"
+    """Constitutive law: stress proportional to strain, or incompressible neo-Hookean rubber."""
+    section: Literal["fixed", "swelling"] = "fixed"
+    """Whether the cross-section keeps its size or swells as the arm shortens."""
+    profile: Annotated[
+        ProfileTable | None,
+        Field(description="the name of a CSV file, or a mapping of u and factors to lists"),
+    ] = None
+    """CSV file, or a mapping of columns, of u and the factors of k1, k2, k3, gamma1, gamma2 and gamma3."""
+
+    @cached_property
+    def build(self) -> Build:
+        """The material; ValueError for a section that the law does not have."""
+        return Build(self.law, self.section, self.profile.profile if self.profile else None)
+
+    @model_validator(mode="after")
+    def _is_known(self) -> "Material":
+        assert self.build
+        return self
+
+
+def with_profile_read(tree: Any, directory: Path) -> Any:
+    """A config's tree with the file that `material.profile` names replaced by its columns.
+
+    directory: where the name of the file begins. Raises InputError for a file that is no table of numbers.
+    """
+    if not isinstance(tree, dict) or not isinstance(tree.get("material"), dict):
+        return tree
+    name = tree["material"].get("profile")
+    if not isinstance(name, str):
+        return tree
+    return tree | {"material": tree["material"] | {"profile": read_profile(directory / name)}}
+
+
+def read_profile(path: Path) -> dict[str, list[float]]:
+    """The columns of a profile's CSV file, by the names in its header; InputError if it has none."""
+    where = f"material.profile: {path}"
+    try:
+        if not path.is_file():
+            raise InputError(f"{where} {'is not a file' if path.exists() else 'does not exist'}")
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            text = file.read(LARGEST_FILE + 1)
+        rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
+    except OSError as error:
+        raise InputError(f"{where} cannot be read: {error.strerror}") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{where} is not CSV text ({error})") from error
+    if len(text) > LARGEST_FILE or len(rows) > MOST_ROWS + 1:
+        raise InputError(f"{where} has more than {MOST_ROWS} rows")
+    header = rows[0] if rows else []
+    if "u" not in header or not set(header) <= {"u", *FACTORS} or len(set(header)) < len(header):
+        raise InputError(f"{where}: the header must name u and any of {', '.join(FACTORS)}, each once")
+    columns: dict[str, list[float]] = {name: [] for name in header}
+    for number, row in enumerate(rows[1:], 1):
+        place = f"{where}: row {number}"
+        if len(row) != len(header):
+            raise InputError(f"{place} has {len(row)} values, but the header names {len(header)}")
+        for name, cell in zip(header, row, strict=True):
+            columns[name].append(_number(cell, f"{place}: {name}"))
+    return columns
+
+
+def _number(cell: str, where: str) -> float:
+    try:
+        if "_" in cell or not cell.isascii() or overflows(cell):
+            raise ValueError
+        return as_number(float(cell))
+    except ValueError:
+        raise InputError(f"{where} = {short(cell)} is not a number") from None
