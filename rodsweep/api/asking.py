@@ -8,7 +8,7 @@ from ..config.arm.section import ArmSection
 from ..config.document.call_arguments import unknown
 from ..config.document.reading import validated, yaml_of
 from ..config.document.refusals import nearest
-from ..config.material import Material, with_profile_read
+from ..config.material import MaterialSection, with_profile_read
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
@@ -95,7 +95,7 @@ def _sections(task: str) -> dict[str, Collection[str]]:
     """Known keys of each section of a task by the section's name; "" is the top level."""
     fields = CONFIGS[task].model_fields
     inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
-    inner["material"] = Material
+    inner["material"] = MaterialSection
     top = [name for name in Config.model_fields if name not in ("task", "parameters", "material")]
     return {name: tuple(section.model_fields) for name, section in inner.items()} | {"": top}
 

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from ..config.axes import DEFAULTS, words
 from ..config.document.call_arguments import in_sentences, unknown
 from ..config.document.refusals import hint_of, nearest, sentence_of
-from ..config.material import Material, with_profile_read
+from ..config.material import MaterialSection, with_profile_read
 from ..config.tasks import CONFIGS
 from ..config.values import as_number, short
 from ..errors import InputError
@@ -168,14 +168,14 @@ class SoftRod:
         return hash((*self._values.items(), repr(self._given_material)))
 
 
-def _material(given: Mapping[str, Any]) -> Material | None:
+def _material(given: Mapping[str, Any]) -> MaterialSection | None:
     """The material of a rod, None for the standard one; InputError for one that is not known."""
     tree = {name: plain(value) for name, value in given.items() if value is not None}
     if not tree:
         return None
     read = with_profile_read({"material": tree}, Path())["material"]
     try:
-        return Material.model_validate(read)
+        return MaterialSection.model_validate(read)
     except ValidationError as error:
         raise InputError(sentence_of(CONFIGS["spectrum"], _in_material(error))) from None
 

@@ -52,7 +52,7 @@ class ProfileTable(Strict):
         return self
 
 
-class Material(Strict):
+class MaterialSection(Strict):
     """What the arm is made of, and how it varies along its length."""
 
     law: Literal["linear", "neo_hookean"] = "linear"
@@ -71,7 +71,7 @@ class Material(Strict):
         return Build(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")
-    def _is_known(self) -> "Material":
+    def _is_known(self) -> "MaterialSection":
         assert self.build
         return self
 

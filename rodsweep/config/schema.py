@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ..model.material.build import STANDARD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .axes import Axes, LinearParameters
-from .material import Material
+from .material import MaterialSection
 from .values import Number, Strict, Text
 
 Modes = Annotated[int, Field(ge=1, le=100)]
@@ -29,7 +29,7 @@ class Config(Strict):
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode."""
 
-    material: Annotated[Material | None, Field(description="a mapping of law, section and profile")] = None
+    material: Annotated[MaterialSection | None, Field(description="a mapping of law, section and profile")] = None
     """Constitutive law and profile of the arm; by default linear and the same all along the arm."""
 
     takes_arms: ClassVar[bool] = False

@@ -9,11 +9,13 @@ and in between.
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.certificate.covering import Box, cover, first_boxes, slabs
+from ...determinant.certificate.covering import Box, cover, first_boxes
 from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable
+from .arm_crossings import CrossingSearch
 from .leading_eigenvalue import Tracer
+from .path_problem import PathProblem, UniformPath, path_problem
 from .unstable_modes import Counts, Crossing, Kind
 
 BESIDE = 1e-4
@@ -49,11 +51,12 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     Raises Unsolvable where no a-priori bound applies or a spectrum cannot be had.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
-    hopfs, gaps, examined = _covered(path, low, high)
-    tracer, counts = Tracer(path, certify), Counts(path, gaps, certify)
+    problem = path_problem(path)
+    hopfs, gaps, examined = _crossings(problem, low, high, certify)
+    tracer, counts = Tracer(problem, certify), Counts(problem, gaps, certify)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, hopfs)
     oscillates = tracer.anchor(path.variable(start)).oscillates
-    edges = [a for a, _ in slabs(path, low, high)] + [high]
+    edges = problem.edges(low, high)
     for _ in range(2):
         ordered = sorted(tracer.changes(edges) + hopfs, key=lambda c: c.at)
         crossings, at_end = counts.along(ordered, (start, stop), unstable)
@@ -67,7 +70,7 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     if certify and not tracer.proved:
         counts.doubts.append("it is not proved which eigenvalue leads everywhere")
     counted = _counted(counts, unstable, crossings, at_end, examined)
-    return replace(counted, oscillates_at_start=oscillates, solves=tracer.solves)
+    return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
 
 
 def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
@@ -77,8 +80,9 @@ def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) 
     applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
-    hopfs, gaps, examined = _covered(path, low, high)
-    counts = Counts(path, gaps, certify)
+    problem = path_problem(path)
+    hopfs, gaps, examined = _crossings(problem, low, high, certify)
+    counts = Counts(problem, gaps, certify)
     ordered = sorted(hopfs, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, ordered)
     crossings, at_end = counts.along(ordered, (start, stop), unstable)
@@ -104,8 +108,22 @@ def _counted(
     )
 
 
-def _covered(path: Path, low: float, high: float) -> tuple[list[Crossing], list[tuple[float, float]], int]:
-    """(crossings of the axis, intervals in which others may lie, evaluations of D) by the covering."""
+Found = tuple[list[Crossing], list[tuple[float, float]], int]
+"""(crossings of the axis, intervals in which others may lie, evaluations of D)."""
+
+
+def _crossings(problem: PathProblem, low: float, high: float, certify: bool) -> Found:
+    """The crossings of a path: by the covering, or between counts for arms that are not uniform."""
+    if isinstance(problem, UniformPath):
+        return _covered(problem.path, low, high)
+    search = CrossingSearch(problem, certify)
+    found = search.crossings(problem.edges(low, high))
+    gaps = [tuple(sorted(map(problem.path.parameter.value, gap))) for gap in search.gaps]
+    return found, [(a, b) for a, b in gaps], 0
+
+
+def _covered(path: Path, low: float, high: float) -> Found:
+    """The crossings by the covering."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies")

@@ -51,7 +51,7 @@ class Anchor:
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
-def _lowest(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
     """(least value on [0, 1] of the cubic with these values and slopes at its ends, where)."""
     square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
     lowest, at = min(a, b), 0.5
@@ -83,7 +83,7 @@ def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
         smallest = min(abs(a[0]), abs(b[0]))
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
-        lowest, share = _lowest(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        lowest, share = lowest_between(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
         if a[0] * b[0] <= 0 or lowest < EXPLAINED * smallest:
             return share, True
         if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])):

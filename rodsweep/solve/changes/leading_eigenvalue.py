@@ -13,12 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...determinant.certificate.winding_number import count_right_of
-from ...determinant.newton import double_newton, eigenvalue_newton
-from ...determinant.parameter_path import Path, coefficients_at
 from ..point import Unsolvable
-from ..spectrum.search import SpectrumRequest, solve_spectrum
+from ..spectrum.search import SpectrumRequest
 from .anchors import Anchor, unexplained
+from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
 ANCHOR_MODES = 4
@@ -45,10 +43,9 @@ class Meeting(NamedTuple):
 class Tracer:
     """Follows the leading eigenvalue along one path; anchors are kept."""
 
-    def __init__(self, path: Path, certify: bool):
-        self.path, self.certify = path, certify
+    def __init__(self, problem: PathProblem, certify: bool):
+        self.problem, self.path, self.certify = problem, problem.path, certify
         self.anchors: dict[float, Anchor] = {}
-        self.solves = 0
         self.proved = certify
         """Whether every anchor is certified and nothing lies right of any change."""
 
@@ -60,25 +57,16 @@ class Tracer:
 
     def _solve(self, p: float) -> Anchor:
         request = SpectrumRequest(ANCHOR_MODES, ANCHOR_ACCURACY, self.certify)
-        rod = self.path.at(p)
-        found = solve_spectrum(rod, request)
-        self.solves += 1
+        found = self.problem.spectrum(p, request)
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
-            raise Unsolvable(f"{rod}: {found.status.name} {found.message}".rstrip())
+            raise Unsolvable(f"{self.path.at(p)}: {found.status.name} {found.message}".rstrip())
         w, slope = found.eigenvalues.copy(), np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
-            polished, slope[i], _ = self._followed(complex(guess), p)
+            polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
             if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
                 w[i] = polished
-        here, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
-        relaxation = here.nu * here.nu + here.c2 + here.gamma3  # in tau2; never zero
-        return Anchor(p, w, slope, relaxation, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3)
-
-    def _followed(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """(eigenvalue near the guess, its slope, its error) at p."""
-        coefficients = coefficients_at(p, self.path.origin, self.path.direction)
-        return eigenvalue_newton(guess, coefficients, self.path.direction)
+        return Anchor(p, w, slope, *self.problem.relaxation(p))
 
     def changes(self, edges: list[float]) -> list[Crossing]:
         """All changes between the first and the last of `edges`, in increasing order of p."""
@@ -120,7 +108,7 @@ class Tracer:
             if found is None or not left.p <= found.p <= right.p:
                 continue
             behind = max(left.w[meeting].real, right.w[meeting].real)
-            count = count_right_of((found.growth_rate + behind) / 2, self.path.at(found.p))
+            count = self.problem.count((found.growth_rate + behind) / 2, found.p)
             if count.number in (meeting, None):
                 self.proved = self.proved and count.number == meeting
                 at, error = self.path.value(found.p, found.error)
@@ -136,7 +124,7 @@ class Tracer:
         share = above[0] / (above[0] - below[0])
         p = real.p + share * (pair.p - real.p)
         x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
-        x, p, _, error = double_newton(x, p, self.path.origin, self.path.direction, width)
+        x, p, _, error = self.problem.double(x, p, width)
         return None if math.isnan(p) else Meeting(p, error, x, 0.0)
 
     def _overtaking(self, pair: Anchor, real: Anchor) -> Meeting | None:
@@ -148,8 +136,8 @@ class Tracer:
         w_real = self._carried(complex(real.w[0]), real.p, p)
         w_pair = self._carried(complex(pair.w[0]), pair.p, p)
         for _ in range(MOST_OVERTAKING_STEPS):
-            w_real, s_real, e_real = self._followed(w_real, p)
-            w_pair, s_pair, e_pair = self._followed(w_pair, p)
+            w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
+            w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
             slope = s_real.real - s_pair.real
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
@@ -169,7 +157,7 @@ class Tracer:
         """An eigenvalue followed from p = start to stop in small steps."""
         p = start
         for i in range(1, CARRIED + 1):
-            w, slope, _ = self._followed(w, p)
+            w, slope, _ = self.problem.eigenvalue(w, p)
             following = start + (stop - start) * i / CARRIED
             ahead = w + slope * (following - p)
             w, p = complex(ahead.real, 0.0) if w.imag == 0 else ahead, following

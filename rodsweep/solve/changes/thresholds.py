@@ -63,7 +63,7 @@ class Thresholds:
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     """All changes for one rod under any force; failures are a status, never an exception."""
-    end = min(request.F_max, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
+    end = min(request.F_max, rod.crushing_force * (1 - SHORT_OF_CRUSHED))
 
     def search() -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify)

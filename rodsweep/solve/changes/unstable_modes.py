@@ -8,8 +8,7 @@ import math
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
-from ...determinant.certificate.winding_number import count_right_of
-from ...determinant.parameter_path import Path
+from .path_problem import PathProblem
 
 SHORT_OF_CRUSHED = 1e-6
 """How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
@@ -65,13 +64,13 @@ class Counts:
     the counts do not confirm.
     """
 
-    def __init__(self, path: Path, gaps: list[tuple[float, float]], certify: bool):
-        self.path, self.gaps, self.certify = path, gaps, certify
+    def __init__(self, problem: PathProblem, gaps: list[tuple[float, float]], certify: bool):
+        self.problem, self.path, self.gaps, self.certify = problem, problem.path, gaps, certify
         self.doubts: list[str] = []
 
     def at(self, value: float) -> int:
         """The winding number at a value of the parameter; -1 where it is undecided."""
-        number = count_right_of(0.0, self.path.at(self.path.variable(value))).number
+        number = self.problem.count(0.0, self.path.variable(value)).number
         return -1 if number is None else number
 
     def amid(self, a: float, b: float) -> int:

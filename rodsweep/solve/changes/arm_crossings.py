@@ -1,0 +1,162 @@
+"""Crossings of the imaginary axis along a path of arms, for which no covering proves that none is missed.
+
+The unstable modes are counted at places along the path. Where the number changes by one pair, Newton's method
+on D finds the crossing; where it stays, the pairs nearest to the axis must be explained as going past it by
+their slopes at both places, or a place is put between.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ...arrays import Complex
+from ..point import Unsolvable
+from ..spectrum.search import SpectrumRequest
+from .anchors import EXPLAINED, lowest_between
+from .path_problem import PathProblem
+from .unstable_modes import Crossing, Kind
+
+MODES = 4
+"""Leading eigenvalues known at a place, at least; two more than are unstable."""
+ACCURACY = 1e-6
+"""Accuracy of these eigenvalues; Newton's method on D does the rest."""
+CLOSEST = 1e-6
+"""Distance of places, in units of the path, below which a window of flutter may hide undecided."""
+BESIDE = 1e-5
+"""Distance from a crossing, in units of the path, at which the modes are counted next to it."""
+MAX_NEWTON_STEPS = 20
+LAST_STEP = 4.0
+"""A last step in units of its error that ends Newton's method."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """The leading eigenvalues at p, (modes,), their slopes, (modes,), and the number of unstable ones."""
+
+    p: float
+    w: Complex
+    slopes: Complex
+    unstable: int
+
+    def nearest(self, growing: bool) -> tuple[float, float] | None:
+        """(distance from the axis, its slope by p) of the pair nearest to the axis on one of its sides."""
+        pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
+        if not pairs:
+            return None
+        i = min(pairs, key=lambda i: abs(self.w[i].real))
+        sign = 1.0 if growing else -1.0
+        return float(sign * self.w[i].real), float(sign * self.slopes[i].real)
+
+
+class CrossingSearch:
+    """The search along one path.
+
+    gaps: intervals of p in which two crossings may hide. proved: whether every count is certified.
+    """
+
+    def __init__(self, problem: PathProblem, certify: bool):
+        self.problem, self.certify = problem, certify
+        self.places: dict[float, Place] = {}
+        self.gaps: list[tuple[float, float]] = []
+        self.proved = certify
+
+    def place(self, p: float) -> Place:
+        """The place at p; Unsolvable where its eigenvalues or their number cannot be had."""
+        if p not in self.places:
+            modes = MODES
+            found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
+            while found.unstable_count >= 0 and modes < found.unstable_count + 2:
+                modes = found.unstable_count + 2
+                found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
+            if found.unstable_count < 0:
+                raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
+            self.proved = self.proved and found.certified
+            slopes = found.eigenvalues.copy()
+            for i, w in enumerate(found.eigenvalues.tolist()):
+                slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
+            self.places[p] = Place(p, found.eigenvalues, slopes, found.unstable_count)
+        return self.places[p]
+
+    def crossings(self, edges: list[float]) -> list[Crossing]:
+        """All crossings from the first of `edges` to the last, in increasing order of p."""
+        found: list[Crossing] = []
+        stack = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
+        length = edges[-1] - edges[0]
+        while stack:
+            a, b = stack.pop()
+            left, right = self.place(a), self.place(b)
+            if left.unstable == right.unstable:
+                share = hidden(left, right)
+                if share == 0.0:
+                    continue
+                if b - a <= CLOSEST * length:
+                    self.gaps.append((a, b))
+                    continue
+            else:
+                share = 0.5
+                crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
+                if crossing is not None:
+                    found.append(crossing)
+                    p = self.problem.path.variable(crossing.at)
+                    sides = [(a, p - BESIDE * length), (p + BESIDE * length, b)]
+                    stack += [(c, d) for c, d in sides[::-1] if c < d]
+                    continue
+                if b - a <= 1e-12 * max(abs(a), abs(b)):
+                    raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
+            middle = a + share * (b - a)
+            stack += [(middle, b), (a, middle)]
+        return sorted(found, key=lambda crossing: crossing.at)
+
+    def _between(self, left: Place, right: Place) -> Crossing | None:
+        """The crossing between two places at which the numbers of unstable modes differ by a pair."""
+        grows = right.unstable > left.unstable
+        for start, growing in ((left, not grows), (right, grows)):
+            pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
+            for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
+                crossing = self._newton(start, i, (left.p, right.p), grows)
+                if crossing is not None:
+                    return crossing
+        return None
+
+    def _newton(self, start: Place, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
+        """Newton's method for the place where the i-th eigenvalue of a place meets the axis."""
+        p, w, slope = start.p, complex(start.w[i]), complex(start.slopes[i])
+        for _ in range(MAX_NEWTON_STEPS):
+            if slope.real == 0 or not math.isfinite(slope.real):
+                return None
+            step = -w.real / slope.real
+            p, guess = p + step, w + slope * step
+            if not ends[0] <= p <= ends[1]:
+                return None
+            w, slope, error = self.problem.eigenvalue(guess, p)
+            blur = error / abs(slope.real) + 4e-16 * abs(p)
+            if abs(w.real / slope.real) <= LAST_STEP * blur:
+                return self._crossing(p, w, slope, blur, grows)
+        return None
+
+    def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
+        """The crossing, unless the pair crosses the other way."""
+        if w.imag <= 0 or (slope.real > 0) != grows:
+            return None
+        kind = Kind.hopf if grows != self.problem.path.inverse else Kind.hopf_reverse
+        error_of_p = max(blur, abs(w.real / slope.real))
+        at, error = self.problem.path.value(p, error_of_p)
+        return Crossing(at, kind, w.imag, 0.0, error, frequency_error=abs(slope.imag) * error_of_p)
+
+
+def hidden(left: Place, right: Place) -> float:
+    """Where to look between two places whether a pair touches the axis, as a share; 0 where none can."""
+    h = right.p - left.p
+    for growing in (False, True):
+        a, b = left.nearest(growing), right.nearest(growing)
+        if a is None and b is None:
+            continue
+        if a is None or b is None:
+            value, slope = a or b or (0.0, 0.0)
+            towards = slope > 0 if a is None else slope < 0
+            if towards and value < abs(slope) * h:
+                return 0.5
+            continue
+        lowest, share = lowest_between(a[0], b[0], h * a[1], h * b[1])
+        if lowest < EXPLAINED * min(a[0], b[0]):
+            return share
+    return 0.0

@@ -1,0 +1,104 @@
+"""The transverse problem along a path of one parameter, of uniform rods and of arms that vary."""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from ...determinant.arm.along_path import ArmAlongPath
+from ...determinant.certificate.covering import slabs
+from ...determinant.certificate.winding_number import Count, count_right_of
+from ...determinant.newton import Zero, double_newton, eigenvalue_newton
+from ...determinant.parameter_path import Path, coefficients_at
+from ..spectrum.problem import ArmProblem
+from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
+
+ARM_EDGES = 12
+"""Equal intervals into which a path of arms is divided at first."""
+
+
+class PathProblem(ABC):
+    """The eigenvalues of the rods of a path; p: the path variable."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        self.solves = 0
+        """Eigenproblems that were solved."""
+        self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
+
+    def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
+        """The leading eigenvalues at p, solved once."""
+        key = p, request
+        if key not in self._spectra:
+            self._spectra[key] = solve_spectrum(self.path.at(p), request)
+            self.solves += 1
+        return self._spectra[key]
+
+    @abstractmethod
+    def edges(self, low: float, high: float) -> list[float]:
+        """Places from low to high between which the rods change little, both included."""
+
+    @abstractmethod
+    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+        """(eigenvalue near the guess, its slope by p, its error) at p."""
+
+    @abstractmethod
+    def double(self, x: float, p: float, reach: float) -> Zero:
+        """The double real eigenvalue near (x, p), p at most `reach` away; nan where none is found."""
+
+    @abstractmethod
+    def count(self, line: float, p: float) -> Count:
+        """The number of eigenvalues with Re w > line at p."""
+
+    @abstractmethod
+    def relaxation(self, p: float) -> tuple[float, float]:
+        """(a time on which the rod relaxes, smooth along the path, its slope by p)."""
+
+
+class UniformPath(PathProblem):
+    """Uniform rods of linear material: D has its closed form."""
+
+    def edges(self, low: float, high: float) -> list[float]:
+        return [a for a, _ in slabs(self.path, low, high)] + [high]
+
+    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+        coefficients = coefficients_at(p, self.path.origin, self.path.direction)
+        return eigenvalue_newton(guess, coefficients, self.path.direction)
+
+    def double(self, x: float, p: float, reach: float) -> Zero:
+        return double_newton(x, p, self.path.origin, self.path.direction, reach)
+
+    def count(self, line: float, p: float) -> Count:
+        return count_right_of(line, self.path.at(p))
+
+    def relaxation(self, p: float) -> tuple[float, float]:
+        here, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+        time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
+        return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3
+
+
+class ArmPath(PathProblem):
+    """Arms that vary along their length, or of any law: D from propagators."""
+
+    def __init__(self, path: Path):
+        super().__init__(path)
+        self._along = ArmAlongPath(path)
+
+    def edges(self, low: float, high: float) -> list[float]:
+        return np.linspace(low, high, ARM_EDGES + 1).tolist()
+
+    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+        return self._along.eigenvalue(guess, p)
+
+    def double(self, x: float, p: float, reach: float) -> Zero:
+        return self._along.double(x, p, reach)
+
+    def count(self, line: float, p: float) -> Count:
+        return ArmProblem(self.path.at(p)).count(line)
+
+    def relaxation(self, p: float) -> tuple[float, float]:
+        return 1.0, 0.0
+
+
+def path_problem(path: Path) -> PathProblem:
+    """The problem of a path."""
+    return UniformPath(path) if path.rod.standard and path.name != "taper" else ArmPath(path)
