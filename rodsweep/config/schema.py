@@ -29,7 +29,9 @@ class Config(Strict):
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode."""
 
-    material: Annotated[MaterialSection | None, Field(description="a mapping of law, section and profile")] = None
+    material: Annotated[
+        MaterialSection | None, Field(description="a mapping of law, section and profile")
+    ] = None
     """Constitutive law and profile of the arm; by default linear and the same all along the arm."""
 
     takes_arms: ClassVar[bool] = False

@@ -45,6 +45,8 @@ LINE_MS = 24.0
 times as long."""
 LINE_CERTIFICATE_MS = 16.0
 """Time of the certificate of a search, in ms: mean over the 72 rods."""
+LINE_OF_ARM_MS = 500.0
+"""Time of a search along F of an arm that is not uniform, in ms."""
 HOPF_SEARCH_MS = 25.0
 """Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
@@ -99,6 +101,11 @@ class Estimate:
 def estimate_lines(lines: int, certify: bool) -> Estimate:
     """Cost of searching `lines` rods for crossings, each along one parameter."""
     return Estimate(lines * 1e-3 * (LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)))
+
+
+def estimate_lines_of_arms(lines: int) -> Estimate:
+    """Cost of searching `lines` arms that are not uniform for crossings."""
+    return Estimate(lines * 1e-3 * LINE_OF_ARM_MS)
 
 
 def estimate_criticality(rods: int, certify: bool) -> Estimate:

@@ -8,7 +8,7 @@ import numpy as np
 from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
-from ..sweep.cost_estimate import Estimate, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
 from .parts import ProvedTask, count_of
 from .protocol import Part, Solver
 
@@ -39,7 +39,15 @@ class ThresholdsTask(ProvedTask):
             ("all other crossings", True, f"at most {most} are stored for each point"),
         ]
 
+    def certificate(self) -> tuple[bool, str]:
+        asked, proof = ProvedTask.certificate(self)
+        if asked and not self.config.standard:
+            return True, f"{proof} at some forces; between them slopes of the eigenvalues"
+        return asked, proof
+
     def cost(self) -> Estimate:
+        if not self.config.standard:
+            return estimate_lines_of_arms(self.points.count)
         return estimate_lines(self.points.count, self.config.thresholds.certify)
 
     def solver(self) -> Solver:

@@ -33,7 +33,7 @@ class ArmAlongPath:
 
     def derivative(self, w: complex, p: float, S: float) -> complex:
         """dD/dp exp(-S) at w and p."""
-        h = _step(p)
+        h = self._step(p)
         after, before = self.determinant(p + h).value(w), self.determinant(p - h).value(w)
         return (after.D * math.exp(after.S - S) - before.D * math.exp(before.S - S)) / (2 * h)
 
@@ -45,7 +45,7 @@ class ArmAlongPath:
             value = here.value(complex(x, 0.0))
             D, D_w, S, noise = value.D.real, value.D_w.real, value.S, value.noise
             D_ww = second_derivative(complex(x, 0.0), S, here).real
-            k = min(JACOBIAN_STEP * reach, _step(p))
+            k = min(JACOBIAN_STEP * reach, self._step(p))
             after, before = self._real(x, p + k, S), self._real(x, p - k, S)
             D_p, D_wp = ((a - b) / (2 * k) for a, b in zip(after, before, strict=True))
             cross = D_w * D_wp - D_p * D_ww
@@ -71,7 +71,9 @@ class ArmAlongPath:
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 
-
-def _step(p: float) -> float:
-    """Step of a difference by p."""
-    return JACOBIAN_STEP * max(abs(p), 1.0)
+    def _step(self, p: float) -> float:
+        """Step of a difference by p; no arm within it is crushed."""
+        step = JACOBIAN_STEP * max(abs(p), 1.0)
+        if self.path.name == "F":
+            step = min(step, (self.path.rod.crushing_force - p) / 4)
+        return step

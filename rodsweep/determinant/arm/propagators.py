@@ -16,6 +16,7 @@ from functools import cache
 import numpy as np
 
 from ...arrays import Array
+from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 
 STAGES = 12
@@ -46,34 +47,136 @@ def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: f
 
     local: at the Gauss points, each (elements, stages). lengths: of the elements, in L, (elements,).
     """
-    elements, stages = local.nu.shape
-    _, Q, weights = gauss_method(stages)
-    h = lengths[:, None, None]
-    nu, c2, c3, gamma2, gamma3, g = (values[:, :, None] for values in local)
-    system = np.zeros((elements, 2 * stages, 2 * stages))
-    system[:, :stages, stages:] = -h * Q * (F * local.c3)[:, None, :]
-    system[:, stages:, :stages] = h * Q * local.g[:, None, :]
-    system += np.eye(2 * stages)
-    inverse = np.linalg.inv(system)
-    terms: list[Array] = []
-    y: Array = np.zeros((elements, stages, 4))
-    theta: Array = np.zeros((elements, stages, 4))
-    start = np.eye(4)  # the initial values belong to the term of w^0
-    while len(terms) < MAX_TERMS:
-        push, turn = W * gamma2 * y, W * gamma3 * theta
-        right = np.concatenate([start[2] + h * (Q @ push), start[3] + h * (Q @ turn)], axis=1)
-        solved = inverse @ right
-        s, m = solved[:, :stages], solved[:, stages:]
-        slopes = (c3 * m, push + F * c3 * m, turn - g * s)
-        theta = start[1] + h * (Q @ slopes[0])
-        rise = nu * theta + c2 * s
-        y = start[0] + h * (Q @ rise)
-        ends = [lengths[:, None] * (weights @ slope) for slope in (rise, *slopes)]
-        terms.append(start + np.stack(ends, axis=1))
-        start = np.zeros((4, 4))
-        if np.abs(terms[-1]).max() <= NEGLIGIBLE * np.abs(terms[0]).max():
-            break
-    return np.stack(terms, axis=1)
+    method = gauss_method(local.nu.shape[1])[1:]
+    terms = np.zeros((len(lengths), MAX_TERMS, 4, 4))
+    coefficients = np.ascontiguousarray(np.moveaxis(np.array(local), 0, 1))
+    most = _fill_terms((F, W), coefficients, lengths, method, terms)
+    return np.ascontiguousarray(terms[:, :most])
+
+
+@compiled
+def _fill_terms(
+    load: tuple[float, float], coefficients: Array, lengths: Array, method: tuple[Array, Array], terms: Array
+) -> int:
+    """Fills the terms of all elements, (elements, MAX_TERMS, 4, 4); returns how many are needed at most.
+
+    load: (F, W). coefficients: in the order of `LocalCoefficients`, (elements, 6, stages). method: integrals
+    and weights of `gauss_method`.
+    """
+    most = 1
+    for e in range(len(lengths)):
+        most = max(most, _fill_element(load, coefficients[e], lengths[e], method, terms[e]))
+    return most
+
+
+@compiled
+def _fill_element(
+    load: tuple[float, float], local: Array, h: float, method: tuple[Array, Array], terms: Array
+) -> int:
+    """Fills the terms of one element, (MAX_TERMS, 4, 4); returns how many are needed."""
+    F, W = load
+    Q, weights = method
+    nu, c2, c3, gamma2, gamma3, g = local[0], local[1], local[2], local[3], local[4], local[5]
+    inverse = _inverse_of_moments(F, local, h, Q)
+    stages = len(weights)
+    y, theta, largest = np.zeros((stages, 4)), np.zeros((stages, 4)), 0.0
+    for n in range(terms.shape[0]):
+        start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
+        loads, moments = _scaled(W * gamma2, y), _scaled(W * gamma3, theta)
+        push, turn = _integrated(Q, h, loads, 2, start), _integrated(Q, h, moments, 3, start)
+        m = _product(inverse, turn - _integrated(Q, h, _scaled(g, push), 0, 0.0))
+        slopes = _scaled(c3, m)
+        s = push + _integrated(Q, h, F * slopes, 0, 0.0)
+        loads += F * slopes
+        moments -= _scaled(g, s)
+        theta = _integrated(Q, h, slopes, 1, start)
+        rise = _scaled(nu, theta) + _scaled(c2, s)
+        y = _integrated(Q, h, rise, 0, start)
+        size = 0.0
+        for column in range(4):
+            terms[n, 0, column] = h * (weights * rise[:, column]).sum()
+            terms[n, 1, column] = h * (weights * slopes[:, column]).sum()
+            terms[n, 2, column] = h * (weights * loads[:, column]).sum()
+            terms[n, 3, column] = h * (weights * moments[:, column]).sum()
+            terms[n, column, column] += start
+            size = max(size, np.abs(terms[n, :, column]).max())
+        largest = size if n == 0 else largest
+        if size <= NEGLIGIBLE * largest:
+            return n + 1
+    return len(terms)
+
+
+@compiled
+def _inverse_of_moments(F: float, local: Array, h: float, Q: Array) -> Array:
+    """The inverse of 1 + h Q g h Q F c3, which gives m with s eliminated, (stages, stages)."""
+    c3, g = local[2], local[5]
+    stages = len(Q)
+    system = np.zeros((stages, stages))
+    for i in range(stages):
+        system[i, i] = 1.0
+        for k in range(stages):
+            factor = h * h * F * Q[i, k] * g[k]
+            for j in range(stages):
+                system[i, j] += factor * Q[k, j] * c3[j]
+    inverse = np.empty((stages, stages))
+    _invert(system, inverse)
+    return inverse
+
+
+@compiled
+def _scaled(factors: Array, values: Array) -> Array:
+    """Values, (stages, 4), times a factor at each stage, (stages,)."""
+    out = np.empty_like(values)
+    for i in range(len(factors)):
+        for column in range(4):
+            out[i, column] = factors[i] * values[i, column]
+    return out
+
+
+@compiled
+def _product(A: Array, values: Array) -> Array:
+    """A values, shapes (stages, stages) and (stages, 4)."""
+    out = np.zeros_like(values)
+    for i in range(len(A)):
+        for k in range(len(A)):
+            for column in range(4):
+                out[i, column] += A[i, k] * values[k, column]
+    return out
+
+
+@compiled
+def _integrated(Q: Array, h: float, values: Array, column: int, start: float) -> Array:
+    """The integrals of values, (stages, 4), to each stage, plus a start value in one column."""
+    out = _product(Q, h * values)
+    out[:, column] += start
+    return out
+
+
+@compiled
+def _invert(A: Array, inverse: Array) -> None:
+    """Fills `inverse` with that of A, both (n, n), by elimination with pivoting; A is overwritten."""
+    n = len(A)
+    inverse[:] = 0.0
+    for i in range(n):
+        inverse[i, i] = 1.0
+    for column in range(n):
+        pivot = column
+        for i in range(column + 1, n):
+            if abs(A[i, column]) > abs(A[pivot, column]):
+                pivot = i
+        if pivot != column:
+            for j in range(n):
+                A[column, j], A[pivot, j] = A[pivot, j], A[column, j]
+                inverse[column, j], inverse[pivot, j] = inverse[pivot, j], inverse[column, j]
+        for i in range(n):
+            if i != column:
+                factor = A[i, column] / A[column, column]
+                for j in range(n):
+                    A[i, j] -= factor * A[column, j]
+                    inverse[i, j] -= factor * inverse[column, j]
+    for i in range(n):
+        for j in range(n):
+            inverse[i, j] /= A[i, i]
 
 
 @cache

@@ -1,10 +1,12 @@
 """Thresholds in `rodsweep show`: positions, completeness, and the cost of the search."""
 
+import json
 from itertools import product
 
 import numpy as np
 
 from ...results.file.view import View
+from ...results.layouts import varies_along_the_arm
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR
 from ...wording import counted, plural, some_of
@@ -140,10 +142,13 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
     proved = some_of(int(v["certified"][done].sum()), searches, noun)
+    config = json.loads(view.attributes["config_resolved"])
+    by_counts = varies_along_the_arm(config)
+    complete = "is confirmed by counts of unstable modes" if by_counts else "is proved complete"
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"the list of crossings is proved complete on {proved}{window}",
+        f"the list of crossings {complete} on {proved}{window}",
         f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
         f"{not_stored(hidden)}",
     ]

@@ -71,7 +71,11 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
-        boolean("certified", "whether the list of crossings is proved complete"),
+        boolean(
+            "certified",
+            "whether the list of crossings is proved complete; of arms that are not uniform, whether counts of "
+            "unstable modes confirm it, between which it rests on slopes of the eigenvalues",
+        ),
         integer("boxes", "number of evaluations of D over a box"),
         integer("solves", "number of eigenproblems solved"),
         SECONDS,

@@ -94,17 +94,25 @@ class CrossingSearch:
             else:
                 share = 0.5
                 crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
-                if crossing is not None:
+                beside = self._beside(crossing, (a, b), length) if crossing is not None else None
+                if crossing is not None and beside is not None:
                     found.append(crossing)
-                    p = self.problem.path.variable(crossing.at)
-                    sides = [(a, p - BESIDE * length), (p + BESIDE * length, b)]
-                    stack += [(c, d) for c, d in sides[::-1] if c < d]
+                    stack += [(beside[1], b), (a, beside[0])]
                     continue
                 if b - a <= 1e-12 * max(abs(a), abs(b)):
                     raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
             middle = a + share * (b - a)
             stack += [(middle, b), (a, middle)]
         return sorted(found, key=lambda crossing: crossing.at)
+
+    def _beside(
+        self, crossing: Crossing, ends: tuple[float, float], length: float
+    ) -> tuple[float, float] | None:
+        """The places on both sides of a crossing; None where the counts there do not confirm it."""
+        p = self.problem.path.variable(crossing.at)
+        before, behind = max(ends[0], p - BESIDE * length), min(ends[1], p + BESIDE * length)
+        change = self.place(behind).unstable - self.place(before).unstable
+        return (before, behind) if abs(change) == 2 else None
 
     def _between(self, left: Place, right: Place) -> Crossing | None:
         """The crossing between two places at which the numbers of unstable modes differ by a pair."""
