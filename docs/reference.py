@@ -18,6 +18,7 @@ from pydantic.fields import FieldInfo
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.config.document.refusals import what_is_allowed
 from rodsweep.config.json.schema import meanings_of
+from rodsweep.config.material import MaterialSection, ProfileTable
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
@@ -236,6 +237,9 @@ def parameters() -> str:
     for name, p in PARAMETERS.items():
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
         default = "" if p.default is None else f"{p.default:g} in a grid; a spectrum has none"
+        if p.optional:
+            having = [task for task, kind in CONFIGS.items() if kind.takes_arms]
+            default = f"{p.default:g}; no dimension of the file unless given"
         key, allowed = f"`parameters.{name}`", p.allowed.phrase
         rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
@@ -254,7 +258,18 @@ def common_keys() -> str:
     meanings = meanings_of(ArmSection)
     fields = ArmSection.model_fields
     rows += [key_row(f"parameters.arm.{name}", field, meanings[name]) for name, field in fields.items()]
-    return "\n### Keys of every task\n\n" + key_table(rows)
+    return "\n### Keys of every task\n\n" + key_table(rows) + material_keys()
+
+
+def material_keys() -> str:
+    """Table of the keys of the material and the columns of its profile."""
+    rows = [
+        key_row(f"{place}.{name}", field, meanings_of(section)[name])
+        for place, section in (("material", MaterialSection), ("material.profile", ProfileTable))
+        for name, field in section.model_fields.items()
+    ]
+    taking = ", ".join(task for task, kind in CONFIGS.items() if kind.takes_arms)
+    return f"\n### Keys of the material\n\nOf the tasks {taking} only.\n\n" + key_table(rows)
 
 
 def task_keys(task: str) -> str:

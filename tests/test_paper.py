@@ -214,3 +214,44 @@ def test_integration_alone_gives_the_cycle_that_collocation_gives(command):
         assert file["tip_y_max"][1].item() == pytest.approx(height, rel=file["amplitude_error"][1].item())
         assert file["period_error"][1].item() < 1e-6
         assert isnan(file["multiplier"][1].item())
+
+
+def test_taper(command):
+    """A cone of half the radius, and the uniform arm beside it."""
+    cone, frequency, uniform = stated("taper")[1:2] + stated("taper")[3:]
+    with run(command, "taper", "parameters.taper=[0.5, 1]") as file:
+        assert file["F_hopf"][...].ravel() == pytest.approx([cone, uniform], rel=1e-11)
+        assert file["hopf_frequency"][...].ravel()[0] == pytest.approx(frequency, rel=1e-11)
+        assert file["certified"][...].all()
+
+
+def test_segments(command):
+    stable, unstable = stated("segments")[-2:]
+    with run(command, "segments", f"parameters.F=[{stable}, {unstable}]") as file:
+        assert file["unstable_count"][...].ravel().tolist() == [0, 2]
+        assert file["certified"][...].all()
+
+
+def test_rubber(command):
+    """The window of the swelling section, and of a fixed section, which never closes."""
+    lower, upper, fixed = stated("rubber")
+    with run(command, "rubber", "parameters.k1=[300, 500]") as file:
+        assert file["F_hopf"][...].ravel() == pytest.approx([np.nan, lower], rel=1e-11, nan_ok=True)
+        assert file["F_restabilization"][...].ravel() == pytest.approx(
+            [np.nan, upper], rel=1e-11, nan_ok=True
+        )
+    (command.directory / "rubber.h5").unlink()
+    with run(command, "rubber", "material.section=fixed", "parameters.k1=[100, 200]") as file:
+        assert file["F_hopf"][1, 0, 0] == pytest.approx(fixed, rel=1e-11)
+        assert np.isnan(file["F_restabilization"][...]).all()
+
+
+def test_slender(command):
+    rubber, linear = stated("slender")
+    length = "parameters.arm.length=[12 cm, 14 cm]"
+    with run(command, "slender", length, "parameters.taper=1") as file:
+        assert file["F_hopf"][...].ravel()[0] == pytest.approx(rubber, rel=1e-11)
+    (command.directory / "slender.h5").unlink()
+    of_linear = ("material.section=fixed", "material.law=linear", "parameters.taper=1")
+    with run(command, "slender", length, *of_linear) as file:
+        assert file["F_hopf"][...].ravel()[0] == pytest.approx(linear, rel=1e-11)

@@ -52,6 +52,11 @@ class ProfileTable(Strict):
         return self
 
 
+def _or_file(schema: dict[str, Any]) -> None:
+    """Adds the name of a file to the JSON schema of a profile; `with_profile_read` replaces it by columns."""
+    schema["anyOf"] = [{"type": "string"}, *schema["anyOf"]]
+
+
 class MaterialSection(Strict):
     """What the arm is made of, and how it varies along its length."""
 
@@ -61,7 +66,9 @@ class MaterialSection(Strict):
     """Whether the cross-section keeps its size or swells as the arm shortens."""
     profile: Annotated[
         ProfileTable | None,
-        Field(description="the name of a CSV file, or a mapping of u and factors to lists"),
+        Field(
+            description="the name of a CSV file, or a mapping of columns to lists", json_schema_extra=_or_file
+        ),
     ] = None
     """CSV file, or a mapping of columns, of u and the factors of k1, k2, k3, gamma1, gamma2 and gamma3."""
 

@@ -87,7 +87,13 @@ def test_arguments_are_these():
     assert drawn == ["data", "output", "roots", "what", "points", "at", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
     arguments = inspect.signature(rs.Rod).parameters
-    assert [name for name in arguments if name != "unknown"] == [*PARAMETERS, "arm"]
+    assert [name for name in arguments if name != "unknown"] == [
+        *PARAMETERS,
+        "arm",
+        "law",
+        "section",
+        "profile",
+    ]
 
 
 def test_import_loads_nothing():

@@ -527,15 +527,45 @@ def test_several_lines_of_spectra_are_panels_of_one_figure(command, monkeypatch)
     assert "49.758" in titles[0]
     assert "37.656" in titles[1]
     assert len(drawn[0].legends) == 1
+    command.write("m.yaml", f"task: modes\nparameters: {{{axes}}}\nmodes: {{modes: 1, growth: false}}\n")
+    command.solved("m.yaml")
     command.write("t.yaml", "task: thresholds\nparameters: {k1: 200, k2: 1.0e4, gamma3: 1.0e-4}\n")
     command.solved("t.yaml")
     refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
     assert "only lines of spectra" in refused.stderr
     assert (
-        "only files of limit_cycle or spectrum share a figure"
-        in command("plot", "t.h5", "t.h5", "-o", "x.png").stderr
+        "only files of limit_cycle, spectrum or thresholds share a figure"
+        in command("plot", "m.h5", "m.h5", "-o", "x.png").stderr
     )
+    alone = command("plot", "t.h5", "t.h5", "-o", "x.png")
+    assert (alone.returncode, alone.stderr.count("\n")) == (2, 1)
+
+
+def test_thresholds_of_several_files_are_lines_of_one_figure(command, monkeypatch):
+    """A colour for each law; a file over another axis is refused."""
+    for name, law in (("a", "linear"), ("b", "neo_hookean")):
+        axes = "k1: [150, 300, 600], k2: 1.0e4, gamma3: 1.0e-4"
+        text = (
+            f"task: thresholds\nparameters: {{{axes}}}\nmaterial: {{law: {law}}}\nthresholds: {{F_max: 80}}\n"
+        )
+        command.write(f"{name}.yaml", text)
+        command.solved(f"{name}.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    views = [read_view(command.directory / f"{name}.h5") for name in "ab"]
+    assert draw(views, command.directory / "f.png").startswith("critical forces against k1 of 2 files")
+    (axes,) = drawn[0].axes
+    hopf = [line.get_ydata() for line in axes.lines if line.get_marker() == "s"]
+    for line, view in zip(hopf, views, strict=True):
+        np.testing.assert_array_equal(line, view.variables["F_hopf"].ravel())
+    labels = [text.get_text() for text in drawn[0].legends[0].get_texts()]
+    assert labels[-2:] == ["linear", "neo-Hookean, fixed section"]
+    command.write("t.yaml", "task: thresholds\nparameters: {k1: 200, k2: [1.0e3, 1.0e4], gamma3: 1.0e-4}\n")
+    command.solved("t.yaml")
+    refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "one and the same axis" in refused.stderr
 
 
 def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():

@@ -10,7 +10,7 @@ values of drag are an axis of gamma3.
 from collections.abc import Mapping
 
 from ...model.arm.quantities import LOADS, RELATIVE
-from ...model.parameters import NONLINEAR_PARAMETERS
+from ...model.parameters import PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
 """Keys of the load. An arm has at most one load."""
@@ -44,9 +44,9 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE]
     if all(name in (ALONG if in_diagram else AXIS_OF) for name in quantities):
         return ()
-    return (*quantities, *(name for name in NONLINEAR_PARAMETERS if sizes.get(name, 1) > 1))
+    return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))
 
 
 def moved_by(axis: str) -> str:
     """The parameter that an axis of an arm's grid changes; "" if it changes several or none."""
-    return axis if axis in NONLINEAR_PARAMETERS else MOVES.get(axis, "")
+    return axis if axis in PARAMETERS else MOVES.get(axis, "")

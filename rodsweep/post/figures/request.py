@@ -113,7 +113,8 @@ class FigureRequest:
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
-                f"{view.path}: only files of limit_cycle or spectrum share a figure, and this is {view.task}"
+                f"{view.path}: only files of limit_cycle, spectrum or thresholds share a figure, and this is "
+                f"{view.task}"
             )
 
     def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:

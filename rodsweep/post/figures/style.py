@@ -1,6 +1,7 @@
 """Common style of figures: symbols, labels, colours and titles, scales of axes, and refusals."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from math import isinf
 from typing import Any, Literal
 
@@ -69,7 +70,23 @@ def plain(text: object) -> str:
 def heading(view: View, *lines: str) -> str:
     """Title of the file, given by the user, above further lines."""
     title = " ".join(plain(view.attributes.get("title", "")).split())
-    return "\n".join(filter(None, (title, *lines)))
+    return "\n".join(filter(None, (title, material_text(view), *lines)))
+
+
+def material_text(view: View) -> str:
+    """Law and profile of the arms of a file; empty for arms of linear material without a profile."""
+    material = json.loads(view.attributes.get("config_resolved", "{}")).get("material", {})
+    law, section = material.get("law", "linear"), material.get("section", "fixed")
+    words = [] if law == "linear" else [f"neo-Hookean, {section} section"]
+    return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
+
+
+def name_in(view: View, views: Sequence[View]) -> str:
+    """Name of a file in a figure of several: its law where the laws differ, else its title or name."""
+    laws = [material_text(each) or "linear" for each in views]
+    if len(set(laws)) == len(laws):
+        return laws[list(views).index(view)]
+    return " ".join(plain(view.attributes.get("title", "")).split()) or plain(view.path.stem)
 
 
 def number(value: float, digits: int = 6) -> str:

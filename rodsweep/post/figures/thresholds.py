@@ -13,7 +13,14 @@ from .layout.fitting import MAP_ASPECT, MIN_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
-from .stability.threshold_lines import CRITICAL_FORCES, MAX_LINES, draw_all_lines, draw_lines_of_some
+from .stability.threshold_lines import (
+    CRITICAL_FORCES,
+    FILE_COLOURS,
+    MAX_LINES,
+    draw_all_lines,
+    draw_lines_of_files,
+    draw_lines_of_some,
+)
 
 NO_THRESHOLD = "#DDDDDD"
 """Colour of rods without the threshold."""
@@ -23,6 +30,8 @@ SEARCH_DIGITS = 4
 
 def draw_thresholds(request: FigureRequest) -> str:
     """Draws the first thresholds over one or two parameters; otherwise a bar of classes for each rod."""
+    if request.views[1:]:
+        return _of_files(request)
     given = request.only_view("lines", "map")
     view = as_grid(given)
     if not view.is_grid or view.variables["status"].size == 1:
@@ -49,9 +58,26 @@ def draw_thresholds(request: FigureRequest) -> str:
     return request.write(*draw_lines_of_some(view, long, request.look.narrow, searched(view)))
 
 
-def searched(view: View) -> str:
+def _of_files(request: FigureRequest) -> str:
+    """Draws the thresholds of several files over the one parameter that varies in all of them."""
+    request.refuse_points(request.views[0], ("lines",))
+    request.check_output()
+    views = request.views
+    along = style.long_axes(views[0])
+    if len(views) > len(FILE_COLOURS):
+        raise InputError(f"{len(views)} files of thresholds share a figure; it may have {len(FILE_COLOURS)}")
+    for view in views:
+        if view.task != views[0].task or not view.is_grid or style.long_axes(view) != along or along[1:]:
+            raise InputError(
+                f"{view.path}: files of thresholds share a figure where all are grids with one and the same "
+                "axis of more than one value"
+            )
+    return request.write(*draw_lines_of_files(views, along[0], searched(*views)))
+
+
+def searched(*views: View) -> str:
     """Range of forces in which thresholds were sought; a missing threshold may lie beyond."""
-    ends = view.variables["F_end"]
+    ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
     low, high = (style.number(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 

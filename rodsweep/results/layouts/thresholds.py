@@ -73,8 +73,8 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         real("open_to", units, f"end {undecided}"),
         boolean(
             "certified",
-            "whether the list of crossings is proved complete; of arms that are not uniform, whether counts of "
-            "unstable modes confirm it, between which it rests on slopes of the eigenvalues",
+            "whether the list of crossings is proved complete; of arms that are not uniform, whether counts "
+            "of unstable modes confirm it, between which it rests on slopes of the eigenvalues",
         ),
         integer("boxes", "number of evaluations of D over a box"),
         integer("solves", "number of eigenproblems solved"),

@@ -29,7 +29,7 @@ LAST_STEP = 4.0
 
 
 @dataclass(frozen=True)
-class Place:
+class AxisPlace:
     """The leading eigenvalues at p, (modes,), their slopes, (modes,), and the number of unstable ones."""
 
     p: float
@@ -55,11 +55,11 @@ class CrossingSearch:
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem, self.certify = problem, certify
-        self.places: dict[float, Place] = {}
+        self.places: dict[float, AxisPlace] = {}
         self.gaps: list[tuple[float, float]] = []
         self.proved = certify
 
-    def place(self, p: float) -> Place:
+    def place(self, p: float) -> AxisPlace:
         """The place at p; Unsolvable where its eigenvalues or their number cannot be had."""
         if p not in self.places:
             modes = MODES
@@ -73,7 +73,7 @@ class CrossingSearch:
             slopes = found.eigenvalues.copy()
             for i, w in enumerate(found.eigenvalues.tolist()):
                 slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
-            self.places[p] = Place(p, found.eigenvalues, slopes, found.unstable_count)
+            self.places[p] = AxisPlace(p, found.eigenvalues, slopes, found.unstable_count)
         return self.places[p]
 
     def crossings(self, edges: list[float]) -> list[Crossing]:
@@ -114,7 +114,7 @@ class CrossingSearch:
         change = self.place(behind).unstable - self.place(before).unstable
         return (before, behind) if abs(change) == 2 else None
 
-    def _between(self, left: Place, right: Place) -> Crossing | None:
+    def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
         """The crossing between two places at which the numbers of unstable modes differ by a pair."""
         grows = right.unstable > left.unstable
         for start, growing in ((left, not grows), (right, grows)):
@@ -125,7 +125,7 @@ class CrossingSearch:
                     return crossing
         return None
 
-    def _newton(self, start: Place, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
+    def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
         """Newton's method for the place where the i-th eigenvalue of a place meets the axis."""
         p, w, slope = start.p, complex(start.w[i]), complex(start.slopes[i])
         for _ in range(MAX_NEWTON_STEPS):
@@ -151,7 +151,7 @@ class CrossingSearch:
         return Crossing(at, kind, w.imag, 0.0, error, frequency_error=abs(slope.imag) * error_of_p)
 
 
-def hidden(left: Place, right: Place) -> float:
+def hidden(left: AxisPlace, right: AxisPlace) -> float:
     """Where to look between two places whether a pair touches the axis, as a share; 0 where none can."""
     h = right.p - left.p
     for growing in (False, True):

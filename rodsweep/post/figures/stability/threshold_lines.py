@@ -1,5 +1,6 @@
 """First thresholds of rods as lines over a parameter, for all values of a second parameter or for some."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib
@@ -18,6 +19,8 @@ CRITICAL_FORCES = (
     ("F_restabilization", "restabilization", style.THIRD, "^", "--"),
 )
 """Variable, word, colour for lines of a single rod, marker and line style of each threshold."""
+FILE_COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "0.3")
+"""Colours of the files that share a figure."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""
 MAX_LINES = 6
@@ -60,6 +63,29 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
     return figure, words + _left_out(view, [along])
+
+
+def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tuple[Figure, str]:
+    """Figure of lines over one parameter, in a colour for each file; and a description."""
+    figure = Figure(figsize=(5.6, 4.6), layout="constrained")
+    axes = figure.subplots()
+    tables = np.concatenate([_table(view, along, None) for view in views])
+    handles = _kinds(tables)
+    for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
+        for forces, (_, _, _, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
+            _plot(
+                axes,
+                _abscissa(view, along),
+                forces,
+                {"marker": marker, "ms": 3, "lw": 1.2, "color": shade, "ls": line},
+            )
+        handles.append(Line2D([], [], color=shade, lw=2, label=style.name_in(view, views)))
+    longest = max(views, key=lambda view: len(view.axes[along]))
+    _label(axes, longest, along, tables)
+    axes.set_ylabel(style.CRITICAL_FORCE)
+    style.legend_below(figure, handles, columns=2)
+    figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
+    return figure, f"critical forces against {along} of {len(views)} files" + _left_out(longest, [along])
 
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:

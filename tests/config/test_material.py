@@ -1,0 +1,139 @@
+"""The section material, the parameter taper, and profiles in files: what is taken, and each refusal."""
+
+import re
+
+import h5py
+import numpy as np
+import pytest
+
+import rodsweep as rs
+from rodsweep.config import load_config
+from rodsweep.config.tasks import CONFIGS
+from rodsweep.errors import InputError
+
+BASE = """
+task: {task}
+parameters: {{F: [1, 2], k1: 1e4, k2: 1e4, gamma3: 1e-4{more}}}
+{rest}
+"""
+STEPPED = "u,k3,gamma3\n0,1,1\n0.4,1,1\n0.4,0.2,0.5\n1,0.2,0.5\n"
+
+
+def config(directory, rest="", more="", task="spectrum"):
+    path = directory / "arm.yaml"
+    path.write_text(BASE.format(task=task, more=more, rest=rest))
+    return load_config(path)[0]
+
+
+def test_profile_of_a_file_is_part_of_the_config(tmp_path):
+    (tmp_path / "steps.csv").write_text(STEPPED)
+    read = config(tmp_path, "material: {profile: steps.csv}")
+    table = "material: {profile: {u: [0, 0.4, 0.4, 1], k3: [1, 1, 0.2, 0.2], gamma3: [1, 1, 0.5, 0.5]}}"
+    assert read.build == config(tmp_path, table).build
+    assert read.meaning == config(tmp_path, table).meaning
+    assert read.build.profile.rows[2] == (1.0, 1.0, 0.2, 1.0, 1.0, 0.5)
+    assert not read.standard
+
+
+def test_default_material_means_the_same_as_none(tmp_path):
+    plain, written = config(tmp_path), config(tmp_path, "material: {law: linear}")
+    assert written.standard
+    assert plain.meaning == written.meaning
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("u,k3\n0.1,1\n1,1\n", "the first row must be at u = 0 and the last at u = 1"),
+        ("u,k3\n0,1\n0.5,0\n1,1\n", "the factor of k3 at u = 0.5 is 0; it must be finite and above 0"),
+        ("u,k3\n0,1\n0.5,1\n0.5,1\n0.5,2\n1,1\n", "there are 3 rows at u = 0.5; there may be two rows"),
+        ("u,k3\n0,1\n0.6,1\n0.5,1\n1,1\n", "u = 0.5 follows u = 0.6; u must not decrease"),
+        ("u,k3\n0,1\n1\n", "row 2 has 1 values, but the header names 2"),
+        ("u,k3\n0,1\n1,one\n", "row 2: k3 = 'one' is not a number"),
+        (
+            "u,k9\n0,1\n1,1\n",
+            "the header must name u and any of k1, k2, k3, gamma1, gamma2, gamma3, each once",
+        ),
+        ("k3\n1\n", "the header must name u"),
+        ("u,k3,k3\n0,1,1\n1,1,1\n", "each once"),
+        ("", "the header must name u"),
+    ],
+)
+def test_profiles_that_are_none_are_refused_in_a_sentence(tmp_path, text, sentence):
+    (tmp_path / "bad.csv").write_text(text)
+    with pytest.raises(InputError, match=re.escape(sentence)) as refusal:
+        config(tmp_path, "material: {profile: bad.csv}")
+    assert "material.profile" in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("rest", "more", "sentence"),
+    [
+        (
+            "material: {law: rubber}",
+            "",
+            "material.law = 'rubber' is not allowed; it should be linear or neo_",
+        ),
+        ("material: {section: swelling}", "", "material: section = swelling is not known for law = linear"),
+        ("material: {profile: no.csv}", "", "no.csv does not exist"),
+        ("material: {laws: linear}", "", "unknown key material.laws; did you mean law?"),
+        ("material: {mu: 2}", "", "unknown key material.mu"),
+        ("material: {profile: {u: [0, 1], k3: [1]}}", "", "material.profile: k3 has 1 values and u has 2"),
+        ("spectrum: {longitudinal: true}", ", gamma1: 1, taper: 0.5", "spectrum.longitudinal is true, but"),
+    ],
+)
+def test_bad_materials_are_refused_in_a_sentence(tmp_path, rest, more, sentence):
+    with pytest.raises(InputError, match=re.escape(sentence)):
+        config(tmp_path, rest, more)
+
+
+@pytest.mark.parametrize("taper", [0, -1, 0.001, 1000])
+def test_a_taper_of_a_point_is_refused(taper):
+    with pytest.raises(InputError, match=r"parameters.taper = .* it must be a number from 0.01 to 100"):
+        rs.Rod(F=1, k1=1e4, k2=1e4, gamma3=1e-4, taper=taper).spectrum()
+
+
+@pytest.mark.parametrize("task", [name for name, kind in CONFIGS.items() if not kind.takes_arms])
+@pytest.mark.parametrize("asked", ["taper", "law"])
+def test_tasks_that_solve_no_arms_say_so(task, asked):
+    keywords = {"taper": 0.5} if asked == "taper" else {"law": "neo_hookean"}
+    with pytest.raises(InputError, match=f"but the task {task} solves uniform arms of linear material only"):
+        rs.sweep(task, k1=[1e3, 1e4], k2=1e4, gamma3=1e-4, **keywords)
+
+
+def test_the_tip_of_a_cone_is_crushed_first():
+    rod = {"k1": 40.0, "k2": 1e4, "gamma3": 1e-4, "taper": 0.5}
+    assert rs.Rod(F=9.9, **rod).spectrum().certified
+    with pytest.raises(InputError, match="the weakest section of the arms is crushed at 10"):
+        rs.Rod(F=10, **rod)
+    assert rs.Rod(F=100, law="neo_hookean", **rod).spectrum().certified
+
+
+def test_a_run_stores_what_was_asked_and_continues_only_that(command):
+    (command.directory / "steps.csv").write_text(STEPPED)
+    text = BASE.format(task="spectrum", more=", taper: [0.7, 1]", rest="material: {profile: steps.csv}")
+    (command.directory / "arm.yaml").write_text(text)
+    assert command("run", "arm.yaml").returncode == 0
+    with h5py.File(command.directory / "arm.h5") as file:
+        assert file["growth_rate"].shape == (2, 1, 1, 1, 2, 4)
+        assert file["taper"][...].tolist() == [0.7, 1.0]
+        assert file["taper"].attrs["units"] == "1"
+        assert np.unique(file["certified"][...]).tolist() == [1]
+    assert "nothing to do" in command("run", "arm.yaml").stdout
+    shown = command("show", "arm.h5").stdout
+    assert "taper      2       0.7" in shown
+    (command.directory / "steps.csv").write_text(STEPPED.replace("0.5", "0.6"))
+    other = command("run", "arm.yaml")
+    assert other.returncode == 2
+    assert "material.profile.gamma3" in other.stderr
+    checked = " ".join(command("check", "arm.yaml").stdout.split())
+    assert "a cone of radius ratio 0.7 to 1 and a profile of 4 rows with 1 jump" in checked
+
+
+def test_rod_of_python_repeats_its_material():
+    rod = rs.Rod(F=3, k1=500, k2=1e4, gamma3=1e-4, taper=0.5, law="neo_hookean", section="swelling")
+    assert repr(rod).endswith("taper=0.5, law='neo_hookean', section='swelling')")
+    assert rod == rod.replace(F=3)
+    assert rod != rod.replace(section="fixed")
+    assert rod != rs.Rod(F=3, k1=500, k2=1e4, gamma3=1e-4, taper=0.5)
+    assert hash(rod) == hash(rod.replace())

@@ -1,0 +1,118 @@
+"""Counts, hulls and roots of arms against another discretisation and the closed form."""
+
+import numpy as np
+import pytest
+from reference.dense_arm import eigenvalues
+from reference.random_arms import random_arm
+from surveyed import RODS
+
+from rodsweep.determinant.arm.count import count_right_of
+from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.hull import Hull, clearance, hull_of
+from rodsweep.determinant.arm.roots import refined, root_error, roots
+from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
+from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+
+STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.1,) * 6, (0.1,) * 6))
+
+
+def line_in_gap(w):
+    """A line between eigenvalues behind the third, in a gap that dense eigenvalues can tell."""
+    at = next(i for i in range(3, 12) if w[i].real - w[i + 1].real > 0.02 * abs(w[i + 1].real))
+    return min(float(w[at].real + w[at + 1].real) / 2, 0.0)
+
+
+@pytest.mark.parametrize("seed", range(max(12, RODS // 10)))
+def test_counts_and_hulls_agree_with_dense_eigenvalues(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(4):
+        rod = random_arm(rng)
+        hull, determinant, w = hull_of(rod), ArmDeterminant(rod), eigenvalues(rod)
+        for value in w[:8]:
+            assert clearance(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(value)
+        line = line_in_gap(w)
+        counted = count_right_of(line, determinant, hull)
+        assert counted.number == int((w.real > line).sum()), (rod, rod.build, counted)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_uniform_rods_are_counted_as_by_the_closed_form(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(5):
+        k1, k2 = (float(10 ** rng.uniform(1.5, 5)) for _ in range(2))
+        F = float(min(10 ** rng.uniform(0, 3), 0.9 * k1))
+        rod = Rod(F=F, k1=k1, k2=k2, gamma3=float(10 ** rng.uniform(-5, 0)))
+        line = -float(10 ** rng.uniform(1, 4))
+        found = count_right_of(line, ArmDeterminant(rod), hull_of(rod))
+        assert found.number == count_of_uniform(line, rod).number
+
+
+@pytest.mark.parametrize(
+    "rod",
+    [
+        Rod(F=37.0, k1=1e4, k2=1e4, gamma3=1e-4),
+        Rod(F=90.0, k1=100.0, k2=20.0, gamma3=0.5),
+        Rod(F=30.0, k1=np.inf, k2=np.inf, gamma3=0.0),
+        Rod(F=30.0, k1=200.0, k2=50.0, gamma3=0.0),
+    ],
+)
+def test_hull_of_a_uniform_rod_has_the_box_of_the_closed_form(rod):
+    hull = hull_of(rod)
+    assert hull.c == 0
+    assert hull.a == pytest.approx(1.05 * squared_amplification(rod) ** 0.5, rel=1e-9)
+    for own, closed in zip(hull.box(30.0), eigenvalue_box(rod, 30.0), strict=True):
+        assert closed <= own <= 1.15 * closed
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.8])
+def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
+    rng = np.random.default_rng(1)
+    hull = Hull(7.0, share)
+    n = np.linspace(0, 200, 40_001)
+    for _ in range(40):
+        w = complex(rng.uniform(-300, 100), rng.uniform(0, 300))
+        distance, normal = clearance(w, hull.a, hull.c)
+        if distance <= 0:
+            continue
+        x, y = hull.a * n - (1 - hull.c) * n**2, hull.a * n + hull.c * n**2
+        assert ((w.real - x) * normal.real + (w.imag - y) * normal.imag).min() >= distance * (1 - 1e-6)
+        assert abs(normal) == pytest.approx(1)
+
+
+def test_stepped_arm_without_rotational_drag_is_bounded_by_its_clamp():
+    """No weight is continuous across the jump; theta(0) = 0 bounds what is left while shear is stiff."""
+    stiff = Rod(F=2.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
+    soft = Rod(F=2.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=STEP))
+    assert 0 < hull_of(stiff).c < 0.5
+    assert hull_of(soft).a == np.inf
+    refused = count_right_of(-1.0, ArmDeterminant(soft), hull_of(soft))
+    assert refused.number is None
+    assert refused.why_not == "no a-priori bound on the eigenvalues applies"
+    count = count_right_of(-100.0, ArmDeterminant(stiff), hull_of(stiff))
+    reference = eigenvalues(Rod(F=2.0, k1=1e4, k2=1e4, gamma3=1e-9, build=Build(profile=STEP)))
+    assert count.number == int((reference.real > -100.0).sum())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_roots_are_those_of_the_mesh_and_within_their_errors_on_a_finer_grid(seed):
+    rng = np.random.default_rng(100 + seed)
+    rod = random_arm(rng, pulled=0.0)
+    determinant, w = ArmDeterminant(rod), eigenvalues(rod)[:5]
+    found = roots(w.astype(complex), determinant, hull_of(rod), 400.0)
+    assert len(found.w) == 5
+    assert found.displacement.max() < 1e-5
+    for value, error in zip(found.w.tolist(), found.error.tolist(), strict=True):
+        assert abs(refined(value, determinant) - value) <= 4 * error + 1e-15 * abs(value)
+        assert root_error(value, determinant) == error
+
+
+def test_eigenvalues_that_are_no_roots_are_left_out():
+    rod = Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
+    w = eigenvalues(rod)[:4]
+    raw = np.array([*w, -1000.0, np.inf, 1e9, w[0] + 40])
+    found = roots(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
+    assert sorted(found.chosen.tolist()) == [0, 1, 2, 3]
+    np.testing.assert_allclose(found.w, w[found.chosen], rtol=1e-6)

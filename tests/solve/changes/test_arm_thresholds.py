@@ -1,0 +1,85 @@
+"""Thresholds of tapered, stepped and rubber arms: published digits, dense scans, and the uniform rod."""
+
+import numpy as np
+import pytest
+from reference.dense_arm import eigenvalues
+from reference.random_arms import random_arm
+from surveyed import RODS
+
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.unstable_modes import Kind
+
+ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
+ACROSS = (Kind.hopf, Kind.hopf_reverse, Kind.restabilization)
+
+
+def across_the_axis(found):
+    return [(crossing.kind, crossing.at) for crossing in found.crossings if crossing.kind in ACROSS]
+
+
+@pytest.mark.parametrize(
+    ("rod", "F_max", "expected"),
+    [
+        (Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), 40.0, [(Kind.hopf, 15.4627583986)]),
+        (
+            Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
+            150.0,
+            [(Kind.hopf, 45.8967541917)],
+        ),
+        (
+            Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
+            150.0,
+            [(Kind.hopf, 57.3983354479)],
+        ),
+        (
+            Rod(F=0.0, k1=500.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")),
+            600.0,
+            [(Kind.hopf, 59.0162383065), (Kind.restabilization, 414.527760519)],
+        ),
+        (Rod(F=0.0, k1=300.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")), 600.0, []),
+    ],
+    ids=["cone", "rubber 200", "rubber 100", "swelling 500", "swelling 300"],
+)
+def test_digits_of_an_independent_collocation(rod, F_max, expected):
+    found = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, True, 16))
+    assert found.status == ThresholdStatus.ok
+    kinds, places = zip(*across_the_axis(found), strict=True) if expected else ((), ())
+    assert kinds == tuple(kind for kind, _ in expected)
+    np.testing.assert_allclose(places, [at for _, at in expected], rtol=1e-11)
+
+
+def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
+    values, request = (
+        {"F": 0.0, "k1": 300.0, "k2": 150.0, "gamma3": 1e-3},
+        ThresholdsRequest(200, 1e-10, True, 16),
+    )
+    uniform = solve_thresholds(Rod(**values), request)
+    profiled = solve_thresholds(Rod(**values, build=Build(profile=ONES)), request)
+    assert [c.kind for c in profiled.crossings] == [c.kind for c in uniform.crossings]
+    for name in ("at", "frequency", "growth_rate"):
+        ours, theirs = ([getattr(c, name) for c in found.crossings] for found in (profiled, uniform))
+        np.testing.assert_allclose(ours, theirs, rtol=1e-11, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(max(8, RODS // 10)))
+def test_no_crossing_is_missed_between_the_forces_of_a_dense_scan(seed):
+    rng = np.random.default_rng(seed)
+    rod = random_arm(rng, pulled=0.0)
+    found = solve_thresholds(rod.changed(F=0.0), ThresholdsRequest(3 * rod.F, 1e-9, True, 32))
+    assert found.status == ThresholdStatus.ok, (rod, rod.build, found.message)
+    crossings = [c for c in found.crossings if c.kind in ACROSS]
+    for F in np.linspace(0.03, 0.999, 12) * found.end:
+        expected = [c.unstable_after for c in crossings if c.at < F]
+        unstable = int((eigenvalues(rod.changed(F=float(F))).real > 0).sum())
+        assert unstable == (expected[-1] if expected else 0), (rod, rod.build, F)
+
+
+def test_search_of_a_cone_ends_where_its_tip_is_crushed():
+    found = solve_thresholds(
+        Rod(F=0.0, k1=40.0, k2=1e4, gamma3=1e-4, taper=0.5), ThresholdsRequest(200, 1e-8, True, 8)
+    )
+    assert found.end == pytest.approx(10.0, rel=2e-6)
+    assert found.status == ThresholdStatus.ok

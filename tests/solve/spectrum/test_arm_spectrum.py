@@ -1,0 +1,78 @@
+"""Leading eigenvalues of arms that vary and of rubber, certified, against other ways to have them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reference.dense_arm import eigenvalues
+from reference.random_arms import random_arm
+from surveyed import RODS
+
+from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.roots import refined
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.status import SpectrumStatus
+from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
+
+REQUEST = SpectrumRequest(4, 1e-10, certify=True)
+ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
+UNIFORM = {"F": 30.0, "k1": 1e4, "k2": 300.0, "gamma3": 1e-3}
+
+
+@pytest.mark.parametrize("seed", range(max(10, RODS // 10)))
+def test_random_arms_have_the_leading_eigenvalues_of_another_discretisation(seed):
+    rng = np.random.default_rng(1000 + seed)
+    for _ in range(3):
+        rod = random_arm(rng, pulled=0.0)
+        found, dense = solve_spectrum(rod, REQUEST), eigenvalues(rod)
+        assert (found.status, found.certified) == (SpectrumStatus.ok, True), (rod, rod.build)
+        assert found.unstable_count == int((dense.real > 0).sum())
+        for w, error in zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True):
+            assert np.abs(dense - w).min() <= 1e-5 * max(abs(w), 1.0)
+            assert abs(refined(w, ArmDeterminant(rod)) - w) <= 4 * error + 1e-15 * abs(w)
+
+
+def test_a_profile_of_ones_is_the_uniform_rod():
+    uniform = solve_spectrum(Rod(**UNIFORM), REQUEST)
+    profiled = solve_spectrum(Rod(**UNIFORM, build=Build(profile=ONES)), REQUEST)
+    np.testing.assert_allclose(profiled.eigenvalues, uniform.eigenvalues, rtol=1e-12)
+    assert profiled.certified
+
+
+@pytest.mark.parametrize("section", ["fixed", "swelling"])
+def test_uniform_rubber_is_solved_by_its_linear_equivalent(section):
+    """Both ways: the closed form of the equivalent rod, and elements with a profile of ones."""
+    values = {"F": 450.0, "k1": 500.0, "k2": 1e4, "gamma3": 1e-4}
+    quick = solve_spectrum(Rod(**values, build=Build("neo_hookean", section)), REQUEST)
+    general = solve_spectrum(Rod(**values, build=Build("neo_hookean", section, ONES)), REQUEST)
+    assert quick.certified
+    assert general.certified
+    np.testing.assert_allclose(general.eigenvalues, quick.eigenvalues, rtol=1e-11)
+
+
+def test_vectors_are_those_of_a_finer_mesh():
+    rod = Rod(F=14.0, k1=1e4, k2=200.0, gamma3=1e-3, taper=0.4)
+    rough = solve_spectrum(rod, SpectrumRequest(3, 1e-6, certify=True, vector_nodes=17)).vectors
+    fine = solve_spectrum(rod, SpectrumRequest(3, 1e-11, certify=True, vector_nodes=17)).vectors
+    assert np.abs(rough - fine).max() < 1e-5 * np.abs(fine).max()
+    np.testing.assert_allclose(fine[0, :, -1], 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_two_meshes_agree_with_the_determinant(seed):
+    rod = random_arm(np.random.default_rng(2000 + seed), pulled=0.0)
+    request = replace(REQUEST, accuracy=1e-8)
+    found, proved = solve_on_two_meshes(rod, request), solve_spectrum(rod, REQUEST)
+    assert found.status == SpectrumStatus.ok
+    assert not found.certified
+    np.testing.assert_array_less(np.abs(found.eigenvalues - proved.eigenvalues), found.error_estimate + 1e-12)
+
+
+def test_without_a_bound_nothing_is_certified():
+    jump = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.1,) * 6, (0.1,) * 6))
+    found = solve_spectrum(Rod(F=2.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=jump)), REQUEST)
+    assert not found.certified
+    assert found.status != SpectrumStatus.ok
