@@ -5,7 +5,7 @@ from math import isnan
 from typing import TYPE_CHECKING
 
 from ..model.arm.arm import SlenderArm
-from ..model.arm.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
+from ..model.arm.neglected import SELF_BUCKLING, Effect, Validity
 
 if TYPE_CHECKING:
     from .validity import Assessment  # for annotations only: the module imports solvers
@@ -55,7 +55,7 @@ def checks_of(assessment: "Assessment") -> list[Check]:
         compression(assessment, effects["compression"]),
         *inertia(effects["inertia of the arm"], effects["inertia of the fluid"]),
         *reynolds(effects["Reynolds number"]),
-        *wall(arm),
+        *wall(effects.get("flattening of the wall")),
         weight(effects.get("weight")),
         poisson(arm),
     ]
@@ -129,12 +129,9 @@ def reynolds(number: Effect) -> list[Check]:
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
 
 
-def wall(arm: SlenderArm) -> list[Check]:
+def wall(effect: Effect | None) -> list[Check]:
     """Check of the flattening of a tube in wide beating; empty for other sections."""
-    if arm.inner_radius is None:
-        return []
-    si = arm.si
-    return [wall_check(wall_effect(si.length, si.radius, si.inner_radius, arm.poisson))]
+    return [] if effect is None else [wall_check(effect)]
 
 
 def wall_check(effect: Effect) -> Check:

@@ -1,6 +1,7 @@
 """Whether the model applies, point by point: in files, in what `check` and `show` say first, in figures."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.post.figures import draw
+from rodsweep.post.summary.arm.answer import arm_answer
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks.arm.validity import MOTIONS
 
@@ -264,3 +266,94 @@ def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, mon
     assert axes.get_xlabel() == "length (mm)\nradius (mm)"
     places = [label.get_text() for label in axes.xaxis.get_ticklabels()]
     assert places == ["100\n4", "100\n5", "120\n4", "120\n5"]
+
+
+def test_a_thin_wall_ends_the_model_where_the_arm_beats_widely(command):
+    """5.2 times the limit at the stored amplitude; the thresholds of the same tube are not concerned."""
+    tube = (
+        "length: 24 cm, radius: 6 mm, inner_radius: 5.5 mm, young: 80 kPa, poisson: 0.49, viscosity: 20 Pa s"
+    )
+    command.write(
+        "w.yaml",
+        f"task: limit_cycle\nparameters: {{arm: {{{tube}, pressure: 1.2 of flutter}}}}\naccuracy: 1.0e-4\n",
+    )
+    command.solved("w.yaml")
+    view = read_view(command.directory / "w.h5")
+    amplitude = view.variables["tip_y_max"].item()
+    bend, middle, wall = 6 * amplitude / 0.24, 0.00575, 0.0005
+    lost = 1.5 * (1 - 0.49**2) * (bend * middle**2 / wall) ** 2
+    assert view.variables["neglected_excess"].item() == pytest.approx(lost / 0.1, rel=1e-12)
+    assert view.variables["model_applies"].item() == Validity.does_not_apply
+    shown = command("show", "w.h5").stdout.splitlines()[1:3]
+    assert shown[0] == "the model does not apply: flattening of the wall is 5.2 times its limit"
+    assert shown[1].startswith("if it applied: beats at")
+    assert command("check", "w.yaml").stdout.count("the section flattens") == 1
+    command.write("t.yaml", f"task: thresholds\nparameters: {{arm: {{{tube}}}}}\n")
+    command.solved("t.yaml")
+    assert "flattening" not in command("show", "t.h5").stdout.splitlines()[1]
+    solid = rs.sweep("thresholds", arm=SILICONE | {"length": "10 cm"})
+    assert solid.neglected_effect.attrs["flag_meanings"].split()[-1] == "flattening_of_the_wall"
+
+
+STATUSES = {
+    "limit_cycle": (
+        ("cycle", "straight", "beats at 1 of 2 points at", "does not beat at 1 of 2 points"),
+        ("straight", "straight", "does not beat at 2 of 2 points"),
+        ("not_settled", "straight", "is not settled", "does not beat at 1 of 2 points"),
+        (
+            "not_settled",
+            "not_settled",
+            "is not settled: no stable cycle is known, nor that there is none at 2 of 2",
+        ),
+        ("torus", "left_the_model", "beats without repeating at 1 of 2", "is crushed somewhere"),
+        ("failed", "unstable", "is not known: the integration failed at 1 of 2", "leaves at the least"),
+    ),
+    "spectrum": (
+        (2, -1, "gives way at 1 of 2 points", "whether it gives way is not known at 1 of 2 points"),
+        (-1, -1, "whether it gives way is not known at 2 of 2 points"),
+        (0, -1, "whether it gives way is not known at 1 of 2 points"),
+        (0, 0, "stays straight"),
+    ),
+    "thresholds": (
+        ("ok", "failed", "flutters from", "not known at 1 of 2 points: the search failed"),
+        ("failed", "failed", "not known at 2 of 2 points: the search failed"),
+    ),
+    "branch": (
+        ("ok", "failed", "beats at", "not known at 1 of 2 points: the search failed"),
+        ("failed", "failed", "not known at 2 of 2 points: the search failed"),
+    ),
+}
+"""What two points have, and how the lines of the answer begin."""
+FALSE_IF_NOT_SOLVED = ("does not flutter", "stays straight", "does not beat at 2", "has no branch")
+
+
+@pytest.mark.parametrize("task", STATUSES)
+def test_what_is_not_solved_is_not_said_to_stay_straight(command, task):
+    """Numbers that are not there are no proof of rest: of every status and task."""
+    varied = "pressure: [2.4 kPa, 2.5 kPa]" if task in ("limit_cycle", "spectrum") else "poisson: [0.4, 0.5]"
+    quantities = f"length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 40 Pa s, {varied}"
+    more = {"branch": "branch: {stop: 37}\naccuracy: 1.0e-3\n", "limit_cycle": "accuracy: 1.0e-3\n"}.get(
+        task, ""
+    )
+    command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{quantities}}}}}\n{more}")
+    command.solved("a.yaml")
+    view = read_view(command.directory / "a.h5")
+    values = {word: value for value, word in view.flags.items()}
+    for first, second, *expected in STATUSES[task]:
+        changed = dict(view.variables)
+        if task == "spectrum":
+            changed["unstable_count"] = np.reshape([first, second], view.variables["status"].shape)
+        else:
+            codes = [values[first], values[second]]
+            changed["status"] = np.reshape(codes, view.variables["status"].shape)
+            for place in np.argwhere(changed["status"] == values.get("failed")):
+                for name in ("crossing_kind", "F_hopf", "pressure_hopf", "branch_pressure"):
+                    if name in changed:
+                        changed[name] = changed[name].copy()
+                        changed[name][tuple(place)] = 0 if name == "crossing_kind" else np.nan
+        done = np.ones(view.variables["status"].shape, bool)
+        lines = arm_answer(replace(view, variables=changed), done)
+        for words in expected:
+            assert any(line.startswith(words) or words in line for line in lines), (lines, words)
+        if "failed" in (first, second) or "not_settled" in (first, second) or -1 in (first, second):
+            assert not any(line.startswith(FALSE_IF_NOT_SOLVED) for line in lines), lines

@@ -98,7 +98,7 @@ def effects_of(
     rate: of the motion, in rad/s; nan where nothing moves. F: follower force, in k3/L^2; nan without load.
     drag: with which the arm moves so fast; by default the least of its range, with which effects of inertia
     are largest. amplitude: of the tip, over the length. The effect of weight is left out where no density
-    difference is given.
+    difference is given, that of the wall where the arm has no bore.
     """
     drag = least_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
@@ -111,6 +111,9 @@ def effects_of(
     ]
     if not isnan(arm.si.density_difference):
         effects.append(weight(arm, force))
+    if arm.inner_radius is not None:
+        si = arm.si
+        effects.append(wall_effect(si.length, si.radius, si.inner_radius, arm.poisson, wide))
     return tuple(effects)
 
 
@@ -192,14 +195,21 @@ def weight(arm: SlenderArm, F: Array) -> Effect:
     return _whatever_the_fluid("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
-def wall_effect(length: ArrayLike, radius: ArrayLike, bore: ArrayLike, poisson: ArrayLike) -> Effect:
-    """Fraction of its bending stiffness that a tube loses in wide beating, of the shape of the quantities.
+def wall_effect(
+    length: ArrayLike,
+    radius: ArrayLike,
+    bore: ArrayLike,
+    poisson: ArrayLike,
+    amplitude: ArrayLike = HALF_LENGTH,
+) -> Effect:
+    """Fraction of its bending stiffness that a beating tube loses, of the common shape of the quantities.
 
+    amplitude: of the tip, over the length.
     A bent tube flattens by zeta = (1 - nu^2) (r^2/(R t))^2, R being the radius of curvature, r that of the
     middle of the wall and t its thickness, and has 1 - 3 zeta/2 of its stiffness then (Brazier 1927).
     """
     outer, inner, ratio = (np.asarray(x, float) for x in (radius, bore, poisson))
-    curvature = WIDE_CURVATURE * HALF_LENGTH / np.asarray(length, float)
+    curvature = WIDE_CURVATURE * np.asarray(amplitude, float) / np.asarray(length, float)
     middle, thickness = (outer + inner) / 2, outer - inner
     value = 1.5 * (1 - ratio**2) * (curvature * middle**2 / thickness) ** 2
     return _whatever_the_fluid("flattening of the wall", value, WALL_LIMIT, of_cycles_only=True)

@@ -73,7 +73,14 @@ BRANCH_FORCES = ("special_at", "special_error")
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Extra dimensions of variables stored in SI units as well; longer tables are not stored twice."""
 
-EFFECTS = ("inertia_of_the_arm", "inertia_of_the_fluid", "compression", "weight", "Reynolds_number")
+EFFECTS = (
+    "inertia_of_the_arm",
+    "inertia_of_the_fluid",
+    "compression",
+    "weight",
+    "Reynolds_number",
+    "flattening_of_the_wall",
+)
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 VALIDITY = (
     word(

@@ -20,6 +20,17 @@ from .drag_range import arms_of_drags, drag_lines
 
 DIGITS = 3
 """Largest number of digits in an answer; a larger error leaves fewer."""
+FAILED = "failed"
+"""Status of a point about which nothing is stored."""
+NO_CYCLE = {
+    "straight": "does not beat",
+    "unstable": "has a cycle that it leaves at the least disturbance",
+    "torus": "beats without repeating",
+    "not_settled": "is not settled: no stable cycle is known, nor that there is none",
+    "left_the_model": "is crushed somewhere, where the model ends",
+    FAILED: "is not known: the integration failed",
+}
+"""Words about arms without a stable cycle, by status."""
 OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
     "other plane, at a lower load: exchange width and height to see it"
@@ -98,10 +109,12 @@ def load_spanned(view: View, loads: np.ndarray) -> str:
 
 def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
     """Lines about the loads at which arms flutter, oscillate and are stable again."""
-    load = load_of(view)
-    v = view.variables
+    searched, lines = _solved(view, rods)
+    if not searched.any():
+        return lines
+    rods, load, v = searched, load_of(view), view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
-    lines = [*_flutter(view, hopf, end, rate), *_where(view, rods, hopf)]
+    lines = [*_flutter(view, hopf, end, rate), *lines, *_where(view, rods, hopf)]
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
@@ -129,12 +142,34 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> list[str]:
 
 def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
     """Lines about the loads and frequencies of first Hopf points."""
+    rods, unsolved = _solved(view, rods)
+    if not rods.any():
+        return unsolved
     v = view.variables
     first = _first_hopf(view, rods)
     load = load_of(view)
     end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(len(first), np.nan)
     frequency = _at(v["crossing_frequency_hz"][rods], first)
-    return _flutter(view, _at(v[f"crossing_{load}"][rods], first), end, frequency)
+    return [*_flutter(view, _at(v[f"crossing_{load}"][rods], first), end, frequency), *unsolved]
+
+
+def _solved(view: View, rods: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """(mask of the points whose search ended with a result, line about the others, if there are any)."""
+    failed = rods & _with_status(view, FAILED)
+    if not failed.any():
+        return rods, []
+    return rods & ~failed, [f"not known{_share(failed, rods)}: the search failed"]
+
+
+def _with_status(view: View, *words: str) -> np.ndarray:
+    """Mask of the points with one of these statuses, of the points' shape."""
+    values = [value for value, word in view.flags.items() if word in words]
+    return np.isin(view.variables["status"], values)
+
+
+def _share(some: np.ndarray, rods: np.ndarray) -> str:
+    """Share of the points in a mask, as an ending; empty where there is one point only."""
+    return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
 def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> list[str]:
@@ -156,16 +191,23 @@ def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
-    beats = np.isfinite(v["frequency_hz"])
-    if not beats.any():
-        return ["does not beat"]
-    of = f" at {int(beats.sum())} of {len(beats)} points" if len(beats) > 1 else ""
-    wide = spanned(view, v["tip_y_max_si"], "m", errors["tip_y_max_si"])
-    rate = spanned(view, v["frequency_hz"], "Hz", errors["frequency_hz"])
-    motion = f"beats{of} at {rate}, its tip by {wide} to either side"
+    cycles = rods & _with_status(view, "cycle")
+    others = [
+        f"{words}{_share(mask, rods)}"
+        for status, words in NO_CYCLE.items()
+        if (mask := rods & _with_status(view, status)).any()
+    ]
+    if not cycles.any():
+        return others
+    beats = cycles[rods]
+    wide, rate = (
+        spanned(view, v[name][beats], unit, errors[name][beats])
+        for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
+    )
+    motion = f"beats{_share(cycles, rods)} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
-    numbers = {name: np.where(rods, view.variables[key], np.nan).ravel() for name, key in known.items()}
-    return [motion, *_decided(view, rods), *drag_lines(view, numbers)]
+    numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
+    return [motion, *others, *_decided(view, rods), *drag_lines(view, numbers)]
 
 
 def _decided(view: View, rods: np.ndarray) -> list[str]:
@@ -173,7 +215,9 @@ def _decided(view: View, rods: np.ndarray) -> list[str]:
     arms = arms_of_drags(view)
     if arms is None:
         return []
-    beats = np.isfinite(view.variables["frequency_hz"]).ravel()
+    if (rods & ~_with_status(view, "cycle", "straight")).any():
+        return []
+    beats = _with_status(view, "cycle").ravel()
     of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)
@@ -184,36 +228,48 @@ def _decided(view: View, rods: np.ndarray) -> list[str]:
 
 
 def _of_modes(view: View, rods: np.ndarray) -> list[str]:
-    """Line about the stability of arms and the frequency of their leading modes."""
-    unstable = view.variables["unstable_count"][rods] > 0
-    if not unstable.any():
-        return ["stays straight"]
-    of = f" at {int(unstable.sum())} of {len(unstable)} points" if len(unstable) > 1 else ""
-    leading = view.variables["frequency_hz"][rods][unstable][:, 0]
-    return [f"gives way{of}; its leading mode oscillates at {spanned(view, np.abs(leading), 'Hz')}"]
+    """Lines about the stability of arms and the frequency of their leading modes."""
+    count = view.variables["unstable_count"]
+    unstable, unknown = rods & (count > 0), rods & (count < 0)
+    lines = []
+    if unstable.any():
+        frequency = spanned(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
+        lines = [f"gives way{_share(unstable, rods)}; its leading mode oscillates at {frequency}"]
+    elif not unknown.any():
+        lines = ["stays straight"]
+    if unknown.any():
+        lines.append(f"whether it gives way is not known{_share(unknown, rods)}")
+    return lines
 
 
 def _of_branches(view: View, rods: np.ndarray) -> list[str]:
     """Line about loads and frequencies of the cycles on branches."""
+    rods, unsolved = _solved(view, rods)
+    if not rods.any():
+        return unsolved
     loads = view.variables[f"branch_{load_of(view)}"][rods]
     if not np.isfinite(loads).any():
-        return ["does not beat"]
+        return ["has no branch of cycles from a Hopf point in the range searched", *unsolved]
     frequency = 1 / view.variables["period_si"][rods]
     errors = frequency * view.variables["period_error"][rods]
-    return [f"beats at {load_spanned(view, loads)}, at {spanned(view, frequency, 'Hz', errors=errors)}"]
+    rate = spanned(view, frequency, "Hz", errors=errors)
+    return [f"beats at {load_spanned(view, loads)}, at {rate}", *unsolved]
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
     """Lines about the loads and frequencies of the first Hopf points on rows over F."""
     if "F" in view.parameters:  # the rows are over another parameter
         return []
+    rods, unsolved = _solved(view, rods)
+    if not rods.any():
+        return unsolved
     first = _first_hopf(view, rods)
     v = view.variables
     scale = SCALE_OF[load_of(view)]
     loads = _at(v["crossing_at"][rods], first) * np.broadcast_to(v[scale], rods.shape)[rods]
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     ends = last * np.broadcast_to(v[scale], rods.shape)[rods]
-    return _flutter(view, loads, ends, _at(v["crossing_frequency_hz"][rods], first))
+    return [*_flutter(view, loads, ends, _at(v["crossing_frequency_hz"][rods], first)), *unsolved]
 
 
 def _first_hopf(view: View, rods: np.ndarray) -> np.ndarray:
