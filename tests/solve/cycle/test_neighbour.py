@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
-from rodsweep.solve.cycle.along_parameter import MOST_BEHIND, Followed
+from rodsweep.solve.cycle.along_parameter import MOST_BEHIND, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -45,7 +45,7 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
     places, orders = np.array(places), np.array(orders)
     size = np.abs(places).max() or 1.0
     p = np.polynomial.Polynomial(np.random.default_rng(2).normal(size=len(places) + 1), [0, size], [0, 1])
-    here = Followed(None, places, orders, np.empty(0))
+    here = CyclePredictor(None, places, orders, np.empty(0))
     data = np.where(orders == 1, p.deriv()(places), p(places) - p(0))
     for step in (size, -0.4 * size):
         assert here.weights(step) @ data == pytest.approx(p(step) - p(0), rel=1e-10, abs=1e-10)
