@@ -57,9 +57,8 @@ CHUNK = 5
 SAFETY = 2.0
 """Safety factor on the difference of two integrations."""
 FARTHER = 2.0
-"""A rod in a limit is approximated by a rod near the limit, and checked with a second rod FARTHER times as
-far from the limit. Cycles change in proportion to the distance, so the two cycles differ by the first cycle's
-error."""
+"""Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
+proportion to this distance, so the difference of the two cycles is the error of the nearer one."""
 STAGES, INTERVALS = 3, 48
 """Collocation stages of the measured orbit, and its intervals per return of the tip."""
 

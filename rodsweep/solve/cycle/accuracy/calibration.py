@@ -49,8 +49,7 @@ FARTHEST, LARGEST_GROWTH = 0.2, 4.0
 """Relative change of the parameter, and growth of the errors, beyond which the mesh is calibrated again."""
 SHRUNK = 0.75
 """Size of the orbit, in units of its size at the calibration, below which the mesh is calibrated again. Near
-the Hopf point at which cycles end, the error of the largest y grows fast where it has just changed its
-sign."""
+the Hopf point at which cycles end, the error of the largest y grows fast beyond a change of sign."""
 KEPT = 0.5
 """Smallest error of a repeated calibration, in units of the previous one scaled with the tails. An error that
 changes its sign is small at one cycle and has its old size three cycles later."""

@@ -29,11 +29,10 @@ MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
 units of the accuracy, and its bounds."""
 MULTIPLIER_FACTOR = 10.0
 """Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
-LEAST_ACCURACY = 1e-12
-"""Finest accuracy that a mesh is chosen for."""
-FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-7, 1e-3, 1e-3
-"""Finest accuracy for which the tails of a nearby orbit can choose a mesh; Newton tolerance of this orbit;
-factor on the accuracy where a mesh is too coarse."""
+LEAST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
+"""Finest accuracy that a mesh is chosen for, and finest for which tails of a nearby orbit can choose it."""
+NEAR, AIM_LOWERED = 1e-3, 1e-3
+"""Newton tolerance of the nearby orbit, and factor on the accuracy where a mesh is too coarse."""
 FIRST_SHARE = 0.5
 """Relative accuracy of a single cycle's first mesh: a second round costs more than a finer first mesh."""
 LEAST_PREDICTED = 6

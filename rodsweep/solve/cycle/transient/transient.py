@@ -55,8 +55,7 @@ only a closed motion is recognised: a fast-growing motion may close so early."""
 NEWTON_DISTANCE = 0.1
 """Relative distance of two returns at which Newton's method starts; each failure divides it by 10."""
 SHOWN_DISTANCE = 1e-3
-"""NEWTON_DISTANCE for stored paths in the first half of the allowed periods: the path must show the
-settling."""
+"""NEWTON_DISTANCE for a stored path, in the first half of the allowed periods, to show the settling."""
 MOST_NEWTON_FAILURES = 5
 """Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
 WEAK_GROWTH = 0.01
