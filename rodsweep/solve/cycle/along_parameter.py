@@ -33,8 +33,7 @@ STEPS = StepControl(
     first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
 )
 """Step lengths as shares of the parameter change that is divided. Newton's method takes two matrices for a
-prediction error of `aim`. `near_prediction` rejects cycles far from their prediction, so that `far` is
-infinite."""
+prediction error of `aim`. `near_prediction` rejects cycles far from their prediction; `far` is infinite."""
 TANGENT_DISTANCE = 1e-2
 """Relative distance between an orbit and the point of its matrix up to which the matrix's tangent is accurate
 enough for an intermediate step."""

@@ -3,8 +3,7 @@
 No motion is integrated. The Hopf point is the nearest one below the force. Its normal form gives amplitude,
 frequency and shape of the small cycles. Close to the Hopf point the normal form's orbit starts Newton's
 method directly, on the mesh for the requested accuracy. Farther away the branch is followed on a coarse mesh.
-A coarse mesh shifts the Hopf point, perhaps beyond a force that is very close, and is therefore not used
-there.
+A coarse mesh shifts the Hopf point, perhaps beyond a very close force, and is not used there.
 """
 
 from dataclasses import dataclass, replace
@@ -38,12 +37,10 @@ LEAST_FORCE = 1e-2
 FOUND = 1e-6
 """Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
 NORMAL_FORM_ACCURACY = 1e-3
-"""Relative accuracy of the normal form's coefficients, finer than the normal form's own error at any
-start."""
+"""Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
 STARTS = (0.3, 0.12, 0.03, 0.006)
 """Relative distances from the Hopf point at which the normal form starts Newton's method, tried in this
-order. In most rods the amplitude of the normal form is off by a quarter at the first distance, by a tenth at
-the second."""
+order. In most rods the normal form's amplitude is off by a quarter at the first, by a tenth at the second."""
 NEAREST = 1e-2
 """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
 rod itself: the amplitude is off by 1 percent there in most rods."""

@@ -116,8 +116,7 @@ def _next_mesh(
 
 
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
-    """Largest cost, in units of the present mesh's, of a mesh that replaces it; 0 to keep the present
-    mesh."""
+    """Largest cost of a mesh that replaces the present mesh, in units of its cost; 0 to keep the mesh."""
     if before is None:
         return WORTHWHILE  # the first mesh of a chain comes from an orbit's tails only, without a measurement
     if not found.calibration.reach:

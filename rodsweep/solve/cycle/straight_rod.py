@@ -45,8 +45,7 @@ class StraightRod:
 
     @property
     def doubt(self) -> str:
-        """The reason why a rod whose motion decays may not stay straight; empty if the straight rod is
-        stable."""
+        """The reason why a rod whose motion decays may not stay straight; empty for a stable straight rod."""
         if self.stable:
             return ""
         if isnan(self.error):

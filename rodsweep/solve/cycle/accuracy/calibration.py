@@ -63,8 +63,7 @@ PARTS = 5
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """Errors of a mesh in space and in time, (5,) each: `path_differences`, and the largest multiplier's
-    error.
+    """Errors of a mesh in space and in time, (5,) each: `path_differences` and the largest multiplier's.
 
     fall: decay of errors in space per order, natural logarithm, (5,). power: order of errors in time, (5,).
     tails: `lasting_tails` and the orbit's size at the calibration, (3,). reach: relative change of the
@@ -82,8 +81,7 @@ class Calibration:
     growth: Array = field(default_factory=lambda: np.ones(2))
 
     def arrays(self) -> dict[str, Array]:
-        """Named arrays: errors and rates (5,), tails (3,), reach and mesh. Growth belongs to a single
-        orbit."""
+        """Named arrays: errors and rates (5,), tails (3,), reach and mesh; growth belongs to one orbit."""
         errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
         numbers = {"reach": np.array(self.reach), "calibrated_mesh": np.array(self.mesh.numbers)}
         return errors | numbers
@@ -223,8 +221,7 @@ def calibration_of(
 
 
 def _fall(before: Array, after: Array, orders: int) -> Array:
-    """Decay of errors in space per order, (5,), from errors before and after an increase of orders, (5,)
-    each."""
+    """Decay of errors in space per order, (5,), from errors before and after added orders, (5,) each."""
     fall: Array = np.clip(_logarithm(before, after) / orders, LEAST_FALL, LARGEST_FALL)
     return fall
 

@@ -3,8 +3,7 @@
 One mesh is coarse in space, one in time, one in both. The sum of the first two orbits minus the third equals
 the orbit on the fine mesh up to a product of two small errors (combination technique: Griebel, Schneider,
 Zenger 1992), so that one elimination on the fine mesh gives the cycle and its multipliers. The differences of
-the three orbits measure the errors of the coarse meshes; slowest rates of decay bound the errors of the fine
-mesh.
+the three orbits measure the errors of the coarse meshes; slowest rates of decay bound the fine mesh's errors.
 """
 
 from dataclasses import replace
@@ -30,8 +29,7 @@ SLOWEST_FALL = 1.2
 
 
 class CoarserMeshes:
-    """The cycle on a mesh that is coarse in space and time, and on meshes refined in space or in time
-    only."""
+    """The cycle on a coarse mesh, and on meshes that are finer in space only or in time only."""
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
@@ -75,8 +73,7 @@ class CoarserMeshes:
         return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
-        """Errors of a mesh, (4,), from its difference to the coarse mesh, with `factor` times larger
-        errors."""
+        """Errors of a finer mesh, (4,), `factor` times smaller than those of the coarse mesh."""
         errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
         return errors
 

@@ -25,8 +25,7 @@ orbit and the matrix that gives its multipliers."""
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
-    """(mesh finer in space, mesh finer in time), and the share of the error in time that the latter
-    removes."""
+    """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
     longer = ceil(MORE_INTERVALS * mesh.intervals)
     share = 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + MORE_ORDERS), replace(mesh, intervals=longer)), share

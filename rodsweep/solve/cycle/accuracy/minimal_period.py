@@ -32,8 +32,7 @@ def common_divisor(path: CyclePath, present: float) -> int:
 
 @compiled
 def _divisor_of(sizes: Array, present: float) -> int:
-    """`common_divisor` of harmonics of these sizes, (harmonics,), the first harmonic first; 0 if all are
-    0."""
+    """`common_divisor` of harmonics of these sizes, (harmonics,), from the first; 0 if all sizes are 0."""
     divisor, least = 0, present * sizes.max()
     for k in range(len(sizes)):
         if sizes[k] > least:

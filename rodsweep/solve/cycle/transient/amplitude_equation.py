@@ -24,8 +24,7 @@ SHRINK, LARGEST_JUMP = 0.7, 4.0
 """Factor on the state of a slowly decaying motion (its inverse where a motion grows), near enough to 1 that
 no cycle is jumped over; and the largest factor."""
 LINEAR = 0.05
-"""Relative deviation from the linear decay rate and frequency within which a decaying rod is called
-straight."""
+"""Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
 
 
 class AmplitudeEquation:
@@ -98,6 +97,5 @@ class AmplitudeEquation:
         return factor if abs(factor - 1) >= NEAR else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
-        """Whether the tip returns with the period of the leading mode; otherwise the growth predicts
-        nothing."""
+        """Whether the return time is the leading mode's period; otherwise the growth predicts nothing."""
         return bool(abs((times[-1] - times[-2]) / self.period - 1) < LINEAR)

@@ -15,8 +15,7 @@ STAGES, INTERVALS = 3, 20
 PHASES = 128
 """Number of times at which the largest y is searched."""
 SYMMETRIC = 0.2
-"""Relative distance of a motion from its reflection half a period later, up to which it counts as
-symmetric."""
+"""Largest relative distance of a symmetric motion from its reflection half a period later."""
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:

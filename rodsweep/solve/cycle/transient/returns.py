@@ -32,8 +32,7 @@ def angle_weights(beam: Beam) -> Array:
 
 
 def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
-    """Limit that ends a run from z, (unknowns,), after `wanted` returns; row: `angle_weights`,
-    (unknowns,)."""
+    """Limit that ends a run from z after `wanted` returns; row: `angle_weights`; both (unknowns,)."""
     count = 0
     last = float(row @ z)
 

@@ -46,8 +46,7 @@ class Modulation:
 
 
 def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> TransientOutcome:
-    """The outcome `end` of a motion; a motion that has not settled is replaced by its torus, if it has
-    one."""
+    """The outcome `torus` of a motion on a torus that has not settled; the given outcome otherwise."""
     if end.status != CycleStatus.not_settled or end.found is not None:
         return end
     # Only the last returns are kept, so the first third may be partly or wholly forgotten already.
@@ -84,8 +83,7 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 
 
 def pair_outside(cycle: RefinedCycle) -> float | None:
-    """Angle in (0, pi) of the complex pair outside the unit circle; None if the multipliers outside are
-    others."""
+    """Angle in (0, pi) of the one complex pair outside the unit circle; None for any other instability."""
     outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
     if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.margin:
         return None

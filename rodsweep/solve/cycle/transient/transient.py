@@ -2,8 +2,7 @@
 
 The motion is integrated from return to return (`returns`). Newton's method starts when two returns agree to a
 tenth. Slow motions about the straight rod are shortened: the state is scaled to the amplitude that the
-amplitude equation predicts (`amplitude_equation`). A motion whose path is stored is integrated without such
-jumps.
+amplitude equation predicts (`amplitude_equation`). A motion whose path is stored has no such jumps.
 
 A rod whose straight state is unstable leaves this state. If its deflection decays nevertheless, as it can
 while a large stretch relaxes slowly, the motion restarts from a small deflection in the leading mode.
@@ -44,8 +43,7 @@ from .trace import TipTrace
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
 """Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
 QUICK = TimeScheme("arkimex", "4", tolerance=1e-4)
-"""Scheme of the first run of a fast-growing motion: no decision depends on its growth, and it often
-closes."""
+"""Scheme of the first run of a fast-growing motion: no decision uses its growth, and it often closes."""
 CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
 """Scheme where the sign of a small growth per period must be correct, and for stored paths."""
 
