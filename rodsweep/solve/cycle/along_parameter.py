@@ -32,11 +32,10 @@ FARTHEST = 0.3
 STEPS = StepControl(
     first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
 )
-"""Step lengths as shares of the parameter change that is divided. Newton's method takes two matrices for a
-prediction error of `aim`. `near_prediction` rejects cycles far from their prediction; `far` is infinite."""
+"""Step lengths as shares of the divided parameter change. Newton's method takes two matrices for a prediction
+error of `aim`. `near_prediction` rejects cycles far from the prediction; `far` is infinite."""
 TANGENT_DISTANCE = 1e-2
-"""Relative distance between an orbit and the point of its matrix up to which the matrix's tangent is accurate
-enough for an intermediate step."""
+"""Largest relative distance between an orbit and a matrix whose tangent is accurate enough for a step."""
 MOST_BEHIND, SLOPELESS = 4, 3
 """Maximum number of earlier orbits in the prediction, and the number of orbits from which the prediction is
 more accurate without the slope of an earlier orbit."""
@@ -92,7 +91,7 @@ class CyclePredictor:
 
 
 def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
-    """A change of an orbit's values, (N,), carried to another mesh, (N of that mesh,): carrying is linear."""
+    """A change of an orbit's values, (N,), carried to a target mesh, (N of the target,); a linear map."""
     return target.carry(replace(orbit, values=change)).values
 
 
@@ -132,7 +131,7 @@ def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
 
 
 def near_prediction(predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str) -> Converged:
-    """The orbit near a prediction; raises Unsolvable if it is farther than FARTHEST from the prediction."""
+    """The orbit near a prediction; raises Unsolvable if the two are farther apart than FARTHEST."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > FARTHEST:
         raise Unsolvable("the cycle is far from its prediction")
@@ -149,7 +148,7 @@ def in_steps(
 ) -> Converged:
     """The orbit of a distant rod, in steps that Newton's method can follow; raises Unsolvable.
 
-    form: the rod. name: parameter by which it differs from the start's. workspace: memory of the matrices.
+    form: the rod. name: varied parameter. workspace: memory of the matrices.
     """
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)

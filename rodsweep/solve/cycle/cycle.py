@@ -80,7 +80,7 @@ class Cycle:
 def measured(
     cycle: Cycle, request: CycleRequest, path: CyclePath, measures: Measures, errors: CycleErrors
 ) -> Cycle:
-    """The outcome with the numbers of a cycle, and with the parts of its path that the request stores."""
+    """The outcome with the numbers of a cycle, and the requested parts of the path."""
     mesh = path.orbit.form.mesh
     # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within that error.
     amplitudes = first_of(measures.harmonic_amplitude, request.harmonics, 0.0)

@@ -29,7 +29,7 @@ from .along_parameter import in_steps, predictor_from
 from .straight_rod import straight_rod
 
 LEADING = SpectrumRequest(1, 1e-9, False)
-"""Spectrum request for the leading eigenvalue, without a proof that it leads."""
+"""Spectrum request for the leading eigenvalue, without a proof."""
 SCAN = 0.93
 """Ratio of successive forces at which the scan evaluates the leading growth rate."""
 LEAST_FORCE = 1e-2
@@ -72,7 +72,7 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 
 def hopf_point_below(rod: Rod) -> Onset | None:
-    """The nearest Hopf point of the leading mode below the rod's force; None if no force has one."""
+    """The nearest Hopf point of the leading mode below the rod's force; None if there is none."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while F > LEAST_FORCE:
@@ -178,7 +178,7 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
 
 
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
-    """The cycle that the normal form predicts for a rod at a force near its own."""
+    """The cycle predicted by the normal form for a rod at a nearby force."""
     squared, frequency = normal.cycle(form.rod.F)
     return orbit_with(normal, form, squared**0.5, frequency)
 

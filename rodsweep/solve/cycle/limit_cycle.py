@@ -39,7 +39,7 @@ __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "
 
 KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
 """Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
-displacement-form code, and the relative deviation from this period that `warm_up` accepts."""
+displacement-form code, and the relative deviation accepted by `warm_up`."""
 MOTION_ACCURACY = 1e-5
 """Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction; Newton's
 method supplies the digits of the cycle."""

@@ -58,7 +58,7 @@ SAFETY = 2.0
 """Safety factor on the difference of two integrations."""
 FARTHER = 2.0
 """Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
-proportion to this distance, so the difference of the two cycles is the error of the nearer one."""
+proportion to the distance, so the cycles' difference is the error of the nearer approximation."""
 STAGES, INTERVALS = 3, 48
 """Collocation stages of the measured orbit, and its intervals per return of the tip."""
 
@@ -73,7 +73,7 @@ class _Settled:
 
 
 class _Ended(Exception):
-    """The motion ends with another outcome than a cycle."""
+    """The motion has an outcome that is not a cycle."""
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
         super().__init__(why)
@@ -103,7 +103,7 @@ class _Marching:
         self.waited = 0
 
     def cycle(self) -> Cycle:
-        """The outcome: a cycle with its errors, or the reason for another end."""
+        """The outcome: a cycle with errors, or a different end of the motion."""
         straight = Cycle(
             status=MarchedStatus.straight,
             linear_growth_rate=self.mode.w.real,
@@ -171,7 +171,7 @@ class _Marching:
         raise _Ended(MarchedStatus.not_settled, why)
 
     def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
-        """A run that reaches its end; raises _Ended otherwise."""
+        """A complete run; raises _Ended if the run fails or leaves the model."""
         run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
         if why := trouble(self.beam, run, self.waited):
             left = run.ending == Ending.left_the_model

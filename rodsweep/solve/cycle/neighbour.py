@@ -1,8 +1,8 @@
 """Chain of cycles over the points of a sweep: each cycle predicts that of the next point, its neighbour.
 
-The prediction is a polynomial through a cycle, its tangent along the axis, and earlier cycles. It is mostly
-so accurate that a single elimination gives the next cycle with its multipliers. A step too long for Newton's
-method is divided, on a coarser mesh. The mesh and its calibrated errors pass on along the chain as well.
+The prediction is a polynomial through a cycle, the tangent along the axis, and earlier cycles. A single
+elimination after the prediction usually gives the next cycle with the multipliers. A step too long for
+Newton's method is divided, on a coarser mesh. Mesh and calibrated errors pass along the chain as well.
 Everything follows from the neighbour alone, so that an interrupted chain resumes with the same content.
 """
 
@@ -35,8 +35,8 @@ from .along_parameter import CyclePredictor, in_steps, near_prediction, predicto
 ENOUGH = 0.9
 """Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
 WORTHWHILE, WELL_WORTHWHILE = 0.8, 0.5
-"""Largest cost of another mesh, in units of the present mesh's, at which it replaces the present mesh. The
-second share holds where a valid calibration would be lost, which costs as much as three cycles."""
+"""Largest cost of a mesh that replaces the present mesh, in units of the present cost. The second share holds
+where the change loses a valid calibration, which costs as much as three cycles."""
 UNKNOWN = complex(nan, nan)
 """Leading eigenvalue where it is not known."""
 Arrays = dict[str, Array]
@@ -44,10 +44,10 @@ Arrays = dict[str, Array]
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """Data from which the next point of a chain starts: the predictor of its cycle, and its mesh.
+    """Data from which the next point of a chain starts: predictor of the cycle, and mesh.
 
-    calibration: errors of this mesh, perhaps outdated. leading: leading eigenvalue of the straight rod in
-    1/tau2, Im >= 0; NaN where it is not known.
+    calibration: errors of the mesh, perhaps outdated. leading: leading eigenvalue of the straight rod in
+    1/tau2, Im >= 0; NaN if not known.
     """
 
     branch: CyclePredictor
@@ -86,7 +86,7 @@ class Neighbour:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Neighbour":
-        """The neighbour from its `arrays`, of the shapes given there."""
+        """The neighbour from stored `arrays`, with the shapes given there."""
         mesh = OrbitMesh(*map(int, arrays["mesh"]))
         next_mesh = OrbitMesh(*map(int, arrays["next_mesh"]))
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
@@ -116,7 +116,7 @@ def _next_mesh(
 
 
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
-    """Largest cost of a mesh that replaces the present mesh, in units of its cost; 0 to keep the mesh."""
+    """Largest cost of a replacing mesh in units of the present mesh's cost; 0 to keep the present mesh."""
     if before is None:
         return WORTHWHILE  # the first mesh of a chain comes from an orbit's tails only, without a measurement
     if not found.calibration.reach:
@@ -146,7 +146,7 @@ def followed_cycle(
 def _converged(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> Converged:
-    """The cycle on the neighbour's `next_mesh`, with a matrix that gives its tangent and multipliers."""
+    """The cycle on the neighbour's `next_mesh`, with a matrix for the tangent and the multipliers."""
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:

@@ -1,7 +1,7 @@
 """Second stable state of a rod, besides the state in which its point ended.
 
 If the straight rod is stable and the point ended elsewhere, the rod has two stable states. If the point ended
-at the straight rod, a nearby subcritical Hopf point shows that a second state is possible; it proves no more.
+at the straight rod, a nearby subcritical Hopf point makes a second state possible, but does not prove it.
 """
 
 from enum import IntEnum

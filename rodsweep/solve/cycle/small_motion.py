@@ -23,7 +23,7 @@ WEAK_BENDING = 0.02
 def small_cycle(
     form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
-    """The stable small cycle near a Hopf point at which the start settles; None if the normal form has none.
+    """The stable small cycle near a Hopf point at which the start settles; None if no such cycle is known.
 
     w: the leading eigenvalue of the straight rod. along: parameter of the cycle's tangent. workspace: memory
     of Newton's matrices.

@@ -1,7 +1,7 @@
 """Stability of the straight rod by its spectrum, which overrules any motion on a mesh.
 
-Near a Hopf point the mesh of a motion shifts the Hopf point slightly, and so does the rod near a limit that a
-time stepper integrates. The exact leading eigenvalue decides there, within its error.
+Near a Hopf point, the mesh of a motion shifts the Hopf point slightly, as does the replacement of a rod in a
+limit by a rod near the limit. The exact leading eigenvalue decides, within the error estimate.
 """
 
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ SPECTRUM = SpectrumRequest(1, 1e-9, True)
 """Spectrum request for the straight rod: the leading eigenvalue, proved to be the leading one."""
 ERRORS_FROM_AXIS = 4.0
 """Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of the
-growth rate is certain. The spectrum has the same criterion, so that both always agree."""
+growth rate is certain. The spectrum uses the same criterion."""
 
 
 @dataclass(frozen=True, slots=True)
 class StraightRod:
-    """Leading eigenvalue w in 1/tau2, Im w >= 0, and its error estimate; both NaN where it is not known.
+    """Leading eigenvalue w in 1/tau2, Im w >= 0, and the error estimate; both NaN if not known.
 
-    message: the reason why the eigenvalue is not known.
+    message: the reason for NaN.
     """
 
     w: complex
@@ -38,7 +38,8 @@ class StraightRod:
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
     def growth_rate(self, otherwise: float) -> float:
-        """Growth rate of the leading mode, 1/tau2: 0 if its sign is open, `otherwise` if it is not known."""
+        """Growth rate of the leading mode, 1/tau2: 0 if its sign is open, `otherwise` if the rate is
+        unknown."""
         if isnan(self.error):
             return otherwise
         return 0.0 if self.stable is None else self.w.real

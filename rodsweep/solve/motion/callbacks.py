@@ -39,7 +39,7 @@ from .stage_newton import newton_test, solve_stage
 from .step_record import take_steps
 
 MIDDLE = 0.5
-"""Time at which a step's matrix is made, in units of the step; for methods of one stage it is 0."""
+"""Time in a step at which the matrix is made, in units of the step; 0 for methods of a single stage."""
 _get_dense = petsc_function("MatDenseGetArray")
 _restore_dense = petsc_function("MatDenseRestoreArray")
 _object_state = petsc_function("PetscObjectStateGet")
@@ -156,7 +156,7 @@ class Workspace:
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:
-        """Sets the extrapolation points of the stages for a variant of ARKIMEX; none if it is unknown."""
+        """Sets the extrapolation points of the stages for a variant of ARKIMEX; none for other variants."""
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:

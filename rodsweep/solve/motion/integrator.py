@@ -1,9 +1,9 @@
 """Time integration of one rod by PETSc TS: a run from one state, its steps, and the reason of its end.
 
-The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. Three measures make it
-fast: stages are extrapolated from the stages of this step and the last; Newton's method is compiled, with a
-stopping test tied to the step's tolerance; each step has one Jacobian, at the state predicted for its middle
-(a Jacobian at the start costs a quarter more iterations).
+The default is fully implicit ARKIMEX of order 5, the fastest scheme in measurements. The speed comes from
+three measures. Stages are extrapolated from the stages of this step and the last. Newton's method is
+compiled, and stops at a share of the step's tolerance. Each step has a single Jacobian, at the state
+predicted for the middle of the step; a Jacobian at the start costs a quarter more iterations.
 """
 
 from collections.abc import Callable
@@ -172,7 +172,7 @@ _kept: Kept[tuple[Mesh, TimeScheme], Integrator] = Kept(lambda key: Integrator(*
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
-    """The kept integrator for a mesh and a scheme; a new one replaces it after an error."""
+    """The kept integrator for a mesh and a scheme; replaced after an error."""
     key = mesh, scheme
     if _kept.get(key).broken:
         _kept.drop(key)
@@ -180,7 +180,7 @@ def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
 
 
 def forget_integrators() -> None:
-    """Drops all kept integrators: after an error, or so that new options take effect."""
+    """Drops all kept integrators, after an error or a change of options."""
     _kept.clear()
 
 

@@ -1,4 +1,4 @@
-"""Leading mode of the rod at rest on the mesh of its motion, from which the motion starts."""
+"""Leading mode of the rod at rest on a mesh: the start of a motion."""
 
 from dataclasses import dataclass
 

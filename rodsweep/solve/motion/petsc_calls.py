@@ -1,6 +1,6 @@
-"""Functions of PETSc's TS, SNES and KSP, and of the C library, that compiled code calls, with their types.
+"""Functions of PETSc's TS, SNES and KSP, and of the C library, for compiled callers, with types.
 
-PETSc's functions return an error code. All of them exist in PETSc 3.18 and later.
+PETSc's functions return an error code, and exist in PETSc 3.18 and later.
 """
 
 import ctypes

@@ -1,8 +1,8 @@
 """Prediction of a stage: a polynomial in time through stages of the present and the last step.
 
-PETSc's own prediction is linear, with errors of thousands of tolerances. This one has errors of ten
-tolerances, and saves every second Newton iteration. The stages of a method differ in their errors, so that
-the best extrapolation points depend on the method's tableau: `time_scheme.POINTS`.
+PETSc's own prediction is linear, with errors of thousands of tolerances. The polynomial has errors of ten
+tolerances and saves every second Newton iteration. Stages of a method have different errors, so the best
+extrapolation points depend on the method's tableau: `time_scheme.POINTS`.
 """
 
 from typing import Any

@@ -33,7 +33,7 @@ from .petsc_calls import (
 from .predictor import predict, remember
 
 SLUGGISH = 0.3
-"""Contraction above which a new matrix at the iterate pays for its cost."""
+"""Contraction above which a new matrix at the iterate pays off."""
 STAGNANT = 0.5
 """Contraction of small steps above which only rounding errors are left."""
 DIVERGING, MOST_GROWING = 2.0, 2
@@ -50,10 +50,10 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     """SNESConvergedReason by the error estimate contraction * last step (Hairer & Wanner II, IV.8).
 
-    The contraction is stored from stage to stage, so that after a good prediction one iteration is enough. It
-    is measured from the second iteration on. Each new step of a method of many stages resets it: otherwise
-    stages of one iteration each, which measure nothing, would keep a contraction that was small once, with
-    errors a hundred times too large.
+    The contraction is stored from stage to stage, so that after a good prediction a single iteration is
+    enough. The contraction is measured from the second iteration on, and reset at each new step of a method
+    of many stages. Otherwise stages with a single iteration, which measure nothing, would keep a contraction
+    that was small once, with errors a hundred times too large.
     """
     if not np.isfinite(dx):
         return NOT_FINITE
@@ -127,7 +127,7 @@ def norm(x: Array) -> float:
 
 @compiled
 def newton_step(c: Any, at: int, X: int) -> float:
-    """Makes one Newton iteration and returns the 2-norm of its step."""
+    """Makes a Newton iteration; returns the 2-norm of the step."""
     n, outputs = c.unknowns, integers(at, 3)
     constant, f = floats(c.constant, n), floats(c.rates, n)
     write_array(X, at)

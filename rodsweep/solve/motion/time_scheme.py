@@ -26,16 +26,16 @@ POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
     },
 }
 """Extrapolation points of each stage, by variant of ARKIMEX: (stages of this step, stages of the last step).
-Stage 0 is the state itself. Of all sets of up to six points these had the smallest errors on two dozen
-motions, most of them of stiff rods."""
+Stage 0 is the state at the start. Of all sets of up to six points, these sets had the smallest errors on two
+dozen motions, mostly of stiff rods."""
 
 
 NEWTON: Mapping[str, str] = {
     "rosw": "ksponly",
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
-"""PETSc's SNES for its TS types: "shell" stands for `stage_newton`, which requires that the unknown of a
-stage is the state at which f is evaluated. Some types, such as alpha, have other unknowns."""
+"""PETSc's SNES for each TS type. "shell" stands for `stage_newton`, which solves for the state at which f is
+evaluated. The type alpha, for example, has a different unknown."""
 
 
 @dataclass(frozen=True, slots=True)

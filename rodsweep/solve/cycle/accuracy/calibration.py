@@ -31,9 +31,9 @@ HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
 two meshes; and the first two in time. A number may agree on two meshes by coincidence, its path does not. In
 time the paths differ most in theta, which is stiff and matters least."""
 EACH_OTHERS = 2.0
-"""Smallest error of period and of largest y, in units of the larger of both errors. Both errors fall as the
-squares of the tails, and rarely change their signs near the same mesh. Without this bound one cycle in a
-thousand was off by more than its estimate, by up to 4.5 times."""
+"""Smallest error of period and of largest y, in units of the larger error of the two. The two errors fall as
+the squares of the tails and rarely change sign near the same mesh. Without this bound, one cycle in a
+thousand was off by more than the estimate, by up to 4.5 times."""
 AIM = 0.5
 """Error for which a mesh is chosen, in units of the accuracy."""
 FALL_BY_DECAY, LEAST_FALL, LARGEST_FALL = 1.6, 0.5, 2.2
@@ -51,8 +51,8 @@ SHRUNK = 0.75
 """Size of the orbit, in units of its size at the calibration, below which the mesh is calibrated again. Near
 the Hopf point at which cycles end, the error of the largest y grows fast beyond a change of sign."""
 KEPT = 0.5
-"""Smallest error of a repeated calibration, in units of the previous one scaled with the tails. An error that
-changes its sign is small at one cycle and has its old size three cycles later."""
+"""Smallest error of a repeated calibration, in units of the previous error scaled with the tails. Near a
+change of sign an error is small at one cycle, and has the old size three cycles later."""
 LEAST_TAIL = 1e-15
 """Smallest tail, for rounding errors."""
 MULTIPLIER = 4
@@ -88,7 +88,7 @@ class Calibration:
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
-        """The calibration from its `arrays`, of the shapes given there."""
+        """The calibration from stored `arrays`, with the shapes given there."""
         mesh = OrbitMesh(*map(int, arrays["calibrated_mesh"]))
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
@@ -129,9 +129,9 @@ class Calibration:
     def errors(self, accuracy: float) -> CycleErrors:
         """Errors of the orbit.
 
-        For the other extrema and the multiplier the larger growth applies to both parts, because one part was
-        seen to grow 2.7 times as much as its own tail. For period and largest y, whose errors choose the
-        mesh, this would cost a tenth of a sweep's time.
+        The larger growth applies to both parts of the errors of multiplier and other extrema, because one
+        part was seen to grow 2.7 times as much as the tail. For period and largest y, whose errors choose the
+        mesh, the larger growth would cost a tenth of a sweep's time.
         """
         in_space, in_time = self.growth
         stated = _stated(self.space * in_space, self.time * in_time, accuracy)
@@ -203,8 +203,8 @@ def calibration_of(
 ) -> Calibration:
     """Calibration of a mesh with errors in space and in time, (5,) each.
 
-    orbit: an orbit on the mesh, or a nearby one. before: calibration at a nearby orbit, on this mesh or
-    another, which provides the rates of errors; if it is None, the orbit's coefficients provide them.
+    orbit: orbit on the mesh or nearby. before: calibration at a nearby orbit, on any mesh, with the rates at
+    which errors fall; None to take the rates from the orbit's coefficients.
     """
     tails = _tails(orbit)
     if before is None:
@@ -235,6 +235,6 @@ def _power(before: Array, after: Array, there: OrbitMesh, here: OrbitMesh) -> Ar
 
 
 def _logarithm(before: Array, after: Array) -> Array:
-    """Logarithm of the quotient of errors of any shape, some of which may be 0."""
+    """Logarithm of the quotient of two errors, of any shape; an error may be 0."""
     quotient: Array = np.log(np.maximum(before, 1e-300) / np.maximum(after, 1e-300))
     return quotient

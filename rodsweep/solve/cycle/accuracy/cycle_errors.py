@@ -12,13 +12,14 @@ ROUNDING = 2e-14
 LEAST_CLAIM = 0.1
 """Smallest stated error in units of the accuracy: a smaller estimate may be small by coincidence."""
 EXTREMA_SLACK = 100.0
-"""Ratio of the tolerances of the tip's other extrema and of period and largest y. Period and largest y, at
-which a time node lies, converge fastest."""
+"""Tolerance of the tip's other extrema in units of the tolerance of period and largest y. Period and largest
+y converge fastest; a time node lies at the largest y."""
 
 
 @dataclass(frozen=True, slots=True)
 class CycleErrors:
-    """Relative error estimates of period and of the tip's largest y, and of its other extrema in units of it.
+    """Relative error estimates of the period and the tip's largest y, and of other extrema in units of the
+    largest y.
 
     multiplier_error: absolute error estimate of the largest nontrivial multiplier.
     """
@@ -35,7 +36,7 @@ class CycleErrors:
 
 
 def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
-    """`CycleErrors.largest` of errors that are numbers or arrays of one shape."""
+    """`CycleErrors.largest` of numbers, or of arrays with a common shape."""
     largest: Array = np.maximum(np.maximum(period, amplitude), np.asarray(extrema) / EXTREMA_SLACK)
     return largest
 

@@ -34,8 +34,8 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
 def calibrated(found: Converged, accuracy: float, before: Calibration | None) -> Calibration:
     """Calibration of the mesh of an orbit; raises Unsolvable.
 
-    before: calibration at a nearby orbit, on this mesh or another, which provides the decay rates of errors.
-    If it is None, the orbit's coefficients provide them.
+    before: calibration at a nearby orbit, on any mesh, with the rates at which errors fall; None to take the
+    rates from the orbit's coefficients.
     """
     mesh = mesh_of(found.orbit)
     here = ComparedCycle(found)

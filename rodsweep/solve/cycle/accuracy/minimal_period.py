@@ -17,12 +17,12 @@ from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit, node_times
 
 PRESENT = 1e-3
-"""Size of a harmonic, relative to the largest, at which it counts as present before errors are known."""
+"""Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not known."""
 CERTAIN = 10.0
-"""Relative size of a harmonic, in units of the extrema's relative error, at which it is certainly present."""
+"""Smallest relative size of a certainly present harmonic, in units of the extrema's relative error."""
 LEAST_PRESENT = 1e-6
-"""Smallest relative size of a certain harmonic. The error estimate is that of the tip, which may be smaller
-than the error of the bending strain."""
+"""Lower bound of this size: the error estimate is the tip's, and the bending strain may have a larger
+error."""
 
 
 def common_divisor(path: CyclePath, present: float) -> int:

@@ -25,12 +25,12 @@ from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
-"""Relative distance between an orbit and Newton's matrix at which the multipliers are accurate enough, in
-units of the accuracy, and its bounds."""
+"""Largest relative distance between an orbit and Newton's matrix with accurate multipliers, in units of the
+accuracy, and the bounds of this distance."""
 MULTIPLIER_FACTOR = 10.0
 """Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
 LEAST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
-"""Finest accuracy that a mesh is chosen for, and finest for which tails of a nearby orbit can choose it."""
+"""Finest accuracy for which a mesh is chosen, by measured errors and by the tails of a nearby orbit."""
 NEAR, AIM_LOWERED = 1e-3, 1e-3
 """Newton tolerance of the nearby orbit, and factor on the accuracy where a mesh is too coarse."""
 FIRST_SHARE = 0.5
@@ -42,7 +42,7 @@ PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
 """Largest distance of a cycle from its prediction, in units of the accuracy, at which predicted errors hold
 (up to 4.4 was seen), and the smallest bound on the distance, for rounding errors."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
-"""Bounds on the size of a solution in units of its start's size: both must be the same motion."""
+"""Bounds on the size of a solution in units of the start's size: the motion must stay the same."""
 LUCK = 10.0
 """Factor by which an error may grow on a finer mesh: an extremum's error may be small by coincidence."""
 MOST_ROUNDS = 8
@@ -80,7 +80,7 @@ class RefinedCycle:
 
     @property
     def margin(self) -> float:
-        """Error of the largest multiplier's modulus, which decides whether it differs from 1."""
+        """Error of the largest multiplier's modulus: a modulus nearer to 1 leaves the stability open."""
         return max(self.trivial_error, self.errors.multiplier_error)
 
     @property
@@ -211,14 +211,14 @@ def calibrated_cycle(
 
 
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
-    """The orbit on another mesh, with a matrix made at the orbit, whose multipliers are exact to rounding."""
+    """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
     last = (newton_tolerance(accuracy) / QUADRATIC) ** 0.5  # the matrix at the orbit gives one more step
     there = newton(mesh.carry(found.orbit), last, found.workspace)
     return linearised(same_motion(there, found.orbit.size), parameter)
 
 
 def same_motion(found: Converged, size: float) -> Converged:
-    """The solution, if its size is near `size`, that of its start; raises Unsolvable otherwise."""
+    """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
     if not LEAST_SIZE * size < found.orbit.size < LARGEST_SIZE * size:
         raise Unsolvable("Newton's method converged to another motion than the one at its start")
     return found
@@ -246,5 +246,5 @@ def newton_tolerance(accuracy: float) -> float:
 
 
 def matrix_distance(accuracy: float) -> float:
-    """Relative distance between an orbit and a matrix at which its multipliers are accurate enough."""
+    """Largest relative distance between an orbit and a matrix with accurate multipliers."""
     return min(max(MATRIX_SHARE * accuracy, LEAST_DISTANCE), LARGEST_DISTANCE)

@@ -1,10 +1,11 @@
 """Amplitude equation of slow motions about the straight rod, which predicts their final amplitude.
 
 The amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that a cycle has the
-amplitude a* = sqrt(g0/c). The coefficient c is measured where its part of g exceeds the integrator's error;
-near a* it may not. A rod near a limit has a slightly different linear growth from the rod in the limit, and
-the measured growth is corrected by the difference. A slowly decaying motion is scaled down until it decays at
-the linear rate. A slowly growing motion whose growth increases with its size (c < 0) is scaled up.
+amplitude a* = sqrt(g0/c). The coefficient c is measured where c a^2 exceeds the integrator's error, which it
+may not near a*. A rod near a limit grows linearly at a slightly different rate than the rod in the limit; the
+measured growth is corrected by the difference. A slowly decaying motion is scaled down until the motion
+decays at the linear rate. A slowly growing motion with a growth that increases with the amplitude (c < 0) is
+scaled up.
 """
 
 from math import isnan, nan
@@ -21,8 +22,8 @@ of the new c is noise then; a c measured within the noise may have the wrong sig
 NEAR = 0.1
 """Relative distance from the predicted amplitude within which Newton's method takes over."""
 SHRINK, LARGEST_JUMP = 0.7, 4.0
-"""Factor on the state of a slowly decaying motion (its inverse where a motion grows), near enough to 1 that
-no cycle is jumped over; and the largest factor."""
+"""Factor on the state of a slowly decaying motion (the inverse applies to a growing motion), near enough to 1
+not to jump over a cycle; and the largest factor."""
 LINEAR = 0.05
 """Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
 
@@ -72,9 +73,9 @@ class AmplitudeEquation:
         return linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
 
     def jump(self, times: Array, states: Array) -> float | None:
-        """Factor that scales the state to where the growth should vanish, or towards this amplitude.
+        """Factor on the state to the amplitude at which the growth vanishes, or towards this amplitude.
 
-        None if the state has this amplitude already, or if the amplitude is not known.
+        None if the state has the right amplitude already, or if this amplitude is not known.
         """
         growth, linear = self.growth(times, states)
         if not self.slow(times, states):

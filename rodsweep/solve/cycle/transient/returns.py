@@ -17,7 +17,7 @@ STRAIGHT_SIZE = 1e-6
 """Norm of z below which a rod with a stable straight state is called straight, and norm of the bending and
 shear part of z below which a rod no longer swings. Smaller motions are governed by numerical damping."""
 SAME_CROSSING = 0.03
-"""Relative distance of two returns below which both are the same crossing of the orbit."""
+"""Largest relative distance of two returns at the same crossing of the orbit."""
 LONGEST_ORBIT = 8
 """Maximum number of returns per period."""
 STEPS_PER_CHUNK = 20_000

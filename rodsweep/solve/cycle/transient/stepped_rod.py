@@ -21,7 +21,7 @@ def motion_resolution(rod: Rod, accuracy: float) -> Resolution:
 
 
 def near_rod(rod: Rod) -> Rod:
-    """The rod, or a rod near the limit in which it is: the time stepper cannot integrate a limit."""
+    """The rod; a nearby rod for a rod in a limit, which the time stepper cannot integrate."""
     return replace(
         rod, k1=min(rod.k1, STIFFEST), k2=min(rod.k2, STIFFEST), gamma3=max(rod.gamma3, LEAST_DRAG)
     )

@@ -1,4 +1,4 @@
-"""Quasiperiodic motions: a motion that never settles because it lies on a torus, with two frequencies.
+"""Quasiperiodic motions: motions on a torus, with two frequencies, which never settle.
 
 A torus surrounds a cycle whose largest multipliers are a complex pair outside the unit circle. The returns of
 the motion to the section lie on a closed curve around the cycle's own return, and advance on this curve by
@@ -28,8 +28,8 @@ CLOSEST = 16
 """Inverse of the largest gap between returns, as a share of the closed curve. The returns then determine the
 13 terms of the series, and an orbit that closes after fewer returns is rejected."""
 PREDICTED = 0.05
-"""Largest rms error of the predicted returns, in units of their rms modulation: it was 7e-4 to 0.03 on tori,
-and 0.11 where the modulation still grew."""
+"""Largest rms error of the predicted returns in units of the rms modulation. The error was 7e-4 to 0.03 on
+tori, and 0.11 for a growing modulation."""
 SETTLING = 1 / 3
 """Share of the returns, from the start, that is left out: the motion still approaches the torus."""
 ANGLE, PERIOD = 0.3, 0.1
@@ -83,7 +83,7 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 
 
 def pair_outside(cycle: RefinedCycle) -> float | None:
-    """Angle in (0, pi) of the one complex pair outside the unit circle; None for any other instability."""
+    """Angle in (0, pi) of the complex pair outside the unit circle; None if the instability is different."""
     outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
     if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.margin:
         return None
@@ -109,7 +109,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
 
 
 def fitted_angle(returns: Array, angle: float) -> float:
-    """Angle per return, rad, near the given one, for which a Fourier series fits the states (k, n) best."""
+    """Angle per return, rad, near `angle`, with the best fit of a Fourier series to the states (k, n)."""
     from scipy.optimize import minimize_scalar  # a tenth of a second of every start
 
     numbers = np.arange(len(returns))

@@ -1,7 +1,7 @@
 """Path of the tip from the start of a motion to the end of its integration, from the integrator's steps.
 
-The tip and its velocity are kept for each step. Cubics through them have errors below the integrator's own,
-and the six numbers replace a state of several hundred.
+Tip and velocity are kept for each step. Their cubics have errors below the integrator's own, and six numbers
+replace a state of several hundred.
 """
 
 import numpy as np

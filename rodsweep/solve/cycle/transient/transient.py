@@ -4,8 +4,8 @@ The motion is integrated from return to return (`returns`). Newton's method star
 tenth. Slow motions about the straight rod are shortened: the state is scaled to the amplitude that the
 amplitude equation predicts (`amplitude_equation`). A motion whose path is stored has no such jumps.
 
-A rod whose straight state is unstable leaves this state. If its deflection decays nevertheless, as it can
-while a large stretch relaxes slowly, the motion restarts from a small deflection in the leading mode.
+A rod with an unstable straight state leaves this state. While a large stretch relaxes slowly, the deflection
+may decay nevertheless; the motion then restarts from a small deflection in the leading mode.
 """
 
 from collections import deque
@@ -43,15 +43,15 @@ from .trace import TipTrace
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
 """Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
 QUICK = TimeScheme("arkimex", "4", tolerance=1e-4)
-"""Scheme of the first run of a fast-growing motion: no decision uses its growth, and it often closes."""
+"""Scheme of the first run of a fast-growing motion, which often closes: no decision uses the growth."""
 CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
 """Scheme where the sign of a small growth per period must be correct, and for stored paths."""
 
 CHUNK, FIRST_CHUNK = 5, 3
-"""Returns per run, after each of which the motion is classified, and returns of the first run, after which
-only a closed motion is recognised: a fast-growing motion may close so early."""
+"""Returns per run, before the motion is classified, and returns of the first run, after which only closed
+motions are recognised: a fast-growing motion may close early."""
 NEWTON_DISTANCE = 0.1
-"""Relative distance of two returns at which Newton's method starts; each failure divides it by 10."""
+"""Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
 SHOWN_DISTANCE = 1e-3
 """NEWTON_DISTANCE for a stored path, in the first half of the allowed periods, to show the settling."""
 MOST_NEWTON_FAILURES = 5
@@ -167,7 +167,7 @@ class Transient:
         self.clock += run.times[-1]
 
     def _jumped(self, z: Array) -> Array:
-        """State from which the motion continues after a jump to z, both (unknowns,)."""
+        """State after a jump to z and the relaxation of fast components, (unknowns,)."""
         self.jumps += 1
         self.past.clear()
         return relaxed(self.beam, z, self.mode.period)
@@ -206,7 +206,7 @@ class Transient:
         return TransientOutcome(status, why, self.waited, found)
 
     def _chunk(self, z: Array, first: bool) -> Trajectory:
-        """A run over CHUNK returns, or over three times their expected duration if it has fewer returns."""
+        """A run over CHUNK returns, limited to three times the expected duration."""
         returns, scheme = (FIRST_CHUNK, self.first_scheme) if first else (CHUNK, self.scheme)
         limit = until_returns(self.row, z, returns)
         duration = 3 * returns * self.mode.period
@@ -218,7 +218,7 @@ class Transient:
         return run
 
     def _closed(self, run: Trajectory) -> RefinedCycle | None:
-        """The stable cycle if the returns repeat and Newton's method converges to one; None otherwise."""
+        """The stable cycle, if the returns repeat and Newton's method converges; None otherwise."""
         turns, distance = repetition([state for _, state in self.past][-1 - LONGEST_ORBIT :])
         if distance >= self._near_enough() or self.waited < self.next_newton:
             return None
@@ -233,7 +233,7 @@ class Transient:
         return min(distance, SHOWN_DISTANCE) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
-        """The stable cycle near the end of a run, by Newton's method; None if there is no such cycle."""
+        """The stable cycle near the end of a run, by Newton's method; None if not found."""
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
             if run.ending != Ending.reached:
