@@ -30,18 +30,18 @@ from .straight_rod import straight_rod
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 """Spectrum request for the leading eigenvalue, without a proof."""
-SCAN = 0.93
+SCAN_RATIO = 0.93
 """Ratio of successive forces at which the scan evaluates the leading growth rate."""
 LEAST_FORCE = 1e-2
 """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
-FOUND = 1e-6
+HOPF_TOLERANCE = 1e-6
 """Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
 NORMAL_FORM_ACCURACY = 1e-3
 """Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
-STARTS = (0.3, 0.12, 0.03, 0.006)
+START_DISTANCES = (0.3, 0.12, 0.03, 0.006)
 """Relative distances from the Hopf point at which the normal form starts Newton's method, tried in this
 order. In most rods the normal form's amplitude is off by a quarter at the first, by a tenth at the second."""
-NEAREST = 1e-2
+DIRECT_DISTANCE = 1e-2
 """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
 rod itself: the amplitude is off by 1 percent there in most rods."""
 ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
@@ -76,7 +76,7 @@ def hopf_point_below(rod: Rod) -> Onset | None:
     F = rod.F
     above = leading_eigenvalue(rod)
     while F > LEAST_FORCE:
-        lower = F * SCAN
+        lower = F * SCAN_RATIO
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _crossing(rod, (lower, below), (F, above))
@@ -93,14 +93,15 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     """
     path = Path(rod, "F")
     (a, below), (b, above) = low, high
-    while b - a > FOUND * b:
+    while b - a > HOPF_TOLERANCE * b:
         share = below.real / (below.real - above.real)
         eta = below.imag + share * (above.imag - below.imag)
         F = a + share * (b - a)
         zero = crossing_newton(eta, F, path.origin, path.direction, (eta, F))
         if a <= zero.p <= b:
             w = leading_eigenvalue(replace(rod, F=zero.p))
-            if abs(w.real) <= FOUND * abs(w) and abs(w.imag - zero.eta_or_x) <= FOUND * abs(w):
+            tolerance = HOPF_TOLERANCE * abs(w)
+            if abs(w.real) <= tolerance and abs(w.imag - zero.eta_or_x) <= tolerance:
                 return Onset(zero.p, zero.eta_or_x)
         middle = (a + b) / 2
         w = leading_eigenvalue(replace(rod, F=middle))
@@ -124,11 +125,11 @@ def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} leads to smaller forces")
-    if rod.F <= hopf.F * (1 + NEAREST):
+    if rod.F <= hopf.F * (1 + DIRECT_DISTANCE):
         return orbit_of(normal, replace(form, mesh=normal.form.mesh))
     order = max(LEAST_ORDER, int(ORDER_PER_WAVE * 2.5 * abs(rod.F) ** 0.5))
     coarse = replace(form, mesh=mesh(1, order))
-    for part in STARTS:
+    for part in START_DISTANCES:
         try:
             return _orbit_from(normal, min(rod.F, hopf.F * (1 + part)), coarse, workspace)
         except Unsolvable as error:
@@ -147,12 +148,12 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = eigenvalue_newton(w, form.rod.coefficients, form.rod.direction("F"))[1]
     rate = form.rod.F * slope.real
-    if not w.real <= NEAREST * rate:
+    if not w.real <= DIRECT_DISTANCE * rate:
         raise Unsolvable("no Hopf point is near")
     normal = _normal_form(form, w)
     if not normal.supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= NEAREST * rate / -normal.c.real:
+    if not amplitude**2 <= DIRECT_DISTANCE * rate / -normal.c.real:
         raise Unsolvable("the start is too large for the normal form")
     if count_right_of(-BEHIND * abs(w), form.rod).number != 2:
         raise Unsolvable("another mode may grow")

@@ -35,16 +35,16 @@ from .transient.returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
     angle_weights,
+    early_end_reason,
     repetition,
     section_crossings,
-    trouble,
     until_returns,
 )
 from .transient.stepped_rod import motion_resolution, near_rod
 
 TOLERANCE = 0.01
 """Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as much."""
-TIGHTER, MORE_ORDERS = 0.2, 2
+TOLERANCE_RATIO, MORE_ORDERS = 0.2, 2
 """Tolerance of the second integration in units of the first one's, and additional orders of its mesh."""
 MOST_PAIRS = 3
 """Maximum number of comparisons; the finer integration of a pair is the coarser one of the next."""
@@ -56,7 +56,7 @@ CHUNK = 5
 """Returns of the tip between two tests for repetition."""
 SAFETY = 2.0
 """Safety factor on the difference of two integrations."""
-FARTHER = 2.0
+LIMIT_DISTANCE_RATIO = 2.0
 """Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
 proportion to the distance, so the cycles' difference is the error of the nearer approximation."""
 STAGES, INTERVALS = 3, 48
@@ -132,7 +132,7 @@ class _Marching:
         """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
         before = self.beam
         self.resolution = replace(self.resolution, order=self.resolution.order + MORE_ORDERS)
-        self.scheme = replace(self.scheme, tolerance=TIGHTER * self.scheme.tolerance)
+        self.scheme = replace(self.scheme, tolerance=TOLERANCE_RATIO * self.scheme.tolerance)
         self.beam = self._beam()
         stresses = before.stresses(settled.z) @ before.mesh.evaluation(self.beam.mesh.positions).T
         z = self.beam.scaled(stresses)
@@ -173,7 +173,7 @@ class _Marching:
     def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
         """A complete run; raises _Ended if the run fails or leaves the model."""
         run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
-        if why := trouble(self.beam, run, self.waited):
+        if why := early_end_reason(self.beam, run, self.waited):
             left = run.ending == Ending.left_the_model
             raise _Ended(MarchedStatus.left_the_model if left else MarchedStatus.failed, why)
         return run
@@ -215,7 +215,7 @@ class _Marching:
         """The errors plus the effect of integrating a rod near the limit instead of in it; raises _Ended."""
         known, limit = path.orbit.form.rod, self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
-        coordinates = {name: FARTHER * known.coordinate(name) for name in in_limits}
+        coordinates = {name: LIMIT_DISTANCE_RATIO * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relaxed(self.beam, settled.z, self.mode.period)

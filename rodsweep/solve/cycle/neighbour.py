@@ -32,12 +32,12 @@ from .accuracy.refinement import (
 )
 from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
 
-ENOUGH = 0.9
+KEPT_MESH_ERROR = 0.9
 """Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
-WORTHWHILE, WELL_WORTHWHILE = 0.8, 0.5
+NEW_MESH_COST, CALIBRATED_MESH_COST = 0.8, 0.5
 """Largest cost of a mesh that replaces the present mesh, in units of the present cost. The second share holds
 where the change loses a valid calibration, which costs as much as three cycles."""
-UNKNOWN = complex(nan, nan)
+UNKNOWN_EIGENVALUE = complex(nan, nan)
 """Leading eigenvalue where it is not known."""
 Arrays = dict[str, Array]
 
@@ -53,7 +53,7 @@ class Neighbour:
     branch: CyclePredictor
     next_mesh: OrbitMesh
     calibration: Calibration
-    leading: complex = UNKNOWN
+    leading: complex = UNKNOWN_EIGENVALUE
 
     @classmethod
     def of(
@@ -62,7 +62,7 @@ class Neighbour:
         before: "Neighbour | None",
         name: str,
         accuracy: float,
-        leading: complex = UNKNOWN,
+        leading: complex = UNKNOWN_EIGENVALUE,
     ) -> "Neighbour":
         """Data of a cycle that was solved with its tangent. before: data of the previous point."""
         branch = predictor_from(found.fine, before.branch if before else None, name)
@@ -104,7 +104,7 @@ def _next_mesh(
     """The mesh for the next cycle, and its calibration, outdated if the mesh has to be measured."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest <= ENOUGH * accuracy
+    fits = found.errors.largest <= KEPT_MESH_ERROR * accuracy
     if known.reach and not fits:
         # Extrapolated errors that are too large are measured on this mesh before another mesh is planned.
         return present, known.outdated
@@ -118,11 +118,11 @@ def _next_mesh(
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
     """Largest cost of a replacing mesh in units of the present mesh's cost; 0 to keep the present mesh."""
     if before is None:
-        return WORTHWHILE  # the first mesh of a chain comes from an orbit's tails only, without a measurement
+        return NEW_MESH_COST  # an orbit's tails chose the first mesh of a chain, not measured errors
     if not found.calibration.reach:
-        return WELL_WORTHWHILE
+        return CALIBRATED_MESH_COST
     step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
-    return 0.0 if found.calibration.lasts(step) else WORTHWHILE
+    return 0.0 if found.calibration.lasts(step) else NEW_MESH_COST
 
 
 def followed_cycle(

@@ -14,7 +14,7 @@ from .accuracy.refinement import RefinedCycle, refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit
 from .status import CycleStatus
-from .transient.transient import NEUTRAL
+from .transient.transient import NEUTRAL_DISTANCE
 
 WEAK_BENDING = 0.02
 """Cubic part of the growth rate, in units of the linear part, below which the linear part decides."""
@@ -33,7 +33,7 @@ def small_cycle(
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= NEUTRAL else None
+    return found if settled and 1 - found.largest_multiplier >= NEUTRAL_DISTANCE else None
 
 
 def decay(rod: Rod, w: complex, amplitude: float) -> str:

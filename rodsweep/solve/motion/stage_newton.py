@@ -32,15 +32,15 @@ from .petsc_calls import (
 )
 from .predictor import predict, remember
 
-SLUGGISH = 0.3
+NEW_MATRIX_CONTRACTION = 0.3
 """Contraction above which a new matrix at the iterate pays off."""
 STAGNANT = 0.5
 """Contraction of small steps above which only rounding errors are left."""
 DIVERGING, MOST_GROWING = 2.0, 2
 """Contraction that counts as growth, and the number of successive growths that ends the iteration."""
-FORGET = 0.3
+LEAST_CONTRACTION_RATIO = 0.3
 """Smallest new contraction in units of the stored one."""
-UNSURE = 3.0
+FIRST_ITERATION_SAFETY = 3.0
 """Safety factor on the stored contraction at the first iteration of a stage; with 1 errors double."""
 ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 """Values of SNESConvergedReason."""
@@ -59,17 +59,17 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
         return NOT_FINITE
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        c.contraction = max(FORGET * c.contraction if c.measured else 0.0, theta)
+        c.contraction = max(LEAST_CONTRACTION_RATIO * c.contraction if c.measured else 0.0, theta)
         c.measured = 1
     c.growing = c.growing + 1 if theta > DIVERGING else 0
     c.last_step = dx
-    unsure = UNSURE if iteration == 1 else 1.0
+    unsure = FIRST_ITERATION_SAFETY if iteration == 1 else 1.0
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
     if small or (theta > STAGNANT and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
     if c.growing >= MOST_GROWING and iteration > 3:
         return NOT_CONTRACTING
-    if theta > SLUGGISH:
+    if theta > NEW_MATRIX_CONTRACTION:
         c.matrix_due = AT_ITERATE
     return ITERATING
 

@@ -12,14 +12,14 @@ from .matrix.linearisation import Linearisation, largest_change
 from .matrix.workspace import NewtonWorkspace
 from .orbit import Orbit
 
-SLUGGISH = 0.1
+NEW_MATRIX_RATIO = 0.1
 """Ratio of successive Newton steps above which a new matrix is made."""
 LONGEST_STEP = 0.5
 """Largest relative change of state or period in one iteration: a larger first step is shortened, a larger and
 growing later step means that no orbit is near."""
 MOST_ITERATIONS = 12
 """Maximum number of iterations: a slower convergence means that no orbit is near the start."""
-QUADRATIC = 1e5
+QUADRATIC_ERROR = 1e5
 """Error after a step with a matrix at the iterate of a nearly neutral orbit, in units of the squared step."""
 
 
@@ -75,10 +75,10 @@ def newton(
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
         fresh = distance == share * change
-        left = QUADRATIC * change**2 if fresh else change * min(1.0, change / last)
+        left = QUADRATIC_ERROR * change**2 if fresh else change * min(1.0, change / last)
         if left <= tolerance:
             return Converged(orbit, matrix, distance)
-        if change > SLUGGISH * min(last, 1.0):
+        if change > NEW_MATRIX_RATIO * min(last, 1.0):
             matrix = Linearisation(orbit, workspace, parameter)
             distance = 0.0
             step = matrix.step

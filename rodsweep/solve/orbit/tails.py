@@ -19,7 +19,7 @@ from .orbit import Orbit
 
 LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
 """Bounds of the coefficients' decay in space per order, natural logarithm."""
-LASTING = 4
+LAST_COEFFICIENTS = 4
 """Number of last coefficients in space whose size changes smoothly from orbit to orbit."""
 
 
@@ -93,7 +93,7 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 def lasting_tails(orbit: Orbit) -> Array:
     """Tails in space and in time that change as smoothly as an orbit, (2,), in units of the largest values.
 
-    A single last coefficient may vanish; in space the last LASTING coefficients at all points are used.
+    A single last coefficient may vanish, so in space LAST_COEFFICIENTS coefficients at all points are used.
     """
     grid = orbit.form.mesh
     in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
@@ -102,8 +102,8 @@ def lasting_tails(orbit: Orbit) -> Array:
 
 @lru_cache(maxsize=64)
 def _lasting_on_element(order: int) -> Array:
-    """Last LASTING columns of `_analysis_on_element`, (p + 1, LASTING)."""
-    return np.ascontiguousarray(_analysis_on_element(order)[:, -LASTING:])
+    """Last LAST_COEFFICIENTS columns of `_analysis_on_element`, (p + 1, LAST_COEFFICIENTS)."""
+    return np.ascontiguousarray(_analysis_on_element(order)[:, -LAST_COEFFICIENTS:])
 
 
 @compiled_for_vectors

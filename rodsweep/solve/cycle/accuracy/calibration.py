@@ -30,27 +30,27 @@ HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
 """Smallest errors of largest y, period and other extrema, in units of the distance between the tip's paths on
 two meshes; and the first two in time. A number may agree on two meshes by coincidence, its path does not. In
 time the paths differ most in theta, which is stiff and matters least."""
-EACH_OTHERS = 2.0
+MUTUAL_BOUND = 2.0
 """Smallest error of period and of largest y, in units of the larger error of the two. The two errors fall as
 the squares of the tails and rarely change sign near the same mesh. Without this bound, one cycle in a
 thousand was off by more than the estimate, by up to 4.5 times."""
-AIM = 0.5
+PLANNED_SHARE = 0.5
 """Error for which a mesh is chosen, in units of the accuracy."""
 FALL_BY_DECAY, LEAST_FALL, LARGEST_FALL = 1.6, 0.5, 2.2
 """Decay of errors in space per order, natural logarithm: in units of the decay of the coefficients, whose
 squares the errors follow (1.4 to 2 were measured), and its bounds."""
-POWER_BY_STAGES, STEEPEST = 1.5, 2.0
+POWER_BY_STAGES, LARGEST_POWER_RATIO = 1.5, 2.0
 """Order in time in units of the stages, where it was not measured, and the largest measured order in units of
 the smallest, stages + 1."""
 FEWER_ORDERS, FEWER_INTERVALS, MOST_ORDERS, MOST_GROWTH = 3, 0.6, 12, 4
 """Bounds of a planned mesh beside the present one: fewer orders, ratio of intervals if fewer, additional
 orders, ratio of intervals."""
-FARTHEST, LARGEST_GROWTH = 0.2, 4.0
+LARGEST_REACH, LARGEST_GROWTH = 0.2, 4.0
 """Relative change of the parameter, and growth of the errors, beyond which the mesh is calibrated again."""
-SHRUNK = 0.75
+LEAST_SIZE_RATIO = 0.75
 """Size of the orbit, in units of its size at the calibration, below which the mesh is calibrated again. Near
 the Hopf point at which cycles end, the error of the largest y grows fast beyond a change of sign."""
-KEPT = 0.5
+LEAST_REPEATED_SHARE = 0.5
 """Smallest error of a repeated calibration, in units of the previous error scaled with the tails. Near a
 change of sign an error is small at one cycle, and has the old size three cycles later."""
 LEAST_TAIL = 1e-15
@@ -96,7 +96,7 @@ class Calibration:
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The calibration for the orbit of the next point, after a relative change of the parameter."""
         tails = _tails(orbit)
-        dies = tails[-1] < SHRUNK * self.tails[-1]
+        dies = tails[-1] < LEAST_SIZE_RATIO * self.tails[-1]
         return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
@@ -115,15 +115,15 @@ class Calibration:
     @property
     def holds(self) -> bool:
         """Whether the calibration still applies to the orbit."""
-        return self.reach <= FARTHEST and float(self.growth.max()) <= LARGEST_GROWTH
+        return self.reach <= LARGEST_REACH and float(self.growth.max()) <= LARGEST_GROWTH
 
     def lasts(self, change: float) -> bool:
         """Whether the calibration may apply after a further relative change of the parameter."""
-        return self.reach + change <= FARTHEST
+        return self.reach + change <= LARGEST_REACH
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
         """Smallest errors in space and in time, (5,) each, of a new calibration of this mesh at an orbit."""
-        in_space, in_time = KEPT * np.minimum(_change(self.tails, _tails(orbit)), 1.0)
+        in_space, in_time = LEAST_REPEATED_SHARE * np.minimum(_change(self.tails, _tails(orbit)), 1.0)
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
@@ -153,7 +153,7 @@ class Calibration:
         power = np.where(intervals < here.intervals, self.power[:, None], here.stages + 1)
         time = self.time[:, None] * ((here.intervals - 1) / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= AIM * accuracy
+        enough = largest_error(*errors[:3]) <= PLANNED_SHARE * accuracy
         meshes = [
             replace(here, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
@@ -165,7 +165,7 @@ def _stated(space: Array, time: Array, accuracy: float) -> Array:
     """Errors of `CycleErrors`, (4, ...), from the parts of the error in space and in time, (5, ...) each."""
     whole, apart = SAFETY * (space + time), space[APART] + time[APART]
     in_time = SHARE_IN_TIME * time[APART]
-    either = EACH_OTHERS * sum(np.maximum(part[PERIOD], part[HEIGHT]) for part in (space, time))
+    either = MUTUAL_BOUND * sum(np.maximum(part[PERIOD], part[HEIGHT]) for part in (space, time))
     stated = [
         np.maximum(np.maximum(whole[PERIOD], PERIOD_SHARE * space[APART] + in_time), either),
         np.maximum(np.maximum(whole[HEIGHT], HEIGHT_SHARE * space[APART] + in_time), either),
@@ -230,7 +230,7 @@ def _power(before: Array, after: Array, there: OrbitMesh, here: OrbitMesh) -> Ar
     """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
     least = here.stages + 1
     steps = np.log((here.intervals - 1) / (there.intervals - 1))
-    power: Array = np.clip(_logarithm(before, after) / steps, least, STEEPEST * least)
+    power: Array = np.clip(_logarithm(before, after) / steps, least, LARGEST_POWER_RATIO * least)
     return power
 
 

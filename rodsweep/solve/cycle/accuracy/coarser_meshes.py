@@ -20,7 +20,7 @@ from ...orbit.tails import tails_of
 from .calibration import LARGEST_FALL, LEAST_FALL, Calibration, calibration_of
 from .finer_meshes import TOLERANCE, ComparedCycle
 
-ORDERS_LESS, TIMES_FEWER = 2, 1.4
+ORDER_DIFFERENCE, INTERVAL_RATIO = 2, 1.4
 """Difference in orders, and ratio of intervals, of the fine mesh and the coarse mesh made to predict it."""
 SERVED_ORDERS, SERVED_INTERVALS = 4, 2.0
 """Largest difference in orders, and largest ratio of intervals, of a predicted mesh and the coarse mesh."""
@@ -33,8 +33,8 @@ class CoarserMeshes:
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
-        order = mesh.order - ORDERS_LESS
-        intervals = round((mesh.intervals - 1) / TIMES_FEWER) + 1
+        order = mesh.order - ORDER_DIFFERENCE
+        intervals = round((mesh.intervals - 1) / INTERVAL_RATIO) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = TOLERANCE * accuracy
         self._workspace = workspace

@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, Measures, measures_of
-from ...orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.newton import QUADRATIC_ERROR, Converged, at_orbit, linearised, multipliers_of, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
@@ -25,13 +25,12 @@ from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
-"""Largest relative distance between an orbit and Newton's matrix with accurate multipliers, in units of the
-accuracy, and the bounds of this distance."""
+"""Relative distance of Newton's matrix for accurate multipliers, in units of the accuracy, and its bounds."""
 MULTIPLIER_FACTOR = 10.0
 """Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
 LEAST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
 """Finest accuracy for which a mesh is chosen, by measured errors and by the tails of a nearby orbit."""
-NEAR, AIM_LOWERED = 1e-3, 1e-3
+NEAR, AIM_FACTOR = 1e-3, 1e-3
 """Newton tolerance of the nearby orbit, and factor on the accuracy where a mesh is too coarse."""
 FIRST_SHARE = 0.5
 """Relative accuracy of a single cycle's first mesh: a second round costs more than a finer first mesh."""
@@ -43,7 +42,7 @@ PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
 (up to 4.4 was seen), and the smallest bound on the distance, for rounding errors."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
 """Bounds on the size of a solution in units of the start's size: the motion must stay the same."""
-LUCK = 10.0
+ALLOWED_INCREASE = 10.0
 """Factor by which an error may grow on a finer mesh: an extremum's error may be small by coincidence."""
 MOST_ROUNDS = 8
 
@@ -151,7 +150,7 @@ def refine(
         except Unsolvable:
             if aim <= LEAST_ACCURACY or not orbit.symmetric:  # only symmetric cycles are born at Hopf points
                 raise
-            aim = max(AIM_LOWERED * aim, LEAST_ACCURACY)
+            aim = max(AIM_FACTOR * aim, LEAST_ACCURACY)
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
@@ -173,7 +172,7 @@ def _predicted_cycle(
             break
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh, last = finer_mesh(mesh, known.planned(accuracy)), LUCK * error
+        mesh, last = finer_mesh(mesh, known.planned(accuracy)), ALLOWED_INCREASE * error
         if not mesh.allowed:
             break
         if not coarser.serve(mesh):
@@ -201,7 +200,8 @@ def calibrated_cycle(
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        finer, last = finer_mesh(before.mesh, before.planned(accuracy)), LUCK * cycle.errors.largest
+        last = ALLOWED_INCREASE * cycle.errors.largest
+        finer = finer_mesh(before.mesh, before.planned(accuracy))
         if not finer.allowed:
             break
         found = _on(finer, found, accuracy, parameter)
@@ -212,7 +212,7 @@ def calibrated_cycle(
 
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
     """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
-    last = (newton_tolerance(accuracy) / QUADRATIC) ** 0.5  # the matrix at the orbit gives one more step
+    last = (newton_tolerance(accuracy) / QUADRATIC_ERROR) ** 0.5  # `linearised` makes one more step
     there = newton(mesh.carry(found.orbit), last, found.workspace)
     return linearised(same_motion(there, found.orbit.size), parameter)
 

@@ -16,15 +16,15 @@ from ....arrays import Array
 
 SLOW_GROWTH = 0.2
 """Linear growth per period below which the amplitude is predicted instead of integrated."""
-WELL_SHOWN = 10.0
+SIGNIFICANT_GROWTH = 10.0
 """Part of c in the growth, in units of the noise, at which a new c replaces the c of a larger motion. A tenth
 of the new c is noise then; a c measured within the noise may have the wrong sign."""
-NEAR = 0.1
+NEAR_AMPLITUDE = 0.1
 """Relative distance from the predicted amplitude within which Newton's method takes over."""
 SHRINK, LARGEST_JUMP = 0.7, 4.0
 """Factor on the state of a slowly decaying motion (the inverse applies to a growing motion), near enough to 1
 not to jump over a cycle; and the largest factor."""
-LINEAR = 0.05
+LINEAR_TOLERANCE = 0.05
 """Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
 
 
@@ -38,7 +38,7 @@ class AmplitudeEquation:
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
         self.period, self.linear_rate = period, linear_rate
         self.excess, self.noise = excess, noise
-        self.bend = nan
+        self.coefficient = nan
         """Coefficient c; NaN until the growth shows it."""
 
     def growth(self, times: Array, states: Array) -> tuple[float, float]:
@@ -59,17 +59,17 @@ class AmplitudeEquation:
         """Whether the returns shrink steadily and the last as the leading mode, up to noise."""
         growth, linear = self.growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
-        margin = LINEAR * abs(linear)
+        margin = LINEAR_TOLERANCE * abs(linear)
         falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
         alike = bool(falls.all()) and abs(growth - linear) < margin
         # With a known c the distance from the linear rate is bounded by c |z|^2, whatever the noise.
-        small = abs(self.bend) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
+        small = abs(self.coefficient) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
         return linear < 0 and (alike or small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether the motion decays faster than the leading mode; no cycle is near in this case."""
         growth, linear = self.growth(times, states)
-        known = self.bend > 0 and self.slow(times, states)
+        known = self.coefficient > 0 and self.slow(times, states)
         return linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
 
     def jump(self, times: Array, states: Array) -> float | None:
@@ -82,21 +82,21 @@ class AmplitudeEquation:
             return None
         size = float(np.linalg.norm(states[-1]))
         measured = (linear - growth) / size**2
-        if abs(linear - growth) > self.noise * (1 if isnan(self.bend) else WELL_SHOWN):
-            self.bend = measured
-        bend = measured if isnan(self.bend) else self.bend
-        if isnan(self.bend) and linear > 0:
+        if abs(linear - growth) > self.noise * (1 if isnan(self.coefficient) else SIGNIFICANT_GROWTH):
+            self.coefficient = measured
+        coefficient = measured if isnan(self.coefficient) else self.coefficient
+        if isnan(self.coefficient) and linear > 0:
             factor = LARGEST_JUMP  # at this small amplitude the growth does not show c
-        elif linear > 0 and bend > 0:
-            factor = float(np.clip(np.sqrt(linear / bend) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
-        elif linear > 0 or (bend < 0 and growth > self.noise):
+        elif linear > 0 and coefficient > 0:
+            factor = float(np.clip(np.sqrt(linear / coefficient) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
+        elif linear > 0 or (coefficient < 0 and growth > self.noise):
             factor = 1 / SHRINK  # the growth increases with the amplitude
-        elif bend > 0 or growth < -self.noise:
+        elif coefficient > 0 or growth < -self.noise:
             factor = SHRINK
         else:
             return None
-        return factor if abs(factor - 1) >= NEAR else None
+        return factor if abs(factor - 1) >= NEAR_AMPLITUDE else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
         """Whether the return time is the leading mode's period; otherwise the growth predicts nothing."""
-        return bool(abs((times[-1] - times[-2]) / self.period - 1) < LINEAR)
+        return bool(abs((times[-1] - times[-2]) / self.period - 1) < LINEAR_TOLERANCE)

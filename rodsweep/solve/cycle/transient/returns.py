@@ -46,7 +46,7 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
     return RunLimit(enough, STEPS_PER_CHUNK)
 
 
-def trouble(beam: Beam, run: Trajectory, returns: int) -> str:
+def early_end_reason(beam: Beam, run: Trajectory, returns: int) -> str:
     """The reason why a run ended early, `returns` returns after the start; empty if it did not."""
     if run.ending in (Ending.reached, Ending.stopped):
         return ""

@@ -8,7 +8,7 @@ from ....model.rod import Rod
 
 EXPECTED_MODES = 3
 """Number of modes whose wave number determines the first mesh; the cycle refines the mesh later."""
-FOLDS = 2.5
+WAVES_PER_ROOT_FORCE = 2.5
 """Largest wave number of a cycle in units of sqrt(F), the inverse of the length to which F bends a rod."""
 STIFFEST, LEAST_DRAG = 1e8, 1e-6
 """Largest stiffness and smallest gamma3 of an integrated rod. Rods beyond move alike, to 1e-6 or better."""
@@ -16,7 +16,10 @@ STIFFEST, LEAST_DRAG = 1e8, 1e-6
 
 def motion_resolution(rod: Rod, accuracy: float) -> Resolution:
     """Resolution of the first mesh of a motion, for a relative accuracy."""
-    wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
+    wave = max(
+        expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]),
+        WAVES_PER_ROOT_FORCE * abs(rod.F) ** 0.5,
+    )
     return resolution_for(wave, accuracy)
 
 

@@ -32,9 +32,9 @@ from .returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
     angle_weights,
+    early_end_reason,
     repetition,
     section_crossings,
-    trouble,
     until_returns,
 )
 from .stepped_rod import near_rod
@@ -52,7 +52,7 @@ CHUNK, FIRST_CHUNK = 5, 3
 motions are recognised: a fast-growing motion may close early."""
 NEWTON_DISTANCE = 0.1
 """Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
-SHOWN_DISTANCE = 1e-3
+STORED_PATH_DISTANCE = 1e-3
 """NEWTON_DISTANCE for a stored path, in the first half of the allowed periods, to show the settling."""
 MOST_NEWTON_FAILURES = 5
 """Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
@@ -62,9 +62,9 @@ NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 """Growth per period that the integrator may add; 3e-4 and 8e-6 were measured."""
 MOST_JUMPS = 60
 """Maximum number of scaled or restarted states."""
-DEPARTURE = 1e-3
+RESTART_DEFLECTION = 1e-3
 """Tip deflection of a restart in L; its square is the relative change of the linear growth."""
-NEUTRAL = 3e-8
+NEUTRAL_DISTANCE = 3e-8
 """Distance of the largest multiplier from 1 below which a closed orbit does not determine its amplitude."""
 MOST_RETURNS = 400
 """Number of last returns that are kept to recognise a torus."""
@@ -127,7 +127,7 @@ class Transient:
         while self.waited < self.most_periods:
             report(lambda: Whereabouts(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._chunk(z, first)
-            if why := trouble(self.beam, run, self.waited):
+            if why := early_end_reason(self.beam, run, self.waited):
                 left = run.ending == Ending.left_the_model
                 return self._ended(CycleStatus.left_the_model if left else CycleStatus.failed, why)
             z = run.states[-1]
@@ -138,7 +138,7 @@ class Transient:
             if self.straight.stable is False and not self._swings(z):
                 if self.trace or self.jumps >= MOST_JUMPS:
                     break
-                z = self._jumped(DEPARTURE * self.mode.z.real)
+                z = self._jumped(RESTART_DEFLECTION * self.mode.z.real)
                 continue
             early, first = first, False
             if len(times) < 3 or (early and self.small.slow(times, states)):
@@ -230,7 +230,7 @@ class Transient:
         """Relative distance of two returns below which Newton's method is tried."""
         distance = NEWTON_DISTANCE / 10**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
-        return min(distance, SHOWN_DISTANCE) if settles else distance
+        return min(distance, STORED_PATH_DISTANCE) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found."""
@@ -245,4 +245,4 @@ class Transient:
             return None
         if found.stable is False:
             self.unstable = found
-        return found if found.stable and 1 - found.largest_multiplier >= NEUTRAL else None
+        return found if found.stable and 1 - found.largest_multiplier >= NEUTRAL_DISTANCE else None
