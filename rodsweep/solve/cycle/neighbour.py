@@ -133,7 +133,9 @@ def followed_cycle(
     form: the rod, on any mesh. name: the parameter. workspace: memory of the matrices.
     """
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
-        raise Unsolvable("the neighbour's rod has other unknowns: only one of the two is in a limit")
+        raise Unsolvable(
+            "the neighbour has other unknowns: Omega is an unknown only at small rotational drag"
+        )
     found = _converged(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
     if known.holds:

@@ -28,8 +28,9 @@ SAFETY = 3.0
 """Safety factor on measured errors of period, extrema and multiplier."""
 HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
 """Smallest errors of largest y, period and other extrema, in units of the distance between the tip's paths on
-two meshes; and the first two in time. A number may agree on two meshes by coincidence, its path does not. In
-time the paths differ most in theta, which is stiff and matters least."""
+two meshes: a number may agree on two meshes by coincidence, a path does not. The last share replaces the
+first two for the distance in time, which is largest in theta, where the rod is stiff and errors matter
+least."""
 MUTUAL_BOUND = 2.0
 """Smallest error of period and of largest y, in units of the larger error of the two. The two errors fall as
 the squares of the tails and rarely change sign near the same mesh. Without this bound, one cycle in a
@@ -100,9 +101,9 @@ class Calibration:
         return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
-        """The calibration for an orbit of a branch that is followed in the moment at the clamp.
+        """The calibration for an orbit of a branch that is parametrised by the moment at the clamp.
 
-        The moment prescribes the size of each cycle, so that no error grows because cycles shrink.
+        The moment fixes the size of each cycle, so that no error grows because cycles shrink.
         """
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
         return replace(self, growth=growth)
@@ -141,24 +142,25 @@ class Calibration:
 
     def planned(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh that is expected to reach the accuracy."""
-        here = self.mesh
-        lowest = max(LEAST_ORDER, here.order - FEWER_ORDERS)
-        orders = np.arange(lowest, min(LARGEST_ORDER, here.order + MOST_ORDERS) + 1)
-        fewest = max(LEAST_INTERVALS, ceil(FEWER_INTERVALS * here.intervals))
-        intervals = np.arange(fewest, min(MOST_GROWTH * here.intervals, MOST_INTERVALS) + 1)
-        # Rates are measured towards the present mesh only. Beyond, all errors fall at least as the paths' do.
+        present = self.mesh
+        lowest = max(LEAST_ORDER, present.order - FEWER_ORDERS)
+        orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MOST_ORDERS) + 1)
+        fewest = max(LEAST_INTERVALS, ceil(FEWER_INTERVALS * present.intervals))
+        intervals = np.arange(fewest, min(MOST_GROWTH * present.intervals, MOST_INTERVALS) + 1)
+        # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
+        # distance, and in time with the smallest order.
         least = np.minimum(self.fall, self.fall[APART])
-        fall = np.where(orders < here.order, self.fall[:, None], least[:, None])
-        space = self.space[:, None] * np.exp(fall * (here.order - orders))
-        power = np.where(intervals < here.intervals, self.power[:, None], here.stages + 1)
-        time = self.time[:, None] * ((here.intervals - 1) / (intervals - 1)) ** power
+        fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
+        space = self.space[:, None] * np.exp(fall * (present.order - orders))
+        power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
+        time = self.time[:, None] * ((present.intervals - 1) / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
         enough = largest_error(*errors[:3]) <= PLANNED_SHARE * accuracy
         meshes = [
-            replace(here, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
+            replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
         ]
-        return min(meshes, key=lambda mesh: mesh.cost, default=here.finer)
+        return min(meshes, key=lambda mesh: mesh.cost, default=present.finer)
 
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
@@ -199,7 +201,7 @@ def _change(before: Array, after: Array) -> Array:
 
 
 def calibration_of(
-    here: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
+    mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
     """Calibration of a mesh with errors in space and in time, (5,) each.
 
@@ -211,13 +213,13 @@ def calibration_of(
         decay = FALL_BY_DECAY * tails_of(orbit).decay
         fall = np.full(PARTS, min(max(decay, LEAST_FALL), LARGEST_FALL))
         power = np.full(PARTS, POWER_BY_STAGES * orbit.stages)
-        return Calibration(here, space, time, fall, power, tails, 0.0)
-    there, fall, power = before.mesh, before.fall, before.power
-    if there.order != here.order and there.elements == here.elements:
-        fall = _fall(before.space, space, here.order - there.order)
-    if there.intervals != here.intervals:
-        power = _power(before.time, time, there, here)
-    return Calibration(here, space, time, fall, power, tails, 0.0)
+        return Calibration(mesh, space, time, fall, power, tails, 0.0)
+    previous, fall, power = before.mesh, before.fall, before.power
+    if previous.order != mesh.order and previous.elements == mesh.elements:
+        fall = _fall(before.space, space, mesh.order - previous.order)
+    if previous.intervals != mesh.intervals:
+        power = _power(before.time, time, previous, mesh)
+    return Calibration(mesh, space, time, fall, power, tails, 0.0)
 
 
 def _fall(before: Array, after: Array, orders: int) -> Array:
@@ -226,10 +228,10 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
     return fall
 
 
-def _power(before: Array, after: Array, there: OrbitMesh, here: OrbitMesh) -> Array:
+def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
-    least = here.stages + 1
-    steps = np.log((here.intervals - 1) / (there.intervals - 1))
+    least = mesh.stages + 1
+    steps = np.log((mesh.intervals - 1) / (previous.intervals - 1))
     power: Array = np.clip(_logarithm(before, after) / steps, least, LARGEST_POWER_RATIO * least)
     return power
 

@@ -57,7 +57,8 @@ class CoarserMeshes:
         fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, LEAST_FALL), LARGEST_FALL)
         by_orders = np.exp(fall * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
-        # Each of the two meshes has one of the errors; their multipliers' difference is not scaled down.
+        # Each of the two meshes has one of the errors. The fine mesh's multipliers may be as wrong as the two
+        # differ: their errors need not fall as those of the paths.
         apart = multiplier_change(space.multipliers, time.multipliers)
         in_space = np.append(self._errors(space, by_orders), 0.0)
         in_time = np.append(self._errors(time, by_intervals), apart)

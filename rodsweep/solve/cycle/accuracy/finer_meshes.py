@@ -38,11 +38,11 @@ def calibrated(found: Converged, accuracy: float, before: Calibration | None) ->
     rates from the orbit's coefficients.
     """
     mesh = mesh_of(found.orbit)
-    here = ComparedCycle(found)
+    measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
     tolerance = TOLERANCE * accuracy
     others = (newton(target.carry(found.orbit), tolerance, found.workspace) for target in finer)
-    space, time = (here.difference(ComparedCycle(other)) for other in others)
+    space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
     if before is not None and before.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.

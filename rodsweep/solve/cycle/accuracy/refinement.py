@@ -213,8 +213,8 @@ def calibrated_cycle(
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
     """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
     last = (newton_tolerance(accuracy) / QUADRATIC_ERROR) ** 0.5  # `linearised` makes one more step
-    there = newton(mesh.carry(found.orbit), last, found.workspace)
-    return linearised(same_motion(there, found.orbit.size), parameter)
+    solution = newton(mesh.carry(found.orbit), last, found.workspace)
+    return linearised(same_motion(solution, found.orbit.size), parameter)
 
 
 def same_motion(found: Converged, size: float) -> Converged:
