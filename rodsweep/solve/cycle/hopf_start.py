@@ -45,7 +45,7 @@ DIRECT_DISTANCE = 1e-2
 """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
 rod itself: the amplitude is off by 1 percent there in most rods."""
 ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
-"""Order of the coarse mesh per sqrt(2.5^2 |F|), the number of waves, and the smallest order."""
+"""Order of the coarse mesh in units of 2.5 sqrt(F), a cycle's largest wave number; and the smallest order."""
 INTERVALS, STAGES = 8, 3
 """Time intervals over half a period, and collocation stages, of the coarse mesh."""
 TOLERANCE = 3e-3
@@ -88,8 +88,8 @@ def hopf_point_below(rod: Rod) -> Onset | None:
 def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> Onset:
     """The Hopf point between two forces, each with its leading eigenvalue; raises Unsolvable.
 
-    Secant steps on the exact equation propose the Hopf point. Bisection takes over where the proposal belongs
-    to another eigenvalue.
+    Newton's method on D, from a secant start, proposes the Hopf point. Bisection continues where the proposal
+    belongs to another eigenvalue.
     """
     path = Path(rod, "F")
     (a, below), (b, above) = low, high
@@ -129,9 +129,9 @@ def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -
         return orbit_of(normal, replace(form, mesh=normal.form.mesh))
     order = max(LEAST_ORDER, int(ORDER_PER_WAVE * 2.5 * abs(rod.F) ** 0.5))
     coarse = replace(form, mesh=mesh(1, order))
-    for part in START_DISTANCES:
+    for distance in START_DISTANCES:
         try:
-            return _orbit_from(normal, min(rod.F, hopf.F * (1 + part)), coarse, workspace)
+            return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why

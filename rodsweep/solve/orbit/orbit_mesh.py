@@ -21,6 +21,7 @@ EXPECTED_SHARE = 1 / 3
 COARSER_ORDER, COARSER_SHARE = 2, 0.6
 """Difference in order, and ratio of intervals, of the coarser mesh, with about ten times larger errors."""
 LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
+"""Smallest order of a chosen mesh, and its smallest and largest number of intervals."""
 MOST_STATE_UNKNOWNS = 400
 """Largest number of unknowns of a state; a Newton step for a larger state would take more than a second."""
 

@@ -42,9 +42,8 @@ PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
 (up to 4.4 was seen), and the smallest bound on the distance, for rounding errors."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
 """Bounds on the size of a solution in units of the start's size: the motion must stay the same."""
-ALLOWED_INCREASE = 10.0
-"""Factor by which an error may grow on a finer mesh: an extremum's error may be small by coincidence."""
-MOST_ROUNDS = 8
+ALLOWED_INCREASE, MOST_ROUNDS = 10.0, 8
+"""Factor by which an error may grow on a finer mesh, by coincidence, and maximum number of meshes tried."""
 
 
 @dataclass(frozen=True, eq=False)
