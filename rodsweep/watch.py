@@ -52,7 +52,7 @@ _parts: ContextVar[tuple[_Part, ...]] = ContextVar("parts", default=())
 
 
 @contextmanager
-def heard_by(listener: Listener) -> Iterator[None]:
+def reporting_to(listener: Listener) -> Iterator[None]:
     """Sends the reports of all solves in the `with` block to the listener, after any outer listeners."""
     outer = _listener.get()
 

@@ -23,7 +23,7 @@ from ..tasks.protocol import AllPoints, Arrays, Solver
 from ..tasks.running.job import Job
 from ..tasks.running.plan import plan_of
 from ..tasks.running.unforeseen import Note, guarded
-from ..watch import heard_by
+from ..watch import reporting_to
 from .answers.showing import Display, display, listener
 from .dataset import dataset_of
 
@@ -92,7 +92,7 @@ def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
     """Variables that all points together determine."""
     units, results = together.units(view), dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
-        with heard_by(listener(shown, units.where(wanted[0]))):
+        with reporting_to(listener(shown, units.where(wanted[0]))):
             results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)
 
@@ -106,7 +106,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
 
     if solver.chained is None:
         for done in range(count):
-            with heard_by(place()):
+            with reporting_to(place()):
                 outcome = solver.solve(done)
             yield done, outcome
         return
@@ -114,7 +114,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):
-            with heard_by(place()):
+            with reporting_to(place()):
                 outcome, state = solve_from(index, state)
             done += 1
             yield index, outcome

@@ -87,11 +87,11 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
         try:
-            status, told = _run_shown(words, place, shown)
+            status, errors = _run_shown(words, place, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPUTED:
-            raise _failure(words[0], status, told, begun=output.exists())
+            raise _failure(words[0], status, errors, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
@@ -104,13 +104,13 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
         words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
     assert run.stderr is not None
-    told: list[str] = []
+    errors: list[str] = []
     shown(0)
     try:
         for line in run.stderr:
-            told.append(line)
+            errors.append(line)
             shown.place(line.strip())
-        return run.wait(), "".join(told)
+        return run.wait(), "".join(errors)
     except BaseException:  # Ctrl-C: the launcher ends its ranks within a second
         run.terminate()
         run.wait()
@@ -119,15 +119,15 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
         shown.close()
 
 
-def _failure(launcher: str, status: int, told: str, begun: bool) -> Exception:
+def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
     """Exception for an incomplete run; begun: whether the ranks created the result file."""
-    lines = [line for line in told.splitlines() if line.startswith("rodsweep: ")]
+    lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return REFUSED.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
-    if begun or "Traceback" in told:
-        return RuntimeError(told[-MOST_QUOTED:])
-    said = " ".join(told.split()) or f"exit status {status}"
-    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {said[-MOST_QUOTED:]}")
+    if begun or "Traceback" in errors:
+        return RuntimeError(errors[-MOST_QUOTED:])
+    output = " ".join(errors.split()) or f"exit status {status}"
+    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MOST_QUOTED:]}")
 
 
 def _mpiexec() -> str:

@@ -20,8 +20,8 @@ def arm_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Adds the options of all quantities to a command."""
     for name in reversed(UNITS):
         meaning = QUANTITIES[name].meaning
-        told = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
+        help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
         option = "--" + name.replace("_", "-")
-        add = click.option(option, name, metavar="QUANTITY", required=QUANTITIES[name].needed, help=told)
+        add = click.option(option, name, metavar="QUANTITY", required=QUANTITIES[name].needed, help=help_text)
         command = add(command)
     return command

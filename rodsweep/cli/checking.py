@@ -58,14 +58,14 @@ def _arm_lines(job: Job) -> list[str]:
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
     made = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
     at_rest = ArmValidity(job.config, job.points).at_rest()
-    told = validity_sentence(at_rest, when=" before anything moves")
+    validity = validity_sentence(at_rest, when=" before anything moves")
     return [
         f"the arm: {given_text(arm.given)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{told}; the run judges inertia by how fast the arm moves",
+        f"{validity}; the run judges inertia by how fast the arm moves",
     ]
 
 
@@ -79,9 +79,9 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     tubes = bore < radius
     effect = wall_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
     worst = int(np.argmax(effect.value))
-    told = wall_check(replace(effect, value=effect.value[worst])).told
+    warning = wall_check(replace(effect, value=effect.value[worst])).told
     some = int((effect.validity > 0).sum())
-    return [f"{told} That is the worst of {counted(effect.value.size, 'tube')}."] if some else []
+    return [f"{warning} That is the worst of {counted(effect.value.size, 'tube')}."] if some else []
 
 
 def _uncovered_lines(points: Points) -> list[str]:

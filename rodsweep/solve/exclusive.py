@@ -13,7 +13,7 @@ from threading import RLock, current_thread, main_thread
 from types import FrameType
 from typing import Any, ParamSpec, Self, TypeVar
 
-from ..watch import MakeWhereabouts, heard_by
+from ..watch import MakeWhereabouts, reporting_to
 from .backend.kept import forget_all
 
 P = ParamSpec("P")
@@ -38,7 +38,7 @@ def signals_held(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with HeldSignals() as held, heard_by(held.hear):
+        with HeldSignals() as held, reporting_to(held.hear):
             return function(*values, **named)
 
     return call

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..watch import Stopped, heard_by
+from ..watch import Stopped, reporting_to
 from .claims import FirstRankClaims, OtherRankClaims
 from .handout import GIVE_BACK_AFTER, OVER, Handout, Report, chunk_seconds
 from .listener import RankListener
@@ -77,7 +77,7 @@ def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: Stop
     current point, or within the point if more than `stop.GRACE` seconds are needed.
     """
     claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
-    with suppress(Stopped), heard_by(RankListener(claims, stop)):
+    with suppress(Stopped), reporting_to(RankListener(claims, stop)):
         loop.prepare()
     shown(0)
     return _Rank(team, claims, loop, shown, stop).share()
@@ -137,7 +137,7 @@ class _Rank:
         before = self.points
         while at < chunk[1] and not self.stop:
             try:
-                with heard_by(RankListener(self.claims, self.stop, partial(self.loop.name, at))):
+                with reporting_to(RankListener(self.claims, self.stop, partial(self.loop.name, at))):
                     self._solve(at, before)
             except Stopped:
                 self.ended = True

@@ -126,7 +126,7 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 
     before = signal.signal(signal.SIGUSR2, handler)
     try:
-        with pytest.raises(TimeoutError), HeldSignals() as held, watch.heard_by(held.hear):
+        with pytest.raises(TimeoutError), HeldSignals() as held, watch.reporting_to(held.hear):
             signal.raise_signal(signal.SIGUSR2)
             assert place == []
             watch.report()
@@ -142,8 +142,8 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 def test_reports_are_heard_by_all_who_listen():
     heard = []
     with (
-        watch.heard_by(lambda place: heard.append("outer")),
-        watch.heard_by(lambda place: heard.append(place())),
+        watch.reporting_to(lambda place: heard.append("outer")),
+        watch.reporting_to(lambda place: heard.append(place())),
     ):
         watch.report(lambda: watch.Whereabouts("inner", 0.25))
     watch.report()
@@ -152,7 +152,7 @@ def test_reports_are_heard_by_all_who_listen():
 
 def test_a_place_in_a_part_is_told_as_one_in_the_whole():
     heard = []
-    with watch.heard_by(lambda place: heard.append(place())), watch.part("branch 2", (0.5, 0.9)):
+    with watch.reporting_to(lambda place: heard.append(place())), watch.part("branch 2", (0.5, 0.9)):
         watch.report(lambda: watch.Whereabouts("F = 50", 0.25))
         with watch.part("corner"):
             watch.report(lambda: watch.Whereabouts("F = 51", 0.5))

@@ -128,7 +128,7 @@ class Answer:
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return Printed(
             heading=f"{self.rod}, {self.data.attrs['task']}: {self.status}",
-            told="; ".join(filter(None, (self.sentence, self.message))),
+            outcome="; ".join(filter(None, (self.sentence, self.message))),
             numbers=tuple(c for c in own if not c.absent[0]),
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,

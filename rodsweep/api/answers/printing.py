@@ -28,7 +28,7 @@ class Printed:
     """
 
     heading: str
-    told: str
+    outcome: str
     numbers: tuple[Column, ...]
     absent: tuple[str, ...]
     lists: Mapping[str, tuple[Column, ...]]
@@ -46,7 +46,7 @@ class Printed:
 
 def text_of(printed: Printed) -> str:
     """An answer as text: every number with its unit and meaning, then the lists."""
-    parts = [f"{printed.heading}\n{printed.told}", _aligned(_number_lines(printed.numbers))]
+    parts = [f"{printed.heading}\n{printed.outcome}", _aligned(_number_lines(printed.numbers))]
     for name, columns in printed.lists.items():
         title = _title(name, columns, printed.totals.get(name, 0))
         parts.append("\n".join(filter(None, (title, _aligned(_narrowest(columns))))))
@@ -55,7 +55,7 @@ def text_of(printed: Printed) -> str:
 
 def html_of(printed: Printed) -> str:
     """An answer as HTML, with the content of `text_of`."""
-    parts = [f"<p><b>{escape(printed.heading)}</b><br>{escape(printed.told)}</p>"]
+    parts = [f"<p><b>{escape(printed.heading)}</b><br>{escape(printed.outcome)}</p>"]
     heads = (("variable", "value", "unit", "meaning"),)
     parts.append(_html_table(heads, _number_lines(printed.numbers)))
     for name, columns in printed.lists.items():

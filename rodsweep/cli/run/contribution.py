@@ -12,7 +12,7 @@ from ...results.file.creation import Plan
 from ...sweep.loop import Indices, Share
 from ...sweep.points.stretches import StretchResult
 
-FAILURES_TOLD = 3
+MAX_FAILURES_PRINTED = 3
 """Maximum number of failed points named at the end of a run; the file has the status of all points."""
 
 
@@ -26,13 +26,13 @@ class Contribution:
 
 
 def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> list[str]:
-    """Descriptions of failed points, at most `FAILURES_TOLD`; where: a point's parameters in words."""
+    """Descriptions of failed points, at most `MAX_FAILURES_PRINTED`; where: a point's parameters in words."""
     if isinstance(result, StretchResult):
-        failed = np.flatnonzero(~result.succeeded)[:FAILURES_TOLD]
-        told = [(int(np.asarray(index)[i]), result.message(int(i))) for i in failed]
+        failed = np.flatnonzero(~result.succeeded)[:MAX_FAILURES_PRINTED]
+        failures = [(int(np.asarray(index)[i]), result.message(int(i))) for i in failed]
     else:
-        told = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
-    return [f"{where(at)}: {outcome}".rstrip() for at, outcome in told]
+        failures = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
+    return [f"{where(at)}: {outcome}".rstrip() for at, outcome in failures]
 
 
 def of_the_last_run(plan: Plan) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import AllPoints, Arrays
 from ...tasks.running.unforeseen import PASSING, UnitNote
-from ...watch import Stopped, heard_by
+from ...watch import Stopped, reporting_to
 
 NOUN = "halves of curves"
 """Name of the units of work: each curve is followed from one of its points in two halves."""
@@ -104,6 +104,6 @@ class JointWork:
         """The variables for the file, on the first rank; None if a stop came before all units were done."""
         if units is not None and units.wanted(self.results):
             return None
-        with suppress(Stopped), heard_by(RankListener(NoClaims(), self.stop)):
+        with suppress(Stopped), reporting_to(RankListener(NoClaims(), self.stop)):
             return self.together.variables(read_view(self.output), units, self.results)
         return None

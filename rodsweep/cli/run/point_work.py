@@ -24,7 +24,7 @@ from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import Solver
 from ...tasks.running.job import Job
-from .contribution import FAILURES_TOLD, Contribution, failures_of
+from .contribution import MAX_FAILURES_PRINTED, Contribution, failures_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,7 @@ class PointWork:
                 journal.append_all(np.asarray(index), result.values)
             else:
                 journal.append(int(index), solver.record(int(index), result))
-            if len(failures) < FAILURES_TOLD:
+            if len(failures) < MAX_FAILURES_PRINTED:
                 failures.extend(failures_of(index, result, self.where))
 
         shown = ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else Silent()

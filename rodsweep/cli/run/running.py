@@ -21,7 +21,7 @@ from ...tasks.running.unforeseen import Log, guarded
 from ...wording import counted
 from ..beforehand import planned_beforehand
 from .closing import RunEnd
-from .contribution import FAILURES_TOLD, Contribution, history_of, of_the_last_run
+from .contribution import MAX_FAILURES_PRINTED, Contribution, history_of, of_the_last_run
 from .joint import JointDue, JointWork
 from .options import RunOptions
 from .point_work import PointWork
@@ -191,8 +191,8 @@ class _Run:
 
     def _say_failures(self, contributions: list[Contribution], exceptions: int) -> None:
         """Prints the first failed points, and where the tracebacks of exceptions are."""
-        told = [failure for contribution in contributions for failure in contribution.failures]
-        for failure in told[:FAILURES_TOLD]:
+        failures = [failure for contribution in contributions for failure in contribution.failures]
+        for failure in failures[:MAX_FAILURES_PRINTED]:
             click.echo(f"  {failure}")
         if exceptions:
             raised = counted(exceptions, "unforeseen exception")

@@ -1,1 +1,1 @@
-"""The limit cycle of one rod: from a start to it, solved by Newton's method, refined and measured."""
+"""The limit cycle of one rod: start, Newton's method, refinement and measurement."""

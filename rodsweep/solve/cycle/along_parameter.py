@@ -1,7 +1,7 @@
-"""Cycles along one parameter: a polynomial through the last ones predicts the next, Newton's method corrects.
+"""Cycles along one parameter: a polynomial predicts the next cycle, Newton's method corrects the prediction.
 
-The polynomial goes through the normalised values of the orbits and their slopes. Where a step is too long for
-Newton's method it is divided.
+The polynomial interpolates normalised values and slopes of the last cycles. A step that is too long for
+Newton's method is divided.
 """
 
 from dataclasses import dataclass, replace
@@ -27,27 +27,27 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..point import Unsolvable
 
-FARTHEST = 0.3
-"""Relative distance of a cycle from its prediction beyond which it may be another one."""
+PREDICTION_DISTANCE = 0.3
+"""Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""
 STEPS = StepControl(
     first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
 )
-"""Shares of the way to a cycle that is too far for one step; the aim is what Newton's method takes two
-matrices for. What is far off is told by `near_prediction`."""
+"""Step lengths as shares of the divided parameter change. Newton's method takes two matrices for a prediction
+error of `aim`. `near_prediction` rejects cycles far from the prediction; `far` is infinite."""
 TANGENT_DISTANCE = 1e-2
-"""Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
-MOST_BEHIND, SLOPELESS = 4, 3
-"""Orbits before the last one that the prediction goes through, and how many of them it takes to be better
-without the slope at one of them."""
+"""Largest relative distance between an orbit and a matrix whose tangent is accurate enough for a step."""
+MAX_EARLIER_ORBITS, ORBITS_WITHOUT_SLOPE = 4, 3
+"""Maximum number of earlier orbits in the prediction, and the number of orbits from which the prediction is
+more accurate without the slope of an earlier orbit."""
 
 
 @dataclass(frozen=True, eq=False)
-class Followed:
-    """An orbit, and what a polynomial through it has at places on the branch, to predict others.
+class CyclePredictor:
+    """An orbit, and the data of the polynomial that predicts other orbits on its branch.
 
-    places: differences of the coordinate of a parameter from the orbit's, (m,); the first is the orbit's own.
-    orders: 0 where the polynomial has the value of an orbit, 1 where its slope, (m,); data: these, of
-    `normalised` values, (m, N + 1).
+    places: parameter coordinate of each datum relative to the orbit's, (m,); the first is the orbit's own, 0.
+    orders: 0 for an orbit's value, 1 for an orbit's slope, (m,); data: values and slopes as `normalised`, (m,
+    N + 1).
     """
 
     orbit: Orbit
@@ -57,7 +57,7 @@ class Followed:
 
     @property
     def tangent(self) -> Array:
-        """The slope of the normalised values here, (N + 1,)."""
+        """Slope of the normalised values at the orbit, (N + 1,)."""
         return self.data[0]
 
     @cached_property
@@ -66,21 +66,24 @@ class Followed:
         return normalised(self.orbit)
 
     def weights(self, step: float) -> Array:
-        """Of slopes, and of values less those here, in what is added at a distance on the branch, (m,)."""
+        """Weights of the data in the change predicted over a step, (m,); see `polynomial_weights`."""
         weights: Array = polynomial_weights(self.places, self.orders, step)
         return weights
 
     def at(self, form: StressForm, name: str) -> Orbit:
-        """The prediction at another value of the parameter, for the rod `form`, whatever its mesh."""
+        """The predicted orbit of the rod in `form`, on this orbit's mesh; the mesh of `form` is ignored.
+
+        name: the parameter. Raises Unsolvable if the predicted squared size is not positive.
+        """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = combined(self.values, self.data, self.orders, self.weights(step))
         if not values[-1] > 0:
             raise Unsolvable("the branch is predicted to end")
-        here = replace(form, mesh=self.orbit.form.mesh)
-        return replace(self.orbit, form=here, values=values_of(values, reflected(self.orbit)))
+        target = replace(form, mesh=self.orbit.form.mesh)
+        return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
 
-    def on(self, target: OrbitMesh) -> "Followed":
-        """The same on another mesh."""
+    def on(self, target: OrbitMesh) -> "CyclePredictor":
+        """The predictor, carried to another mesh."""
         if target == mesh_of(self.orbit):
             return self
         data = [np.append(carried(self.orbit, row[:-1], target), row[-1]) for row in self.data]
@@ -88,16 +91,17 @@ class Followed:
 
 
 def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
-    """A change of an orbit, (N,), as one of the orbit on another mesh: to carry is linear."""
+    """A change of an orbit's values, (N,), carried to a target mesh, (N of the target,); a linear map."""
     return target.carry(replace(orbit, values=change)).values
 
 
-def followed_from(found: Converged, before: Followed | None, name: str) -> Followed:
-    """An orbit that was solved with its tangent; before: the one before it on the branch.
+def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -> CyclePredictor:
+    """The predictor at an orbit that was solved with its tangent. before: predictor at the previous orbit.
 
-    A tangent is as wrong as its orbit was predicted, a value far less: where SLOPELESS values are known,
-    errors grow the less without another slope. From mesh to mesh states differ by far more than period and
-    largest y, their slopes do so less.
+    A tangent has the relative error of its orbit's prediction, a value far less. From ORBITS_WITHOUT_SLOPE
+    values on, a further slope therefore makes the prediction worse. From mesh to mesh the states differ by
+    far more than period and largest y, their slopes less: after a change of mesh only slopes enter. Raises
+    ValueError if the orbit has no tangent.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -105,51 +109,57 @@ def followed_from(found: Converged, before: Followed | None, name: str) -> Follo
     tangent = normalised_tangent(orbit, found.matrix.tangent)
     step = orbit.form.rod.coordinate(name) - before.orbit.form.rod.coordinate(name) if before else 0.0
     if before is None or step == 0:
-        return Followed(orbit, np.zeros(1), np.ones(1), tangent[None])
+        return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
     last = before.on(mesh_of(orbit))
     if last is not before:
-        return Followed(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
-    older = np.flatnonzero(before.orders == 0)[: MOST_BEHIND - 1]
-    places, data = [0.0, -step, *(before.places[older] - step)], [tangent, before.values, *before.data[older]]
+        return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
+    older = np.flatnonzero(before.orders == 0)[: MAX_EARLIER_ORBITS - 1]
+    places = [0.0, -step, *(before.places[older] - step)]
+    data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < SLOPELESS:
-        places, orders, data = [*places, -step], [*orders, 1.0], [*data, before.tangent]
-    return Followed(orbit, np.array(places), np.array(orders), np.array(data))
+    if 1 + len(older) < ORBITS_WITHOUT_SLOPE:
+        places.append(-step)
+        data.append(before.tangent)
+        orders.append(1.0)
+    return CyclePredictor(orbit, np.array(places), np.array(orders), np.array(data))
 
 
 def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
-    """Of two rods along a parameter: of its coordinates in units of the larger."""
+    """Difference of two rods' coordinates of a parameter, in units of the larger modulus."""
     a, b = one.rod.coordinate(name), other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
 def near_prediction(predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str) -> Converged:
-    """The orbit at a prediction; Unsolvable where it is not near."""
+    """The orbit near a prediction; raises Unsolvable if the two differ by more than PREDICTION_DISTANCE."""
     found = newton(predicted, tolerance, workspace, name)
-    if _distance(predicted, found) > FARTHEST:
+    if _distance(predicted, found) > PREDICTION_DISTANCE:
         raise Unsolvable("the cycle is far from its prediction")
     return found
 
 
 def _distance(predicted: Orbit, found: Converged) -> float:
-    """Of an orbit from its prediction, relative."""
+    """Relative distance of an orbit from its prediction."""
     return relative_change(predicted, found.orbit.values - predicted.values)
 
 
 def in_steps(
-    start: Followed, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
+    start: CyclePredictor, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
 ) -> Converged:
-    """The orbit at the end of steps that Newton's method can follow; raises Unsolvable.
+    """The orbit of a distant rod, in steps that Newton's method can follow; raises Unsolvable.
 
-    workspace: memory of the matrices.
+    form: the rod. name: varied parameter. workspace: memory of the matrices.
     """
-    here, there = start.orbit.form.rod.coordinate(name), form.rod.coordinate(name)
-    share, length, followed = 0.0, STEPS.first, start
+    first = start.orbit.form.rod.coordinate(name)
+    last = form.rod.coordinate(name)
+    share = 0.0
+    length = STEPS.first
+    predictor = start
 
     def step(length: float) -> Stepped[Converged]:
         at = share + length
-        between = form if at >= 1.0 else form.with_coordinate(name, here + at * (there - here))
-        predicted = followed.at(between, name)
+        between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
+        predicted = predictor.at(between, name)
         found = near_prediction(predicted, tolerance, workspace, name)
         return Stepped(found, _distance(predicted, found), 1.0)
 
@@ -161,6 +171,6 @@ def in_steps(
         share += length
         if share >= 1.0:
             return ahead.solution
-        followed = followed_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), followed, name)
+        predictor = predictor_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), predictor, name)
         length = STEPS.next_length(length, ahead, STEPS.order)
-    raise Unsolvable("the branch of cycles cannot be followed in so many steps")
+    raise Unsolvable(f"the branch of cycles was not followed to its end in {STEPS.most} steps")

@@ -1,4 +1,4 @@
-"""A point of the task limit_cycle: its request, and its outcome."""
+"""Request and outcome of one point of the task limit_cycle."""
 
 from dataclasses import dataclass, replace
 from math import nan
@@ -16,14 +16,15 @@ from .second_state import SecondState
 
 @dataclass(frozen=True, slots=True)
 class CycleRequest:
-    """What is asked of every rod.
+    """Request for each rod.
 
-    accuracy: relative, of period and extrema. amplitude: the tip's y of the start, in L. start: "mode" for
-    the leading mode, "neighbour" for it where there is no neighbour, "hopf" for the Hopf point. harmonics:
-    how many. samples: of the tip and of the energy over a period; shapes, nodes: shapes over a period and
-    Lobatto nodes of each; 0 for none. most_periods: returns of the tip to wait for. transient: times of the
-    tip's path from the start; 0 for none. A path that is wanted has no jumps, and is followed where its end
-    is known without it.
+    accuracy: relative accuracy of period and extrema. amplitude: tip's y of the start in the leading mode, in
+    L. start: "mode" for the leading mode; "neighbour" for the neighbour's cycle, and the leading mode where
+    there is no neighbour; "hopf" for the branch from the Hopf point. harmonics: number of harmonics. samples:
+    times per period of the tip and the energy, 0 for none. shapes, nodes: shapes per period, 0 for none, and
+    Lobatto nodes of each shape. most_periods: maximum number of returns of the tip. transient: stored times
+    of the tip's path from the start, 0 for none. For a stored path the motion is always integrated, and
+    without jumps.
     """
 
     accuracy: float
@@ -39,19 +40,19 @@ class CycleRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
-    """What became of one rod, and the numbers of its cycle: NaN or None where there is none.
+    """Outcome for one rod, with the numbers of its cycle; NaN or None where a number is not known.
 
-    linear_growth_rate and linear_frequency of the leading mode about the straight rod, 1/tau2; periods:
-    returns waited for. second_state: a SecondState, subcritical_F: the force of the Hopf point that makes a
-    cycle possible. multiplier: the largest nontrivial Floquet multiplier's modulus; multipliers: the
-    largest ones, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance of the trivial one from
-    1. On a torus these are all that is known, and those of the unstable cycle that it surrounds.
+    linear_growth_rate, linear_frequency: of the leading mode of the straight rod, in 1/tau2. periods: returns
+    of the tip in the integrated motion. second_state: a SecondState; subcritical_F: force of the Hopf point
+    that makes a second state possible. multiplier: modulus of the largest nontrivial Floquet multiplier;
+    multipliers: the largest multipliers, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance
+    of the trivial multiplier from 1. On a torus only the multipliers are known; they belong to the unstable
+    cycle inside the torus.
 
-    tip: x, y, theta at equidistant times, (3, samples); energy: U in k3/L, injection, dissipation, (3,
-    samples); shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
-    transient: time in tau2, x, y, theta of the tip from the start to where the motion was left, (4,
-    transient); None where no motion was followed.
-    neighbour: what the next point of a chain starts from.
+    tip: x, y, theta at equidistant times, (3, samples). energy: U in k3/L, injection, dissipation, (3,
+    samples). shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
+    transient: time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4,
+    transient); None if no motion was integrated. neighbour: data from which the next point of a chain starts.
     """
 
     status: PointStatus
@@ -60,7 +61,7 @@ class Cycle:
     linear_growth_rate: float = nan
     linear_frequency: float = nan
     periods: int = 0
-    second_state: int = SecondState.not_told
+    second_state: int = SecondState.not_known
     subcritical_F: float = nan
     elements: int = 0
     order: int = 0
@@ -79,9 +80,9 @@ class Cycle:
 def measured(
     cycle: Cycle, request: CycleRequest, path: CyclePath, measures: Measures, errors: CycleErrors
 ) -> Cycle:
-    """The outcome with the numbers of a cycle, and what is stored of its path where it is asked for."""
+    """The outcome with the numbers of a cycle, and the requested parts of the path."""
     mesh = path.orbit.form.mesh
-    # Harmonics that are not resolved are below the error of the cycle.
+    # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within that error.
     amplitudes = first_of(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
@@ -95,8 +96,8 @@ def measured(
     )
 
 
-def first_of(values: Array | Complex, count: int, other: complex) -> Any:
-    """So many of the values, (m,), and another one where there are none, (count,)."""
-    first = np.full(count, other, values.dtype)
+def first_of(values: Array | Complex, count: int, filler: complex) -> Any:
+    """The first values of (m,), (count,), with a filler in the places beyond m."""
+    first = np.full(count, filler, values.dtype)
     first[: len(values)] = values[:count]
     return first

@@ -1,9 +1,9 @@
-"""From the Hopf point to the cycle at a force: the branch that is born there, without following a motion.
+"""Cycles near a Hopf point: the branch is followed from the Hopf point to the cycle at a given force.
 
-The Hopf point is the nearest below the force at which the straight rod starts to oscillate. Its normal form
-gives amplitude, frequency and shape of the cycles near it. Very near that is the start of Newton's method on
-the mesh that the accuracy asks for; farther away the branch is followed on a coarse mesh, which has a Hopf
-point of its own, perhaps on the other side of a force that is very near.
+No motion is integrated. The Hopf point is the nearest one below the force. Its normal form gives amplitude,
+frequency and shape of the small cycles. Close to the Hopf point the normal form's orbit starts Newton's
+method directly, on the mesh for the requested accuracy. Farther away the branch is followed on a coarse mesh.
+A coarse mesh shifts the Hopf point, perhaps beyond a very close force, and is not used there.
 """
 
 from dataclasses import dataclass, replace
@@ -25,42 +25,45 @@ from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import BEHIND
 from ..spectrum.spectrum import SpectrumRequest
-from .along_parameter import followed_from, in_steps
+from .along_parameter import in_steps, predictor_from
 from .straight_rod import straight_rod
 
 LEADING = SpectrumRequest(1, 1e-9, False)
-SCAN = 0.93
-"""Ratio of the forces at which the sign of the leading growth rate is looked at."""
+"""Spectrum request for the leading eigenvalue, without a proof."""
+SCAN_RATIO = 0.93
+"""Ratio of successive forces at which the scan evaluates the leading growth rate."""
 LEAST_FORCE = 1e-2
 """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
-FOUND = 1e-6
-"""Growth rate of the leading mode at the Hopf point, in units of its frequency."""
+HOPF_TOLERANCE = 1e-6
+"""Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
 NORMAL_FORM_ACCURACY = 1e-3
-STARTS = (0.3, 0.12, 0.03, 0.006)
-"""Relative distances from the Hopf point at which the normal form starts Newton's method, one after the
-other: in most rods its orbit's size is off by a quarter at the first, by a tenth at the second."""
-NEAREST = 1e-2
-"""Relative distance from the Hopf point within which the normal form's cycle is near enough to the one of
-the rod: its amplitude is then off by 1 percent in most rods."""
+"""Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
+START_DISTANCES = (0.3, 0.12, 0.03, 0.006)
+"""Relative distances from the Hopf point at which the normal form starts Newton's method, tried in this
+order. In most rods the normal form's amplitude is off by a quarter at the first, by a tenth at the second."""
+DIRECT_DISTANCE = 1e-2
+"""Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
+rod itself: the amplitude is off by 1 percent there in most rods."""
 ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
+"""Order of the coarse mesh in units of 2.5 sqrt(F), a cycle's largest wave number; and the smallest order."""
 INTERVALS, STAGES = 8, 3
-"""In time, over half a period, of the mesh on which the branch is followed."""
+"""Time intervals over half a period, and collocation stages, of the coarse mesh."""
 TOLERANCE = 3e-3
-"""To which the orbits on the way are solved."""
+"""Newton tolerance of the intermediate orbits on the branch, relative."""
 
 
 @dataclass(frozen=True, slots=True)
 class Onset:
-    """F in k3/L^2 and the frequency of the leading mode there in 1/tau2."""
+    """A Hopf point: force F in k3/L^2, and frequency of the leading mode in 1/tau2."""
 
     F: float
     frequency: float
 
 
 def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
-    """The leading eigenvalue of the straight rod, Im >= 0; raises Unsolvable where it is not found.
+    """The leading eigenvalue of the straight rod, Im >= 0; raises Unsolvable if the spectrum fails.
 
-    near: the one of a rod near by.
+    near: leading eigenvalue of a similar rod, from which the search starts.
     """
     found = straight_rod(rod, near, LEADING)
     if isnan(found.error):
@@ -69,77 +72,88 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 
 def hopf_point_below(rod: Rod) -> Onset | None:
-    """The nearest force below the rod's own at which the leading mode starts to grow, if there is one."""
-    above, F = leading_eigenvalue(rod), rod.F
+    """The nearest Hopf point of the leading mode below the rod's force; None if there is none."""
+    F = rod.F
+    above = leading_eigenvalue(rod)
     while F > LEAST_FORCE:
-        lower = F * SCAN
+        lower = F * SCAN_RATIO
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _crossing(rod, (lower, below), (F, above))
-        F, above = lower, below
+        F = lower
+        above = below
     return None
 
 
 def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> Onset:
-    """The Hopf point between two forces, each with the leading eigenvalue there; raises Unsolvable."""
+    """The Hopf point between two forces, each with its leading eigenvalue; raises Unsolvable.
+
+    Newton's method on D, from a secant start, proposes the Hopf point. Bisection continues where the proposal
+    belongs to another eigenvalue.
+    """
     path = Path(rod, "F")
     (a, below), (b, above) = low, high
-    while b - a > FOUND * b:
+    while b - a > HOPF_TOLERANCE * b:
         share = below.real / (below.real - above.real)
-        eta, F = below.imag + share * (above.imag - below.imag), a + share * (b - a)
+        eta = below.imag + share * (above.imag - below.imag)
+        F = a + share * (b - a)
         zero = crossing_newton(eta, F, path.origin, path.direction, (eta, F))
         if a <= zero.p <= b:
             w = leading_eigenvalue(replace(rod, F=zero.p))
-            if abs(w.real) <= FOUND * abs(w) and abs(w.imag - zero.eta_or_x) <= FOUND * abs(w):
+            tolerance = HOPF_TOLERANCE * abs(w)
+            if abs(w.real) <= tolerance and abs(w.imag - zero.eta_or_x) <= tolerance:
                 return Onset(zero.p, zero.eta_or_x)
         middle = (a + b) / 2
         w = leading_eigenvalue(replace(rod, F=middle))
         if w.real < 0:
-            a, below = middle, w
+            a = middle
+            below = w
         else:
-            b, above = middle, w
-    raise Unsolvable(f"what grows from F = {a:g} on does not oscillate there")
+            b = middle
+            above = w
+    raise Unsolvable(f"the mode that grows above F = {a:g} does not oscillate there")
 
 
 def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod on the branch from a Hopf point below its force, on a coarse mesh.
 
-    workspace: memory of Newton's matrices. Raises Unsolvable where there is none: the branch goes to smaller
-    forces, or cannot be followed.
+    workspace: memory of Newton's matrices. Raises Unsolvable if the branch leads to smaller forces or cannot
+    be followed.
     """
     rod = form.rod
     at = replace(rod, F=hopf.F)
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude > 0:
-        raise Unsolvable(f"the cycles from the Hopf point at F = {hopf.F:g} go to smaller forces")
-    if rod.F <= hopf.F * (1 + NEAREST):
+        raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} leads to smaller forces")
+    if rod.F <= hopf.F * (1 + DIRECT_DISTANCE):
         return orbit_of(normal, replace(form, mesh=normal.form.mesh))
     order = max(LEAST_ORDER, int(ORDER_PER_WAVE * 2.5 * abs(rod.F) ** 0.5))
     coarse = replace(form, mesh=mesh(1, order))
-    for part in STARTS:
+    for distance in START_DISTANCES:
         try:
-            return _followed_from(normal, min(rod.F, hopf.F * (1 + part)), coarse, workspace)
+            return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why
 
 
 def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
-    """The orbit to which a rod settles from a small tip deflection in its leading mode, by its normal form.
+    """The small orbit at which a motion from a small tip deflection in the leading mode settles.
 
-    w: the leading eigenvalue of the straight rod. Raises Unsolvable where the normal form does not tell: the
-    rod is far from a Hopf point, the start too large, another mode grows, or the growth does not saturate.
+    The normal form gives the orbit. w: the leading eigenvalue of the straight rod. Raises Unsolvable where
+    the normal form is not valid: the rod is far from a Hopf point, the start is too large, another mode may
+    grow, or the Hopf point is subcritical.
     """
     if not (w.real > 0 and w.imag > 0):
-        raise Unsolvable("the leading mode is no growing pair")
+        raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = eigenvalue_newton(w, form.rod.coefficients, form.rod.direction("F"))[1]
     rate = form.rod.F * slope.real
-    if not w.real <= NEAREST * rate:
+    if not w.real <= DIRECT_DISTANCE * rate:
         raise Unsolvable("no Hopf point is near")
     normal = _normal_form(form, w)
     if not normal.supercritical:
-        raise Unsolvable("the Hopf point that is near is subcritical")
-    if not amplitude**2 <= NEAREST * rate / -normal.c.real:
+        raise Unsolvable("the nearby Hopf point is subcritical")
+    if not amplitude**2 <= DIRECT_DISTANCE * rate / -normal.c.real:
         raise Unsolvable("the start is too large for the normal form")
     if count_right_of(-BEHIND * abs(w), form.rod).number != 2:
         raise Unsolvable("another mode may grow")
@@ -147,31 +161,31 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
 
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
-    """Of an eigenvalue that is exact, which the mesh has only nearly."""
+    """The normal form with the exact eigenvalue in place of the mesh's approximation."""
     normal = accurate_normal_form(form.rod, w, NORMAL_FORM_ACCURACY)
     return replace(normal, w=w)
 
 
-def _followed_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
-    """The orbit of a rod by way of the one that the normal form predicts at a force; raises Unsolvable."""
+def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
+    """The orbit of a rod, followed from the normal form's orbit at the force F; raises Unsolvable."""
     start = orbit_of(normal, replace(form, rod=replace(form.rod, F=F)))
     found = at_orbit(newton(start, TOLERANCE, workspace, "F"), TOLERANCE, "F")
     squared = normal.cycle(F)[0]
     if not 0.3 < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < 3.0:
-        raise Unsolvable(f"no cycle near the one that the Hopf point at F = {normal.F:g} predicts")
+        raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
-    return in_steps(followed_from(found, None, "F"), form, "F", TOLERANCE, workspace).orbit
+    return in_steps(predictor_from(found, None, "F"), form, "F", TOLERANCE, workspace).orbit
 
 
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
-    """The cycle that the normal form predicts for a rod at a force near its own."""
+    """The cycle predicted by the normal form for a rod at a nearby force."""
     squared, frequency = normal.cycle(form.rod.F)
     return orbit_with(normal, form, squared**0.5, frequency)
 
 
 def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
-    """A motion of a normal form as an orbit of a rod; the largest tip y in L, frequency in 1/tau2."""
+    """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
     X = normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
     S, V = normal.form.fields(X)
     E = normal.form.mesh.evaluation(form.mesh.positions)

@@ -1,10 +1,11 @@
-"""The limit cycle of one rod, from a start to its numbers (paper, Sec. VII).
+"""The limit cycle of one rod (paper, Sec. VII): task `limit_cycle` with `method: collocation`.
 
-The rod starts from its leading eigenmode, or from a neighbour's cycle. From the mode its motion is followed
-until it comes near a cycle (`transient`); beside a Hopf point the normal form predicts where it goes
-(`small_motion`), and a neighbour predicts the cycle (`neighbour`). Newton's method then solves for the
-periodic orbit on meshes of its own choice (`accuracy`). It is called a cycle only if it is proved stable by
-its multipliers; that two peaks are close proves nothing near the Hopf point, where motions decay slowly.
+The rod starts from its leading eigenmode or from a neighbour's cycle. A motion from the eigenmode is
+integrated until it approaches a cycle (`transient`). Near a Hopf point the normal form predicts where the
+motion settles (`small_motion`), and a neighbour's cycle predicts the cycle of this rod (`neighbour`).
+Newton's method then solves for the periodic orbit on meshes chosen for the requested accuracy (`accuracy`).
+Only the Floquet multipliers decide whether the orbit is a stable cycle: near a Hopf point, where motions
+decay slowly, two successive peaks of the motion may agree although no cycle exists.
 """
 
 from contextlib import suppress
@@ -31,18 +32,19 @@ from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
 from .transient.stepped_rod import motion_resolution
-from .transient.torus import torus_or
+from .transient.torus import classify_quasiperiodic
 from .transient.transient import Transient, TransientOutcome
 
 __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "warm_up"]
 
 KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
-"""Period in tau2 of the rod (40, 1e4, 1e2, 1e-2, 1), which a displacement-form code confirms, and how far
-off it may come out at the accuracy that is asked of it here."""
+"""Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
+displacement-form code, and the relative deviation accepted by `warm_up`."""
 MOTION_ACCURACY = 1e-5
-"""Of the mesh on which the motion is followed: it decides the basin, Newton's method supplies the digits."""
+"""Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction; Newton's
+method supplies the digits of the cycle."""
 STORED_MULTIPLIERS, LEAST_MULTIPLIER = 6, 1e-6
-"""Floquet multipliers that are stored, and the least modulus of one."""
+"""Number of stored Floquet multipliers, and the smallest modulus of a stored multiplier."""
 NO_MULTIPLIER = complex(nan, nan)
 """Stored for multipliers below LEAST_MULTIPLIER."""
 
@@ -54,15 +56,16 @@ def solve_cycle(
     along: str | None = None,
     workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
-    """The cycle that the rod reaches from its leading mode, or that a neighbour's `Cycle.neighbour` leads to.
+    """The cycle that the rod reaches from its leading mode, or from a neighbour's cycle.
 
-    start: the neighbour. along: the parameter by which neighbours differ. workspace: memory of Newton's
-    matrices that rods share; without it the rod has its own. Failures are a status, never an exception.
+    start: `Cycle.neighbour` of the previous point of a chain. along: name of the parameter that varies along
+    the chain. workspace: memory of Newton's matrices, shared by many rods; None makes a new workspace. A
+    failure becomes a status; no exception is raised.
     """
     memory = workspace or NewtonWorkspace()
 
     def failed(cause: str) -> Cycle:
-        forget_integrators()  # a PETSc object is not usable after an error inside it
+        forget_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
@@ -74,23 +77,23 @@ def solve_cycle(
 
 
 def warm_up() -> None:
-    """Loads what is compiled and created at first use, so that no point pays for it.
+    """Triggers compilation and caches once, so that no timed point includes them.
 
-    Raises EnvironmentIncomplete if options of the prefix cycle_ lose the cycle of a rod whose cycle is known.
+    Raises EnvironmentIncomplete if PETSc options with the prefix cycle_ spoil the cycle of a reference rod.
     """
     rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
     cycle = solve_cycle(rod, request, None, "F")
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
-    off = abs(cycle.measures.period / KNOWN_PERIOD - 1)
-    known = cycle.status == CycleStatus.cycle and off < KNOWN_WITHIN
+    deviation = abs(cycle.measures.period / KNOWN_PERIOD - 1)
+    reproduced = cycle.status == CycleStatus.cycle and deviation < KNOWN_WITHIN
     given = options(CYCLE_PREFIX)
-    if given and not known:
-        said = f"{cycle.status.name} {cycle.message}".strip()
+    if given and not reproduced:
+        outcome = f"{cycle.status.name} {cycle.message}".strip()
         raise EnvironmentIncomplete(
-            f"with the PETSc options '{given}' a rod whose cycle is known ends as '{said}', so the task "
-            "limit_cycle cannot run; remove them"
+            f"with the PETSc options '{given}' the reference rod, whose cycle is known, ends as '{outcome}', "
+            "so the task limit_cycle cannot run; remove these options"
         )
 
 
@@ -116,26 +119,27 @@ def _solve(
         found = small_cycle(form, w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
-        return _handed_on(cycle, found, neighbour, along, request.accuracy)
-    faded = decay(rod, w, request.amplitude) if neighbour is None else ""
-    if faded and not request.transient:
-        return replace(straight, message=faded)
+        return _with_chain_state(cycle, found, neighbour, along, request.accuracy)
+    decays = decay(rod, w, request.amplitude) if neighbour is None else ""
+    if decays and not request.transient:
+        return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
     transient = Transient(form, stability, request, along, unstable, workspace)
     end = _from_motion(transient, request, neighbour)
     cycle = _after_motion(straight, transient, end, request)
-    if faded:
-        return replace(cycle, message=faded)
+    if decays:
+        return replace(cycle, message=decays)
     cycle = replace(cycle, status=end.status, message=end.message)
     if end.found is None:
         return cycle if end.around is None else _with_multipliers(cycle, end.around)
-    return _handed_on(_with_numbers(cycle, end.found, request), end.found, None, along, request.accuracy)
+    cycle = _with_numbers(cycle, end.found, request)
+    return _with_chain_state(cycle, end.found, None, along, request.accuracy)
 
 
 def _after_motion(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome with what the motion took, and its path where it is asked for."""
+    """The outcome with the number of returns of the motion, its mesh, and its stored path if requested."""
     return replace(
         straight,
         periods=end.periods,
@@ -145,10 +149,10 @@ def _after_motion(
     )
 
 
-def _handed_on(
+def _with_chain_state(
     cycle: Cycle, found: RefinedCycle, before: Neighbour | None, along: str | None, accuracy: float
 ) -> Cycle:
-    """The cycle with what the next point starts from, where points follow each other."""
+    """The cycle with the data from which the next point of a chain starts; unchanged outside a chain."""
     if along is None:
         return cycle
     leading = complex(cycle.linear_growth_rate, cycle.linear_frequency)
@@ -156,14 +160,14 @@ def _handed_on(
 
 
 def _by_the_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The same, but straight only where the spectrum says that the straight rod is stable."""
+    """The cycle, with the status `straight` withdrawn unless the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.doubt)
 
 
 def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The same, and whether the rod has another stable state."""
+    """The cycle with the second stable state of the rod, as far as it is known."""
     state, F, why = second_state(rod, cycle.status, stability.stable)
     message = "; ".join(filter(None, (cycle.message, why)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
@@ -176,7 +180,10 @@ def _from_hopf(
     stability: StraightRod,
     workspace: NewtonWorkspace,
 ) -> Cycle:
-    """The cycle on the branch from the Hopf point; straight: the outcome where there is none below."""
+    """The cycle on the branch from the Hopf point below the rod's force.
+
+    straight: outcome if no Hopf point lies below the force.
+    """
     try:
         hopf = hopf_point_below(form.rod)
         if hopf is None:
@@ -192,23 +199,25 @@ def _from_hopf(
 def _from_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
-    """Where the rod goes from its leading mode, or from a state of its neighbour's cycle."""
+    """Outcome of the motion from the leading mode, or from a state of the neighbour's cycle."""
     beam = transient.beam
     if neighbour is None:
-        return torus_or(transient.follow(request.amplitude * transient.mode.z.real), transient)
-    orbit = neighbour.branch.orbit
-    stresses = orbit.form.stresses(orbit.start) @ orbit.form.mesh.evaluation(beam.mesh.positions).T
-    return torus_or(transient.follow(beam.scaled(stresses)), transient)
+        start = request.amplitude * transient.mode.z.real
+    else:
+        orbit = neighbour.branch.orbit
+        to_mesh = orbit.form.mesh.evaluation(beam.mesh.positions).T
+        start = beam.scaled(orbit.form.stresses(orbit.start) @ to_mesh)
+    return classify_quasiperiodic(transient.follow(start), transient)
 
 
 def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
-    """The outcome with the numbers of its cycle."""
+    """The outcome with the measures, errors and multipliers of its cycle."""
     cycle = measured(cycle, request, found.path, found.measures, found.errors)
     return _with_multipliers(cycle, found)
 
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
-    """The outcome with the multipliers of a cycle and their error."""
+    """The outcome with the stored multipliers of a cycle and their error."""
     mu = first_of(found.multipliers, STORED_MULTIPLIERS, NO_MULTIPLIER)
     mu[np.abs(mu) < LEAST_MULTIPLIER] = NO_MULTIPLIER
     return replace(

@@ -1,9 +1,9 @@
-"""The limit cycle of one rod by time integration alone: ARKIMEX marches until the motion repeats.
+"""The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-Neither collocation nor D takes part, and no Floquet multiplier is known: that the motion settles shows that
-the cycle is stable in the plane. Period and extrema are those of the motion, twice: the second time on a
-finer mesh with a smaller tolerance. What the two differ by is the error. Near a Hopf point, where motions
-settle slowly, the periods allowed may not be enough.
+ARKIMEX integrates the motion until it repeats. Neither collocation nor D takes part, and no Floquet
+multiplier is computed; a motion that settles shows that the cycle is stable in the plane. Period and extrema
+are measured on two settled motions, the second on a finer mesh with a smaller tolerance; their difference is
+the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
 """
 
 from collections import deque
@@ -35,37 +35,37 @@ from .transient.returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
     angle_weights,
+    early_end_reason,
     repetition,
     section_crossings,
-    trouble,
     until_returns,
 )
 from .transient.stepped_rod import motion_resolution, near_rod
 
 TOLERANCE = 0.01
-"""Local tolerance of the integrator in units of the accuracy: errors of cycles are up to ten times it."""
-TIGHTER, MORE_ORDERS = 0.2, 2
-"""Tolerance of the second integration in units of the first's, and orders that its mesh has more."""
+"""Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as much."""
+TOLERANCE_RATIO, MORE_ORDERS = 0.2, 2
+"""Tolerance of the second integration in units of the first one's, and additional orders of its mesh."""
 MOST_PAIRS = 3
-"""Pairs of integrations, each with the smaller tolerance of the one before as its larger one."""
+"""Maximum number of comparisons; the finer integration of a pair is the coarser one of the next."""
 SETTLED = 0.1
-"""What is left of the way to the cycle when a motion has settled, relative, in units of the accuracy."""
+"""Relative distance from the cycle, in units of the accuracy, at which a motion has settled."""
 NOISE = 10.0
-"""Distance of two returns, in units of the tolerance, that may be the integrator's error."""
+"""Distance of two returns, in units of the tolerance, that the integrator's error may cause."""
 CHUNK = 5
-"""Returns of the tip from one judgement to the next."""
+"""Returns of the tip between two tests for repetition."""
 SAFETY = 2.0
-"""Factor on what two integrations differ by."""
-FARTHER = 2.0
-"""A rod in a limit is replaced by one near it. The cycle of a rod so many times as far from the limit differs
-from its cycle as that differs from the limit's, for cycles change in proportion."""
+"""Safety factor on the difference of two integrations."""
+LIMIT_DISTANCE_RATIO = 2.0
+"""Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
+proportion to the distance, so the cycles' difference is the error of the nearer approximation."""
 STAGES, INTERVALS = 3, 48
-"""Of the orbit that is measured: times at which the motion is interpolated, for each return of the tip."""
+"""Collocation stages of the measured orbit, and its intervals per return of the tip."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """Where the motion is when it has settled: z, (unknowns,), and returns of the tip in a period."""
+    """A settled motion: its state z, (unknowns,), returns of the tip per period, and the last time step."""
 
     z: Array
     turns: int
@@ -73,7 +73,7 @@ class _Settled:
 
 
 class _Ended(Exception):
-    """The motion ends otherwise than on a cycle."""
+    """The motion has an outcome that is not a cycle."""
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
         super().__init__(why)
@@ -81,20 +81,21 @@ class _Ended(Exception):
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
-    """The cycle that the rod reaches from its leading mode; failures are a status, never an exception."""
+    """The cycle that the rod reaches from its leading mode; a failure becomes a status."""
 
     def failed(cause: str) -> Cycle:
-        forget_integrators()  # a PETSc object is not usable after an error inside it
+        forget_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
     return solved(lambda: _Marching(rod, request).cycle(), failed)
 
 
 class _Marching:
-    """The motion of one rod, on one mesh after the other."""
+    """The motion of one rod, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
-        self.request, self.limit, self.rod = request, rod, near_rod(rod)
+        self.request, self.limit = request, rod
+        self.rod = near_rod(rod)
         self.resolution = motion_resolution(rod, request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=TOLERANCE * request.accuracy)
         self.beam = self._beam()
@@ -102,8 +103,8 @@ class _Marching:
         self.waited = 0
 
     def cycle(self) -> Cycle:
-        """The outcome."""
-        known = Cycle(
+        """The outcome: a cycle with errors, or a different end of the motion."""
+        straight = Cycle(
             status=MarchedStatus.straight,
             linear_growth_rate=self.mode.w.real,
             linear_frequency=abs(self.mode.w.imag),
@@ -121,27 +122,29 @@ class _Marching:
             if self.rod != self.limit:
                 errors = self._errors_of_the_limit(settled, path, errors)
         except _Ended as end:
-            return replace(known, status=end.status, message=end.why, periods=self.waited)
-        return self._measured(known, path, errors)
+            return replace(straight, status=end.status, message=end.why, periods=self.waited)
+        return self._measured(straight, path, errors)
 
     def _beam(self) -> Beam:
         return Beam(self.rod, mesh(self.resolution.elements, self.resolution.order))
 
     def _refined(self, settled: _Settled) -> _Settled:
-        """The same motion on a finer mesh with a smaller tolerance, from where it has settled."""
+        """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
         before = self.beam
         self.resolution = replace(self.resolution, order=self.resolution.order + MORE_ORDERS)
-        self.scheme = replace(self.scheme, tolerance=TIGHTER * self.scheme.tolerance)
+        self.scheme = replace(self.scheme, tolerance=TOLERANCE_RATIO * self.scheme.tolerance)
         self.beam = self._beam()
         stresses = before.stresses(settled.z) @ before.mesh.evaluation(self.beam.mesh.positions).T
         z = self.beam.scaled(stresses)
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _Settled:
-        """Where the motion from z, (unknowns,), has settled; raises _Ended."""
+        """The settled motion that starts from z, (unknowns,); raises _Ended."""
         past: deque[Array] = deque(maxlen=LONGEST_ORBIT + 1)
-        row, step = angle_weights(self.beam), self.mode.period / 1000
-        last, rate, most = nan, 0.0, self.request.most_periods
+        row = angle_weights(self.beam)
+        step = self.mode.period / 1000
+        last, rate = nan, 0.0
+        most = self.request.most_periods
         while self.waited < most:
             report(lambda: Whereabouts(f"{self.waited} of at most {most} returns of the tip"))
             run = self._run(z, 3 * CHUNK * self.mode.period, step, until_returns(row, z, CHUNK))
@@ -155,20 +158,22 @@ class _Marching:
                 continue
             turns, distance = repetition(list(past))
             noise = NOISE * self.scheme.tolerance
+            # Within the noise the quotient of two distances says nothing about the contraction per return.
             if last > noise:
                 rate = min(max(distance, noise) / last, 1.0) ** (turns / CHUNK)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
+            # A geometric sequence of distances has distance/(1 - rate) left to its limit.
             if distance <= SETTLED * self.request.accuracy * (1 - rate):
                 return _Settled(z, turns, step)
         why = f"{self.waited} returns of the tip, the last at a relative distance of {last:.1e}"
         raise _Ended(MarchedStatus.not_settled, why)
 
     def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
-        """A run that comes to its end; raises _Ended where it does not."""
+        """A complete run; raises _Ended if the run fails or leaves the model."""
         run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
-        if why := trouble(self.beam, run, self.waited):
+        if why := early_end_reason(self.beam, run, self.waited):
             left = run.ending == Ending.left_the_model
             raise _Ended(MarchedStatus.left_the_model if left else MarchedStatus.failed, why)
         return run
@@ -176,10 +181,10 @@ class _Marching:
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
         """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 on a run.
 
-        Between two steps the cubic through them is less accurate than the steps, so each crossing is marched
-        to from the step before it.
+        Each crossing is integrated to from the step before: a cubic between two steps is less accurate.
         """
-        row, times = angle_weights(self.beam), section_crossings(self.beam, run)[0]
+        times = section_crossings(self.beam, run)[0]
+        row = angle_weights(self.beam)
         states = np.empty((len(times), self.beam.unknowns))
         for i, rough in enumerate(times):
             before = int(np.searchsorted(run.times, rough, side="right")) - 1
@@ -207,13 +212,14 @@ class _Marching:
         return CyclePath(Orbit.of(form, NONE, period, stressed(self.beam, form, states), STAGES))
 
     def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """The errors with what the rod is off by that stands for a limit; raises _Ended."""
+        """The errors plus the effect of integrating a rod near the limit instead of in it; raises _Ended."""
         known, limit = path.orbit.form.rod, self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
-        coordinates = {name: FARTHER * known.coordinate(name) for name in in_limits}
+        coordinates = {name: LIMIT_DISTANCE_RATIO * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
-        more = _errors(path, self._path(self._settled(relaxed(self.beam, settled.z, self.mode.period))), 0.0)
+        z = relaxed(self.beam, settled.z, self.mode.period)
+        more = _errors(path, self._path(self._settled(z)), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,
             errors.amplitude_error + more.amplitude_error,
@@ -221,24 +227,24 @@ class _Marching:
             nan,
         )
 
-    def _measured(self, known: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
-        """The cycle with its numbers."""
+    def _measured(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
+        """The outcome with the cycle's numbers."""
         enough = errors.largest <= self.request.accuracy
         cycle = replace(
-            known,
+            straight,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
-            message="" if enough else f"its errors are up to {errors.largest:.1e}",
+            message="" if enough else f"the cycle's errors are up to {errors.largest:.1e}",
             periods=self.waited,
         )
         return measured(cycle, self.request, path, measures_of(path), errors)
 
 
 def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
-    """Errors by what two integrations differ by, and a further share of each."""
+    """Errors by the difference of two integrations, plus `share`, the distance left of a settled motion."""
     a, b = one.extrema, other.extrema
     size = abs(b["tip_y_max"])
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
     worst = max(abs(a[name] - b[name]) for name in a) / size
-    period, height, worst = (float(SAFETY * apart + share) for apart in (period, height, worst))
+    period, height, worst = (float(SAFETY * difference + share) for difference in (period, height, worst))
     return CycleErrors(period, height, worst, nan)

@@ -1,10 +1,9 @@
-"""From a neighbour's cycle to that of the next point of a sweep: the tangent predicts, Newton corrects.
+"""Chain of cycles over the points of a sweep: each cycle predicts that of the next point, its neighbour.
 
-A neighbour hands on its cycle with its tangent along the axis; the polynomial through it and those before it
-is mostly so near to the next that one elimination gives the cycle and its multipliers. Where the step is too
-long for Newton's method it is divided, on a coarser mesh. The mesh goes on too, and what is known of its
-errors. All of it follows from the neighbour alone, so that a chain of points has the same content however
-often it was interrupted.
+The prediction is a polynomial through a cycle, the tangent along the axis, and earlier cycles. A single
+elimination after the prediction usually gives the next cycle with the multipliers. A step too long for
+Newton's method is divided, on a coarser mesh. Mesh and calibrated errors pass along the chain as well.
+Everything follows from the neighbour alone, so that an interrupted chain resumes with the same content.
 """
 
 from dataclasses import dataclass
@@ -31,29 +30,30 @@ from .accuracy.refinement import (
     matrix_distance,
     newton_tolerance,
 )
-from .along_parameter import Followed, followed_from, in_steps, near_prediction, relative_distance
+from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
 
-ENOUGH = 0.9
-"""Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh."""
-WORTHWHILE, WELL_WORTHWHILE = 0.8, 0.5
-"""Share of its cost that another mesh may have to be taken instead: where nothing else is lost, and where a
-calibration is, which costs as much as three cycles."""
-UNKNOWN = complex(nan, nan)
+KEPT_MESH_ERROR = 0.9
+"""Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
+NEW_MESH_COST, CALIBRATED_MESH_COST = 0.8, 0.5
+"""Largest cost of a mesh that replaces the present mesh, in units of the present cost. The second share holds
+where the change loses a valid calibration, which costs as much as three cycles."""
+UNKNOWN_EIGENVALUE = complex(nan, nan)
+"""Leading eigenvalue where it is not known."""
 Arrays = dict[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """A cycle, and the mesh on which the next point is solved.
+    """Data from which the next point of a chain starts: predictor of the cycle, and mesh.
 
-    calibration: of that mesh, or outdated. leading: eigenvalue of the straight rod, 1/tau2, not below the
-    real axis; NaN where it is not known.
+    calibration: errors of the mesh, perhaps outdated. leading: leading eigenvalue of the straight rod in
+    1/tau2, Im >= 0; NaN if not known.
     """
 
-    branch: Followed
+    branch: CyclePredictor
     next_mesh: OrbitMesh
     calibration: Calibration
-    leading: complex = UNKNOWN
+    leading: complex = UNKNOWN_EIGENVALUE
 
     @classmethod
     def of(
@@ -62,15 +62,16 @@ class Neighbour:
         before: "Neighbour | None",
         name: str,
         accuracy: float,
-        leading: complex = UNKNOWN,
+        leading: complex = UNKNOWN_EIGENVALUE,
     ) -> "Neighbour":
-        """From a cycle that was solved with its tangent; before: its own neighbour."""
-        branch = followed_from(found.fine, before.branch if before else None, name)
+        """Data of a cycle that was solved with its tangent. before: data of the previous point."""
+        branch = predictor_from(found.fine, before.branch if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), leading)
 
     def arrays(self) -> Arrays:
-        """All of it as named arrays: orbit (N,), data (m, N + 1), places and orders (m,), and numbers."""
-        branch, orbit = self.branch, self.branch.orbit
+        """All data as named arrays: orbit (N,), data (m, N + 1), places and orders (m,), and numbers."""
+        branch = self.branch
+        orbit = branch.orbit
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
             "symmetric": np.array(orbit.symmetric),
@@ -85,38 +86,43 @@ class Neighbour:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Neighbour":
-        """The reverse of `arrays`, of the shapes given there."""
-        here, there = (OrbitMesh(*map(int, arrays[name])) for name in ("mesh", "next_mesh"))
+        """The neighbour from stored `arrays`, with the shapes given there."""
+        mesh = OrbitMesh(*map(int, arrays["mesh"]))
+        next_mesh = OrbitMesh(*map(int, arrays["next_mesh"]))
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
         rod = Rod(**parameters)
         symmetry = REFLECTION if arrays["symmetric"] else NONE
-        form = StressForm(rod, here.grid)
-        orbit = Orbit(form, symmetry, here.intervals, here.stages, arrays["orbit"])
-        branch = Followed(orbit, *(arrays[name] for name in ("places", "orders", "data")))
-        return cls(branch, there, Calibration.from_arrays(arrays), complex(arrays["leading"]))
+        form = StressForm(rod, mesh.grid)
+        orbit = Orbit(form, symmetry, mesh.intervals, mesh.stages, arrays["orbit"])
+        branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
+        return cls(branch, next_mesh, Calibration.from_arrays(arrays), complex(arrays["leading"]))
 
 
 def _next_mesh(
     found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
-    """The mesh for the cycle after this one, and its calibration, or an outdated one."""
-    here, known = mesh_of(found.orbit), found.calibration
-    fits = found.errors.largest <= ENOUGH * accuracy
+    """The mesh for the next cycle, and its calibration, outdated if the mesh has to be measured."""
+    present = mesh_of(found.orbit)
+    known = found.calibration
+    fits = found.errors.largest <= KEPT_MESH_ERROR * accuracy
     if known.reach and not fits:
-        return here, known.outdated
+        # Extrapolated errors that are too large are measured on this mesh before another mesh is planned.
+        return present, known.outdated
     share = inf if not fits else _share_of_cost(found, before, name)
-    planned = known.planned(accuracy) if share else here
-    return (planned, known.outdated) if share and planned.cost <= share * here.cost else (here, known)
+    planned = known.planned(accuracy) if share else present
+    if share and planned.cost <= share * present.cost:
+        return planned, known.outdated
+    return present, known
 
 
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
-    """Share of its mesh's cost with which another one is taken for the cycle after this one; 0 for none."""
+    """Largest cost of a replacing mesh in units of the present mesh's cost; 0 to keep the present mesh."""
     if before is None:
-        return WORTHWHILE  # the first mesh of a chain is no more than a guess
+        return NEW_MESH_COST  # an orbit's tails chose the first mesh of a chain, not measured errors
     if not found.calibration.reach:
-        return WELL_WORTHWHILE
+        return CALIBRATED_MESH_COST
     step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
-    return 0.0 if found.calibration.lasts(step) else WORTHWHILE
+    return 0.0 if found.calibration.lasts(step) else NEW_MESH_COST
 
 
 def followed_cycle(
@@ -124,10 +130,12 @@ def followed_cycle(
 ) -> RefinedCycle:
     """The cycle of a rod that differs from the neighbour's in one parameter; raises Unsolvable.
 
-    form: the rod, on any mesh; workspace: memory of the matrices.
+    form: the rod, on any mesh. name: the parameter. workspace: memory of the matrices.
     """
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
-        raise Unsolvable("the neighbour has other unknowns")
+        raise Unsolvable(
+            "the neighbour has other unknowns: Omega is an unknown only at small rotational drag"
+        )
     found = _converged(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
     if known.holds:
@@ -140,11 +148,12 @@ def followed_cycle(
 def _converged(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> Converged:
-    """The cycle on the mesh that the neighbour says, with its tangent and its multipliers."""
-    tolerance, aim = newton_tolerance(accuracy), neighbour.next_mesh
+    """The cycle on the neighbour's `next_mesh`, with a matrix for the tangent and the multipliers."""
+    tolerance = newton_tolerance(accuracy)
+    target = neighbour.next_mesh
     try:
-        found = near_prediction(neighbour.branch.on(aim).at(form, name), tolerance, workspace, name)
+        found = near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
     except Unsolvable:
-        start = in_steps(neighbour.branch.on(aim.coarser), form, name, tolerance, workspace)
-        found = newton(aim.carry(start.orbit), tolerance, workspace, name)
+        start = in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)
+        found = newton(target.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)

@@ -1,7 +1,7 @@
-"""Whether a rod has another stable state than the one in which its point ended.
+"""Second stable state of a rod, besides the state in which its point ended.
 
-Where the straight rod is stable and the point ended elsewhere it has two for sure. Where the point ended at
-the straight rod, a subcritical Hopf point next to it says that another is possible, and no more.
+If the straight rod is stable and the point ended elsewhere, the rod has two stable states. If the point ended
+at the straight rod, a nearby subcritical Hopf point makes a second state possible, but does not prove it.
 """
 
 from enum import IntEnum
@@ -15,29 +15,29 @@ from .status import CycleStatus
 
 
 class SecondState(IntEnum):
-    """What is known of a second stable state; the value is what the result file stores."""
+    """Knowledge about a second stable state; the result file stores the value."""
 
-    not_told = -1
+    not_known = -1
     none_known = 0
     straight = 1
     cycle_possible = 2
 
 
 def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[SecondState, float, str]:
-    """(what is known, force of the subcritical Hopf point or NaN, a sentence) of a point that ended so.
+    """(second state, force of the subcritical Hopf point or NaN, a sentence) of a point.
 
-    stable: whether the straight rod is; None where it is not known.
+    status: outcome of the point. stable: whether the straight rod is stable; None if this is not known.
     """
     if status == CycleStatus.failed or stable is None:
-        return SecondState.not_told, nan, ""
+        return SecondState.not_known, nan, ""
     if not stable:
         return SecondState.none_known, nan, ""
     if status != CycleStatus.straight:
-        return SecondState.straight, nan, "the straight rod is stable here too"
+        return SecondState.straight, nan, "the straight rod is stable as well"
     try:
         beside = subcritical_hopf_beside(rod)
     except FAILURES:
-        return SecondState.not_told, nan, ""
+        return SecondState.not_known, nan, ""
     if beside is None:
         return SecondState.none_known, nan, ""
     return SecondState.cycle_possible, beside.F, _sentence(beside)
@@ -46,6 +46,6 @@ def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[Se
 def _sentence(beside: SubcriticalHopf) -> str:
     return (
         f"the Hopf point at F = {beside.F:.9g} is subcritical: from a start beyond its unstable cycle, whose "
-        f"largest y is about {beside.unstable_y:.2g} L by its normal form, the rod may come to a stable "
-        "cycle; the task branch follows it"
+        f"largest y is about {beside.unstable_y:.2g} L by the normal form, the rod may reach a stable cycle; "
+        "task `branch` follows this cycle"
     )

@@ -1,7 +1,8 @@
-"""Where a small motion about the straight rod goes, by the normal form of its leading mode.
+"""Outcome of a small motion about the straight rod, from the normal form of its leading mode.
 
-No motion is followed: beside a supercritical Hopf point it grows or decays to the small cycle there, and it
-decays where the cubic part of its growth rate is small beside the linear one.
+No motion is integrated. Near a supercritical Hopf point the motion grows or decays to the small cycle there.
+Where the cubic part of its growth rate is small compared with the linear part, the motion decays to the
+straight rod.
 """
 
 from ...discretization.stress.form import StressForm
@@ -13,36 +14,37 @@ from .accuracy.refinement import RefinedCycle, refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit
 from .status import CycleStatus
-from .transient.transient import NEUTRAL
+from .transient.transient import NEUTRAL_DISTANCE
 
-FADING = 0.02
-"""Cubic part of the growth rate, relative, below which a small motion decays as the linear one does."""
+WEAK_BENDING = 0.02
+"""Cubic part of the growth rate, in units of the linear part, below which the linear part decides."""
 
 
 def small_cycle(
     form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
-    """The stable cycle just above a Hopf point to which the start grows or decays; None where it is not one.
+    """The stable small cycle near a Hopf point at which the start settles; None if no such cycle is known.
 
-    w: the leading eigenvalue of the straight rod. workspace: memory of Newton's matrices.
+    w: the leading eigenvalue of the straight rod. along: parameter of the cycle's tangent. workspace: memory
+    of Newton's matrices.
     """
     try:
         found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, workspace, along)
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= NEUTRAL else None
+    return found if settled and 1 - found.largest_multiplier >= NEUTRAL_DISTANCE else None
 
 
 def decay(rod: Rod, w: complex, amplitude: float) -> str:
-    """Why a small motion in the leading mode decays; empty where only the motion itself can tell."""
+    """The reason why a small motion in the leading mode decays; empty if only an integration can decide."""
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, w, FADING)
+        normal = accurate_normal_form(rod, w, WEAK_BENDING)
     except Unsolvable:
         return ""
     share = abs(normal.c.real) * amplitude**2 / -w.real
-    return (
-        f"decays: what bends its growth rate is {share:.0e} of it at this amplitude" if share < FADING else ""
-    )
+    if share >= WEAK_BENDING:
+        return ""
+    return f"decays: at this amplitude the cubic part of the growth rate is {share:.0e} of the linear part"

@@ -1,22 +1,22 @@
-"""How the search for a limit cycle ended: the sentence that the user reads for each outcome."""
+"""Outcomes of a search for a limit cycle, each with the sentence that the user reads."""
 
 from ..status import PointStatus
 
 
 class CycleStatus(PointStatus):
-    """Outcome of a point of the task limit_cycle; it succeeded where the rod's fate is known."""
+    """Outcome of a point of the task limit_cycle; a success where the final state of the rod is known."""
 
     cycle = (
         0,
-        "the rod beats: the cycle closes, and no sooner, all its Floquet multipliers lie inside the circle, "
-        "and its period and largest y are as accurate as asked for",
+        "stable limit cycle in the plane: the minimal period is confirmed, all nontrivial Floquet "
+        "multipliers lie inside the unit circle, and period and largest y are as accurate as requested",
         True,
     )
-    straight = 1, "the rod is straight again, and stays so: nothing beats from this start", True
+    straight = 1, "the rod returns to the straight state, which is stable", True
     not_settled = (
         2,
-        "no stable cycle was found within the periods allowed, or not to the accuracy asked for, as its "
-        "errors say; raise the periods allowed, start from a neighbour's cycle, or ask for a lower accuracy",
+        "no stable cycle was found within the allowed periods, or its errors exceed the requested accuracy; "
+        "raise the allowed periods, start from a neighbour's cycle, or request a lower accuracy",
     )
     left_the_model = (
         3,
@@ -26,15 +26,15 @@ class CycleStatus(PointStatus):
     failed = 4, "the integration failed and nothing is stored; the message says why"
     unstable = (
         5,
-        "the rod can beat so, but leaves this cycle at the least disturbance: a Floquet multiplier lies "
-        "outside the circle",
+        "unstable limit cycle: a Floquet multiplier lies outside the unit circle, so the rod leaves "
+        "this cycle after any disturbance",
         True,
     )
     torus = (
         6,
-        "the rod beats for ever without repeating: the cycle there is unstable by a complex pair of Floquet "
-        "multipliers, and the motion goes round it with a second frequency, as the message says; the "
-        "multipliers are those of the cycle, and nothing else of it is stored",
+        "quasiperiodic motion on a torus: the cycle inside the torus is unstable by a complex pair of "
+        "Floquet multipliers, and the motion has a second frequency, which the message gives; the "
+        "stored multipliers are those of the cycle, of which nothing else is stored",
         True,
     )
 
@@ -44,15 +44,15 @@ class MarchedStatus(PointStatus):
 
     cycle = (
         0,
-        "the rod beats: its motion repeats, and its period and largest y are as accurate as asked for; no "
-        "Floquet multipliers are computed",
+        "limit cycle: the motion repeats, and period and largest y are as accurate as requested; no Floquet "
+        "multipliers are computed",
         True,
     )
-    straight = 1, "the motion has decayed to rounding: nothing beats from this start", True
+    straight = 1, "the motion has decayed to rounding error: the rod returns to the straight state", True
     not_settled = (
         2,
-        "the motion does not repeat within the periods allowed, or not to the accuracy asked for, as its "
-        "errors say; raise the periods allowed, ask for a lower accuracy, or use `method: collocation`",
+        "the motion does not repeat within the allowed periods, or its errors exceed the requested accuracy; "
+        "raise the allowed periods, request a lower accuracy, or use `method: collocation`",
     )
     left_the_model = (
         3,

@@ -1,7 +1,7 @@
-"""The stability of the straight rod, by its spectrum: no motion on a mesh may overrule it.
+"""Stability of the straight rod by its spectrum, which overrules any motion on a mesh.
 
-Next to a Hopf point the mesh of a motion has a Hopf point of its own, and so has the rod near a limit that a
-time stepper follows. The exact leading eigenvalue decides there, within its error.
+Near a Hopf point, the mesh of a motion shifts the Hopf point slightly, as does the replacement of a rod in a
+limit by a rod near the limit. The exact leading eigenvalue decides, within the error estimate.
 """
 
 from dataclasses import dataclass
@@ -13,17 +13,17 @@ from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 SPECTRUM = SpectrumRequest(1, 1e-9, True)
-"""Spectrum request for the straight rod: its leading eigenvalue, proved to lead."""
+"""Spectrum request for the straight rod: the leading eigenvalue, proved to be the leading one."""
 ERRORS_FROM_AXIS = 4.0
-"""Distance from the imaginary axis, in units of its error estimate, beyond which the sign of the growth rate
-is sure: the spectrum's own criterion, so that both always agree."""
+"""Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of the
+growth rate is certain. The spectrum uses the same criterion."""
 
 
 @dataclass(frozen=True, slots=True)
 class StraightRod:
-    """w: leading eigenvalue in 1/tau2, Im w >= 0; error: its error estimate; both NaN where it is not known.
+    """Leading eigenvalue w in 1/tau2, Im w >= 0, and the error estimate; both NaN if not known.
 
-    message: why it is not known.
+    message: the reason for NaN.
     """
 
     w: complex
@@ -32,19 +32,21 @@ class StraightRod:
 
     @property
     def stable(self) -> bool | None:
-        """Whether all small motions decay; None where the error leaves this open."""
+        """Whether all small motions decay; None if the error leaves this open."""
         margin = max(ERRORS_FROM_AXIS * self.error, ON_THE_AXIS * abs(self.w))
-        return self.w.real < 0 if abs(self.w.real) > margin else None  # NaN exceeds nothing
+        # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
+        return self.w.real < 0 if abs(self.w.real) > margin else None
 
     def growth_rate(self, otherwise: float) -> float:
-        """Of the leading mode, 1/tau2: 0 where its sign is open, another value where it is not known."""
+        """Growth rate of the leading mode, 1/tau2: 0 if its sign is open, `otherwise` if the rate is
+        unknown."""
         if isnan(self.error):
             return otherwise
         return 0.0 if self.stable is None else self.w.real
 
     @property
     def doubt(self) -> str:
-        """Why a rod whose motion decays is not called straight; empty where it may be."""
+        """The reason why a rod whose motion decays may not stay straight; empty for a stable straight rod."""
         if self.stable:
             return ""
         if isnan(self.error):
@@ -52,11 +54,14 @@ class StraightRod:
         rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.error:.0e}"
         if self.stable is None:
             return f"{rate}, so whether it stays straight is not decided"
-        return f"{rate}, so it leaves a straight state to which its motion on a mesh comes"
+        return f"{rate}, so it leaves the straight state, to which its motion on a mesh decays"
 
 
 def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest = SPECTRUM) -> StraightRod:
-    """The leading eigenvalue of a rod with its error; near: that of a rod near by, which is followed."""
+    """The leading eigenvalue of a rod with its error.
+
+    near: leading eigenvalue of a similar rod, followed to this rod where possible.
+    """
     followed = None if near is None else followed_leader(rod, near, request.accuracy)
     if followed is not None:
         return StraightRod(followed, root_error(followed, rod.coefficients)[0])

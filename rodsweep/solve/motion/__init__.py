@@ -1,1 +1,1 @@
-"""The nonlinear rod in time, by PETSc TS."""
+"""Time integration of the nonlinear rod by PETSc TS."""

@@ -1,12 +1,11 @@
-"""The rod's equations as C functions that PETSc calls without passing through Python.
+"""Equations of the rod as C functions that PETSc calls without passing through Python.
 
-numba compiles them (`cfunc`), ctypes hands them to libpetsc: with Python between, a Newton iteration of 5 us
-takes 200. PETSc gives each of them one pointer, to the record `context.CONTEXT`; the memory behind it belongs
-to a `Workspace`, which must outlive the TS.
+numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
+iteration of 5 us takes 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`. The
+memory behind this record belongs to a `Workspace`, which must outlive the TS.
 
-The form is dz/dt - f(z) = 0, all of it implicit. An additive split does not pay: with the whole Jacobian of
-the step implicit and only the rest explicit, the axial tension k1 Pi^2 still forces 500 to 1500 steps a
-period.
+The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even with the full Jacobian
+of the step implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
 """
 
 from collections.abc import Mapping
@@ -23,48 +22,49 @@ from ..backend.petsc import PETSc
 from .context import (
     AT_BASE,
     AT_ITERATE,
-    CONTENT,
     CONTEXT,
     HANDLES,
+    MATRIX_STATE,
     MOST_STAGES,
-    TAKEN,
+    OUTPUTS,
     UP_TO_DATE,
     arrays_of,
     matrices_of,
     rod_of,
     roots_of,
 )
-from .petsc_calls import read_array, unread_array, unwrite_array, write_array
+from .petsc_calls import read_array, release_read, release_write, write_array
 from .predictor import begin_step, points_of
 from .stage_newton import newton_test, solve_stage
 from .step_record import take_steps
 
 MIDDLE = 0.5
-"""Where in a step its matrix is made; methods of one stage have it at the start."""
-_dense, _undense = petsc_function("MatDenseGetArray"), petsc_function("MatDenseRestoreArray")
-_content = petsc_function("PetscObjectStateGet")
+"""Time in a step at which the matrix is made, in units of the step; 0 for methods of a single stage."""
+_get_dense = petsc_function("MatDenseGetArray")
+_restore_dense = petsc_function("MatDenseRestoreArray")
+_object_state = petsc_function("PetscObjectStateGet")
 
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
-    """R = Udot - f(U), or Udot alone."""
+    """R = Udot - f(U), or R = Udot where the context asks for it."""
     c = record_at(context, CONTEXT)
-    n, at = c.unknowns, context + TAKEN
-    taken = integers(at, 3)
+    n, at = c.unknowns, context + OUTPUTS
+    outputs = integers(at, 3)
     read_array(U, at)
     read_array(Udot, at + 8)
     write_array(R, at + 16)
-    out, dot = floats(taken[2], n), floats(taken[1], n)
+    out, dot = floats(outputs[2], n), floats(outputs[1], n)
     c.time = t
     if c.without_rate:
         out[:] = dot
     else:
-        rate(floats(taken[0], n), out, roots_of(c), rod_of(c), matrices_of(c))
+        rate(floats(outputs[0], n), out, roots_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
-    unread_array(U, at)
-    unread_array(Udot, at + 8)
-    unwrite_array(R, at + 16)
+    release_read(U, at)
+    release_read(Udot, at + 8)
+    release_write(R, at + 16)
     return 0
 
 
@@ -72,14 +72,14 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
 def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     """F = 0: all of f is implicit.
 
-    Without a right-hand side PETSc from 3.20 on takes the rod for a differential-algebraic system, and makes
-    the first slope of each step by a Newton solve of its own.
+    Without a right-hand side, PETSc from 3.20 on treats the rod as a differential-algebraic system and
+    computes the first slope of each step by an additional Newton solve.
     """
     c = record_at(context, CONTEXT)
-    at = context + TAKEN
+    at = context + OUTPUTS
     write_array(F, at)
     floats(integers(at, 1)[0], c.unknowns)[:] = 0.0
-    unwrite_array(F, at)
+    release_write(F, at)
     return 0
 
 
@@ -87,41 +87,41 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
 def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     ts: int, t: float, U: int, Udot: int, shift: float, A: int, B: int, context: int
 ) -> int:
-    """shift - J, J made anew when `matrix_due` says so; a B nobody touched keeps its factors in PETSc."""
+    """B = shift - J, with J evaluated as `matrix_due` requires; an unchanged B keeps its factors in PETSc."""
     c = record_at(context, CONTEXT)
-    n, at = c.unknowns, context + TAKEN
-    taken = integers(at, 1)
-    _content(B, at)
-    untouched = c.made == B and c.content == taken[0]
+    n, at = c.unknowns, context + OUTPUTS
+    outputs = integers(at, 1)
+    _object_state(B, at)
+    untouched = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
         return 0
     J = floats(c.jacobian, n * n).reshape(n, n)
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
-        rate_jacobian(floats(taken[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
-        unread_array(U, at)
+        rate_jacobian(floats(outputs[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
+        release_read(U, at)
     elif c.matrix_due == AT_BASE:
         rate_jacobian(floats(c.base, n), J, roots_of(c), rod_of(c), matrices_of(c))
-    _dense(B, at)
-    M = floats(taken[0], n * n).reshape(n, n)
+    _get_dense(B, at)
+    M = floats(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift
-    _undense(B, at)
-    c.made = B
-    _content(B, context + CONTENT)
+    _restore_dense(B, at)
+    c.last_matrix = B
+    _object_state(B, context + MATRIX_STATE)
     c.matrix_due, c.shift = UP_TO_DATE, shift
     c.factorisations += 1
     return 0
 
 
 class Workspace:
-    """The memory behind the callbacks of one TS; the rod in it may be changed, the mesh may not."""
+    """Memory behind the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
         n = plane_layout(mesh.nodes).unknowns
         self.base = np.zeros(n)
-        self._mesh = mesh  # PETSc's callbacks read its arrays by address: they must live as long
+        self._mesh = mesh  # the callbacks read the mesh's arrays by address, so the mesh must stay alive
         self._arrays = mesh.matrices._asdict() | {
             "base": self.base,
             "jacobian": np.zeros((n, n)),
@@ -141,12 +141,14 @@ class Workspace:
             self.context[name] = value
 
     def prepare(self, beam: Beam, error: float, floor: float) -> None:
-        """Takes the rod, and the error of a stage (rms) at which Newton's method stops, or may stagnate."""
-        self._rod = arrays_of(beam)  # these, too, are read by address
+        """Sets the rod, and the rms errors of a stage at which Newton's method stops and may stagnate."""
+        self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
         self._set({"components": len(self._rod["tip_stress"])})
-        root, rest = beam.layout.unknowns**0.5, np.zeros(beam.layout.unknowns)
-        straight, pressed = beam.least_stretch(rest), beam.least_stretch(rest - 1)
+        rest = np.zeros(beam.layout.unknowns)
+        root = beam.layout.unknowns**0.5
+        straight = beam.least_stretch(rest)
+        pressed = beam.least_stretch(rest - 1)
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
         self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
         self._set({"small_error": error * root, "rounding": floor * root})
@@ -154,12 +156,14 @@ class Workspace:
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:
-        """Stages are extrapolated as is best for this variant of ARKIMEX, or not at all if it is unknown."""
+        """Sets the extrapolation points of the stages for a variant of ARKIMEX; none for other variants."""
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
-        """Gives the TS, whose options are set, its functions."""
-        context, B, snes = self.context.ctypes.data, matrix.handle, ts.getSNES()
+        """Registers the callbacks in a TS whose options are set."""
+        context = self.context.ctypes.data
+        B = matrix.handle
+        snes = ts.getSNES()
         if ts.getType() == "arkimex":
             call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
             self.predict_as(ts.getARKIMEXType())
@@ -176,14 +180,14 @@ class Workspace:
     def _solve_stages_of(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
-        made = ts, matrix, ksp, *self._vectors
-        self._set({name: made.handle for name, made in zip(HANDLES, made, strict=True)})
+        objects = ts, matrix, ksp, *self._vectors
+        self._set({name: entry.handle for name, entry in zip(HANDLES, objects, strict=True)})
         self.context["most_iterations"] = snes.getTolerances()[3]
         call("SNESShellSetContext", snes.handle, self.context.ctypes.data)
         call("SNESShellSetSolve", snes.handle, solve_stage.address)
 
     def destroy(self) -> None:
-        """Gives memory and PETSc objects back."""
+        """Frees the memory and the PETSc objects."""
         take_steps(self.context)
         for vector in self._vectors:
             vector.destroy()

@@ -1,6 +1,4 @@
-"""The record that every callback of a TS receives: the rod, its mesh, the motion so far, and how Newton's
-method fares.
-"""
+"""Record that every callback of a TS receives: rod, mesh, steps, and the state of Newton's method."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,65 +13,63 @@ from ...model.compiled.compilation import compiled
 from ..backend.c_functions import floats, floats_in, integers
 
 MOST_STAGES, MOST_POINTS = 16, 8
-"""Stages of a step that are remembered, and points through which the next is extrapolated."""
+"""Maximum number of stored stages of a step, and of points through which a stage is extrapolated."""
 
 REAL, WHOLE = "<f8", "<i8"
 ROD = (*(name for name in NodalRod._fields if name != "kept"), "roots")
-"""Addresses of the rod that moves, and of the square roots of its compliances."""
+"""Fields with addresses of the integrated rod's arrays, and of the square roots of its compliances."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Addresses of what a `Workspace` holds: the last Jacobian; the state at which a step's matrix is made;
-times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of the stages of this step and the last; the
-points through which each is extrapolated, (MOST_STAGES, MOST_POINTS); a stage's equation and its rates."""
+"""Fields with addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns); the state at
+which a step's matrix is made, (unknowns,); times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of
+the stages of this step and the last; extrapolation points of each stage, (MOST_STAGES, MOST_POINTS); the
+constant of a stage's equation and the rates f, (unknowns,) each."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
-"""PETSc's objects."""
+"""Fields with handles of PETSc objects."""
 CONTEXT = np.dtype(
     [
         *((name, WHOLE) for name in (*NodeMatrices._fields, *ROD, *ARRAYS, *HANDLES)),
-        ("nodes", WHOLE),  # the tip included
+        ("nodes", WHOLE),  # including the tip
         ("components", WHOLE),  # of a stress
         ("unknowns", WHOLE),
         ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
-        ("shift", REAL),  # with which the matrix was made
-        ("made", WHOLE),  # the matrix that was last made here
-        ("content", WHOLE),  # PETSc's number of its content, which rises with every change, PETSc's included
-        ("factorisations", WHOLE),  # how many, which tests ask
-        ("contraction", REAL),  # rate at which the steps of Newton's method shrink
-        ("measured", WHOLE),  # whether it is that of the present matrix
-        ("growing", WHOLE),  # how many of them in a row have grown
-        ("last_step", REAL),  # the size of the last one: 2-norm, as are the two below
-        ("small_error", REAL),  # error that is small enough
-        ("rounding", REAL),  # the largest step that rounding leaves
+        ("shift", REAL),  # shift of the last matrix
+        ("last_matrix", WHOLE),  # handle of the last matrix
+        ("matrix_state", WHOLE),  # PETSc's state number of this matrix, which increases with every change
+        ("factorisations", WHOLE),  # number so far, for tests
+        ("contraction", REAL),  # ratio of successive steps of Newton's method
+        ("measured", WHOLE),  # whether the contraction was measured with the present matrix
+        ("growing", WHOLE),  # number of successive growing Newton steps
+        ("last_step", REAL),  # 2-norm of the last Newton step
+        ("small_error", REAL),  # 2-norm of an acceptable error
+        ("rounding", REAL),  # 2-norm of the largest Newton step that rounding errors cause
         ("most_iterations", WHOLE),
-        ("without_rate", WHOLE),  # whether the residual leaves f out
-        ("time", REAL),  # at which the residual was last asked for
-        ("current", WHOLE),  # 0 or 1: which half of `times` and `states` is that of this step
-        ("stages", WHOLE),  # how many of them are known
-        ("steps", WHOLE),  # how many are known before this one: 0, or 1 for one or more
+        ("without_rate", WHOLE),  # whether the residual omits f
+        ("time", REAL),  # time of the last residual
+        ("current", WHOLE),  # 0 or 1: half of `times` and `states` for this step
+        ("stages", WHOLE),  # number of known stages of this step
+        ("steps", WHOLE),  # number of known steps before this one, at most 1
         ("length", REAL),  # of this step, in tau2
-        ("middle", REAL),  # where in it the matrix is made, in units of it
-        (
-            "rows",
-            WHOLE,
-        ),  # address of the steps so far, a row (time, state) each, which compiled code allocates
-        ("kept", WHOLE),  # how many
-        ("room", WHOLE),  # for how many there is memory
+        ("middle", REAL),  # time within the step at which the matrix is made, in units of the step
+        ("rows", WHOLE),  # address of the stored steps, a row (time, state) each, allocated by compiled code
+        ("stored", WHOLE),  # number of stored steps
+        ("capacity", WHOLE),  # number of steps for which memory is allocated
         ("crushed", REAL),  # z1 at which h1 = 0
         ("left", WHOLE),  # whether the rod has left the model
-        ("error", WHOLE),  # PETSc's, inside a stage
-        ("taken", WHOLE, (3,)),  # where PETSc puts what it is asked for
+        ("error", WHOLE),  # PETSc's error code inside a stage
+        ("outputs", WHOLE, (3,)),  # output arguments of PETSc's functions
     ]
 )
-"""What every callback receives."""
+"""Record that every callback receives."""
 PLACES: Mapping[str, Any] = CONTEXT.fields or {}
-TAKEN, CONTENT = (PLACES[name][1] for name in ("taken", "content"))
-"""Places in bytes of what PETSc writes."""
+OUTPUTS, MATRIX_STATE = (PLACES[name][1] for name in ("outputs", "matrix_state"))
+"""Offsets in bytes of the fields that PETSc writes."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Whether a new matrix is due, and where it is to be made."""
+"""Values of `matrix_due`: no new matrix, or the state at which a new matrix is made."""
 
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
-    """What `ROD` is the addresses of, arrays of any shapes."""
+    """Arrays of a rod for the fields `ROD`, of any shapes."""
     own = beam.nodal._asdict() | {"roots": beam.roots}
     return {name: own[name] for name in ROD}
 

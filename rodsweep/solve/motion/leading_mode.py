@@ -1,4 +1,4 @@
-"""The rod at rest on the mesh of its motion: the leading mode, from which it starts."""
+"""Leading mode of the rod at rest on a mesh: the start of a motion."""
 
 from dataclasses import dataclass
 
@@ -10,22 +10,24 @@ from ...discretization.beam import Beam
 
 @dataclass(frozen=True, slots=True)
 class LeadingMode:
-    """The leading eigenvalue w in 1/tau2, Im w >= 0, and its z for y(1) = 1 to first order."""
+    """Leading eigenvalue w in 1/tau2, Im w >= 0, and its mode z, (unknowns,), with y(1) = 1 to 1st order."""
 
     w: complex
     z: Complex
 
     @property
     def period(self) -> float:
-        """Period in tau2, or the time of decay where nothing oscillates."""
+        """Period in tau2, or the decay time of a mode that does not oscillate."""
         return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), 1e-300)
 
 
 def leading_mode(beam: Beam) -> LeadingMode:
-    """The leading mode, from the Jacobian at rest, whose transverse part is decoupled from the axial one."""
-    layout, rest = beam.layout, np.zeros(beam.layout.unknowns)
+    """The leading mode, from the transverse part of the Jacobian at rest; the axial part is decoupled."""
+    layout = beam.layout
+    rest = np.zeros(layout.unknowns)
     J = layout.transverse(layout.transverse(beam.jacobian(rest)).T).T
     values, vectors = np.linalg.eig(J)
+    # The small imaginary part selects the member of a complex pair with Im w > 0.
     k = int(np.argmax(values.real + 1e-9 * values.imag))
     z = np.zeros(layout.unknowns, complex)
     layout.transverse(z)[:] = vectors[:, k]

@@ -1,6 +1,6 @@
-"""What compiled code calls of PETSc's TS, SNES and KSP, and of the C library: each name once, with its types.
+"""Functions of PETSc's TS, SNES and KSP, and of the C library, for compiled callers, with types.
 
-PETSc's functions return an error code. All are of its C interface from 3.18 to this day.
+PETSc's functions return an error code, and exist in PETSc 3.18 and later.
 """
 
 import ctypes
@@ -16,7 +16,7 @@ ENUM = types.int32
 
 
 def _external(name: str, *arguments: Any) -> Any:
-    """int name(arguments) of libpetsc for compiled callers; unlike one of ctypes it can be cached."""
+    """int name(arguments) of libpetsc for compiled callers; unlike a function of ctypes it can be cached."""
     return _found(name, typing.signature(types.int32, *arguments))
 
 
@@ -26,9 +26,9 @@ def _found(name: str, signature: Any) -> Any:
 
 
 read_array = _external("VecGetArrayRead", POINTER, POINTER)
-unread_array = _external("VecRestoreArrayRead", POINTER, POINTER)
+release_read = _external("VecRestoreArrayRead", POINTER, POINTER)
 write_array = _external("VecGetArray", POINTER, POINTER)
-unwrite_array = _external("VecRestoreArray", POINTER, POINTER)
+release_write = _external("VecRestoreArray", POINTER, POINTER)
 
 time_of = _external("TSGetTime", POINTER, POINTER)
 step_of = _external("TSGetTimeStep", POINTER, POINTER)

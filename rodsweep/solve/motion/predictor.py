@@ -1,8 +1,8 @@
-"""The first guess of a stage: a polynomial in time through stages of the step under way and of the last.
+"""Prediction of a stage: a polynomial in time through stages of the present and the last step.
 
-PETSc's own guess is linear and thousands of tolerances off; this one is ten off, and spares every second
-iteration of Newton's method. The stages of a method differ in what they miss of the motion, so that which of
-them extrapolate each other well is a matter of its tableau: `time_scheme.POINTS`.
+PETSc's own prediction is linear, with errors of thousands of tolerances. The polynomial has errors of ten
+tolerances and saves every second Newton iteration. Stages of a method have different errors, so the best
+extrapolation points depend on the method's tableau: `time_scheme.POINTS`.
 """
 
 from typing import Any
@@ -13,19 +13,20 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
-from .context import AT_BASE, CONTEXT, MOST_POINTS, MOST_STAGES, TAKEN, states_of, times_of
-from .petsc_calls import context_of_ts, read_array, solution_of, step_of, time_of, unread_array
+from .context import AT_BASE, CONTEXT, MOST_POINTS, MOST_STAGES, OUTPUTS, states_of, times_of
+from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
 from .time_scheme import POINTS
 
 LARGEST_GROWTH = 2.0
-"""Of the step, beyond which it is not extrapolated from the last one."""
+"""Largest ratio of a step and the last one for which stages are extrapolated."""
 NONE = -1
+"""Entry of the points behind the last point of a stage."""
 
 
 def points_of(variant: str) -> NDArray[np.int64]:
-    """The points of all stages, (MOST_STAGES, MOST_POINTS), those of the last step with MOST_STAGES added.
+    """Extrapolation points of all stages, (MOST_STAGES, MOST_POINTS), filled up with NONE.
 
-    Filled up with NONE.
+    Points of the last step have MOST_STAGES added.
     """
     points = np.full((MOST_STAGES, MOST_POINTS), NONE)
     for stage, (this, last) in POINTS.get(variant, {}).items():
@@ -36,12 +37,12 @@ def points_of(variant: str) -> NDArray[np.int64]:
 
 @c_function(POINTER)
 def begin_step(ts: int) -> int:
-    """Before a step: what was under way is the past, and a new matrix is due, of the state half-way."""
-    handed = np.empty(1, np.int64)
-    context_of_ts(ts, handed.ctypes.data)
-    context = handed[0]
-    c, at = record_at(context, CONTEXT), context + TAKEN
-    taken, real = integers(at, 3), floats(at, 3)
+    """Before a step: the present step becomes the last one, and a matrix at the new middle becomes due."""
+    address = np.empty(1, np.int64)
+    context_of_ts(ts, address.ctypes.data)
+    context = address[0]
+    c, at = record_at(context, CONTEXT), context + OUTPUTS
+    outputs, real = integers(at, 3), floats(at, 3)
     times, states, base = times_of(c), states_of(c), floats(c.base, c.unknowns)
     last = c.current * MOST_STAGES
     c.current = 1 - c.current
@@ -49,10 +50,10 @@ def begin_step(ts: int) -> int:
     time_of(ts, at)
     times[now] = real[0]
     solution_of(ts, at)
-    solution = taken[0]
+    solution = outputs[0]
     read_array(solution, at)
-    states[now] = floats(taken[0], c.unknowns)
-    unread_array(solution, at)
+    states[now] = floats(outputs[0], c.unknowns)
+    release_read(solution, at)
     step_of(ts, at)
     c.length = real[0]
     base[:] = states[now]
@@ -60,14 +61,14 @@ def begin_step(ts: int) -> int:
         base += (states[now] - states[last]) * (c.middle * c.length / (times[now] - times[last]))
     c.steps, c.stages = min(c.stages, 1), 1
     c.matrix_due = AT_BASE
-    if c.middle > 0:  # many stages, of which the first can measure how well the new matrix does
+    if c.middle > 0:  # a method of many stages, of which the first measures the contraction of the new matrix
         c.contraction, c.measured = 1.0, 0
     return 0
 
 
 @compiled
 def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float, out: Array) -> None:
-    """The polynomial through states[points] at times[points], at time t, into out, (unknowns,)."""
+    """Value at time t of the polynomial through states[points] at times[points], into out, (unknowns,)."""
     out[:] = 0.0
     for i in points:
         weight = 1.0
@@ -80,7 +81,7 @@ def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float
 
 @compiled
 def predict(c: Any, guess: Array) -> None:
-    """The stage at c.time into guess, (unknowns,), which is left as it is where nothing better is known."""
+    """Predicted stage at c.time into guess, (unknowns,); unchanged if no extrapolation is possible."""
     if c.stages >= MOST_STAGES or not c.steps:
         return
     points = integers(c.points, MOST_STAGES * MOST_POINTS).reshape(MOST_STAGES, MOST_POINTS)[c.stages]
@@ -93,7 +94,7 @@ def predict(c: Any, guess: Array) -> None:
 
 @compiled
 def remember(c: Any, stage: Array) -> None:
-    """A stage that was found, (unknowns,), at c.time."""
+    """Stores a solved stage, (unknowns,), at c.time."""
     if c.stages < MOST_STAGES:
         at = c.current * MOST_STAGES + c.stages
         times_of(c)[at] = c.time

@@ -1,4 +1,4 @@
-"""The steps of a run, kept by compiled code: a call of Python after each would take a seventh of the time."""
+"""Storage of a run's steps by compiled code: Python calls after each step would take 1/7 of the time."""
 
 from typing import Any
 
@@ -8,43 +8,43 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
 from ..backend.petsc import PETSc
-from .context import CONTEXT, TAKEN
+from .context import CONTEXT, OUTPUTS
 from .petsc_calls import (
     context_of_ts,
     free_memory,
     read_array,
+    release_read,
     resized_memory,
     set_ts_reason,
     solution_of,
     time_of,
-    unread_array,
 )
 
-FIRST_ROOM = 256
-"""Steps for which there is memory at first; twice as many when it is full."""
+FIRST_CAPACITY = 256
+"""Number of steps for which memory is allocated first; the memory doubles when it is full."""
 OUT_OF_MEMORY = 55
-"""PETSc's error code."""
+"""PETSc's error code for a lack of memory."""
 STOPPED = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
 
 @compiled
 def keep_step(c: Any, at: int, ts: int) -> int:
-    """Adds a row (time, state); where the rod has left the model, it is the last."""
-    n, taken = c.unknowns, integers(at, 3)
-    if c.kept == c.room:
-        c.room = max(2 * c.room, FIRST_ROOM)
-        rows = resized_memory(c.rows, 8 * c.room * (n + 1))
+    """Stores a row (time, state); ends the run if the rod has left the model."""
+    n, outputs = c.unknowns, integers(at, 3)
+    if c.stored == c.capacity:
+        c.capacity = max(2 * c.capacity, FIRST_CAPACITY)
+        rows = resized_memory(c.rows, 8 * c.capacity * (n + 1))
         if rows == 0:
             return OUT_OF_MEMORY
         c.rows = rows
     time_of(ts, at)
     solution_of(ts, at + 8)
-    read_array(taken[1], at + 16)
-    row, z = floats(c.rows + 8 * c.kept * (n + 1), n + 1), floats(taken[2], n)
+    read_array(outputs[1], at + 16)
+    row, z = floats(c.rows + 8 * c.stored * (n + 1), n + 1), floats(outputs[2], n)
     row[0] = floats(at, 1)[0]
     row[1:] = z
-    unread_array(taken[1], at + 16)
-    c.kept += 1
+    release_read(outputs[1], at + 16)
+    c.stored += 1
     if row[1 : 1 + n // 3].min() <= c.crushed:
         c.left = 1
         set_ts_reason(ts, STOPPED)
@@ -53,11 +53,11 @@ def keep_step(c: Any, at: int, ts: int) -> int:
 
 @c_function(POINTER)
 def end_step(ts: int) -> int:
-    """PETSc's post-step."""
-    handed = np.empty(1, np.int64)
-    context_of_ts(ts, handed.ctypes.data)
-    context = handed[0]
-    return keep_step(record_at(context, CONTEXT), context + TAKEN, ts)
+    """PETSc's post-step: stores the step."""
+    address = np.empty(1, np.int64)
+    context_of_ts(ts, address.ctypes.data)
+    context = address[0]
+    return keep_step(record_at(context, CONTEXT), context + OUTPUTS, ts)
 
 
 @compiled
@@ -71,9 +71,11 @@ def _freed(address: int) -> None:
 
 
 def take_steps(context: Any) -> Array:
-    """The rows (time, state) of the steps so far, (steps, 1 + unknowns); the record forgets them."""
-    address, kept, columns = int(context["rows"]), int(context["kept"]), int(context["unknowns"]) + 1
+    """Rows (time, state) of the stored steps, (steps, 1 + unknowns); clears the record."""
+    address = int(context["rows"])
+    kept = int(context["stored"])
+    columns = int(context["unknowns"]) + 1
     rows = _kept_rows(address, kept, columns) if kept else np.empty((0, columns))
     _freed(address)
-    context["rows"] = context["kept"] = context["room"] = 0
+    context["rows"] = context["stored"] = context["capacity"] = 0
     return rows

@@ -1,10 +1,10 @@
-"""A time scheme as data: which of PETSc's, how accurate, and the options that make it so."""
+"""Time scheme: PETSc's type of integrator, the tolerances, and the PETSc options for both."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 CYCLE_PREFIX = "cycle_"
-"""Prefix of the PETSc options that override the scheme, as in -cycle_ts_type bdf."""
+"""Prefix of the PETSc options that override the scheme, for example -cycle_ts_type bdf."""
 
 POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
     "3": {1: ((), (0, 1, 2)), 2: ((0, 1), (0, 2)), 3: ((1,), (0, 1, 2))},
@@ -25,26 +25,25 @@ POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
         7: ((0, 4, 6), (3,)),
     },
 }
-"""For ARKIMEX's variants and each stage after the state itself, 0: the stages of this step and of the last
-through which it is predicted. Of all choices, up to six points, those nearest on two dozen motions, most of
-them of stiff rods."""
+"""Extrapolation points of each stage, by variant of ARKIMEX: (stages of this step, stages of the last step).
+Stage 0 is the state at the start. Of all sets of up to six points, these sets had the smallest errors on two
+dozen motions, mostly of stiff rods."""
 
 
 NEWTON: Mapping[str, str] = {
     "rosw": "ksponly",
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
-"""PETSc's SNES for its TS types: `stage_newton`'s where the unknown of a stage is the state whose rates are
-taken, which is not so for all, as alpha."""
+"""PETSc's SNES for each TS type. "shell" stands for `stage_newton`, which solves for the state at which f is
+evaluated. The type alpha, for example, has a different unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimeScheme:
-    """PETSc's TS type and sub-type (for bdf: its order) and what it is to reach.
+    """PETSc's TS type and sub-type (for bdf: its order), with tolerances.
 
-    tolerance: local error per step of each component of z, absolute, in units of the motion's size.
-    newton: error of a stage in units of the tolerance. equal_steps: no step control, each step as given.
-    prefix: of the PETSc options that override.
+    tolerance: local error per step of each component of z, in units of the motion's size. newton: error of a
+    stage in units of the tolerance. equal_steps: constant step length. prefix: of overriding PETSc options.
     """
 
     family: str = "arkimex"
@@ -55,19 +54,19 @@ class TimeScheme:
     prefix: str = CYCLE_PREFIX
 
     def petsc_options(self, family: str) -> dict[str, str]:
-        """The options, without prefix, of this scheme where the TS type is `family`."""
+        """PETSc options of this scheme, without prefix, for the TS type `family`."""
         kind = {"bdf": "order"}.get(family, "type")
         own = {"ts_type": self.family}
         if family == self.family and self.variant:
             own[f"ts_{family}_{kind}"] = self.variant
         if family == "arkimex":
-            linear = "false" if self.variant in POINTS else "true"  # PETSc's guess, where there is no other
+            linear = "false" if self.variant in POINTS else "true"  # PETSc's prediction where POINTS has none
             own |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
         adapt = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
         return {
             "ksp_type": "preonly",
             "pc_type": "lu",
-            "ts_adapt_type": "dsp",  # rejects next to nothing, where `basic` rejects a tenth
+            "ts_adapt_type": "dsp",  # rejects almost no step, while `basic` rejects a tenth
             "ts_adapt_clip": "0.2,4.0",
             "snes_type": NEWTON.get(family, "newtonls"),
             "snes_linesearch_type": "basic",

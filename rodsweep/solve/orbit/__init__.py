@@ -1,1 +1,1 @@
-"""Periodic orbits on a mesh: Newton's matrix, symmetry, multipliers, what is measured on them."""
+"""Periodic orbits: meshes, Newton's method, multipliers, symmetry and measures."""

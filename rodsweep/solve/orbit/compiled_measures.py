@@ -1,4 +1,4 @@
-"""What is measured state by state along an orbit, compiled: strains, the motion of the tip, mean powers."""
+"""Compiled measures of the states along an orbit: strains, motion of the tip, mean powers."""
 
 from typing import NamedTuple
 
@@ -13,18 +13,17 @@ from ...model.compiled.compilation import compiled_for_vectors
 from .semidiscrete import Semidiscrete
 
 REFLECTION = np.array([1.0, -1.0, -1.0])
-"""Signs of (x, y, theta) and (h1, h2, Pi) half a period later where the orbit is symmetric."""
+"""Signs of (x, y, theta), and of (h1, h2, Pi), half a period later on a symmetric orbit."""
 OVERSAMPLING = 4
-"""Samples for each node in time, of which extrema are sought."""
+"""Samples per time node for the search of extrema."""
 
 
 class TipPath(NamedTuple):
-    """What the states at the nodes in time tell of the path.
+    """Path of the tip, and strains, from the states at the time nodes.
 
-    nodes: (h1, h2, Pi) at all nodes of the rod and their derivatives by the time in periods, for the states
-    that are solved for, (2, 3, K, nodes + 1). Of the tip's (x, y, theta) over the period the coefficients,
-    (count, 3), samples at equidistant times, (OVERSAMPLING (count - 1), 3), the smallest and largest values,
-    (3,).
+    nodes: (h1, h2, Pi) at all nodes of the rod, and their derivatives by the time in periods, for the solved
+    states, (2, 3, K, nodes + 1). For (x, y, theta) of the tip over the period: coefficients, (count, 3);
+    samples at equidistant times, (OVERSAMPLING (count - 1), 3); smallest and largest values, (3,) each.
     """
 
     nodes: Array
@@ -35,7 +34,7 @@ class TipPath(NamedTuple):
 
 
 class Means(NamedTuple):
-    """Over an orbit, named and in units as in `Measures`."""
+    """Means over an orbit, with names and units as in `Measures`."""
 
     injection_mean: float
     injection_rms: float
@@ -46,7 +45,7 @@ class Means(NamedTuple):
 
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
-    """The path of states equal in time, (K, n), over half the period where the orbit is symmetric."""
+    """The path from equidistant states, (K, n), over half the period for a symmetric orbit."""
     nodes = np.empty((2, 3, len(states), len(p.matrices.weights)))
     tip, velocity = np.empty((len(states), 3)), np.empty((len(states), 3))
     node_strains(states, p, nodes[0])
@@ -72,9 +71,9 @@ def node_strains(states: Array, p: Semidiscrete, out: Array) -> None:
 
 @compiled_for_vectors
 def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
-    """The sizes of the harmonics from the first, root sums of squares over all columns, (count - 1,).
+    """Sizes of the harmonics from the first, root sums of squares over all columns, (count - 1,).
 
-    values, slopes and sign, which all columns share, as in `hermite_columns`.
+    values, slopes: as in `hermite_columns`. sign: common sign of all columns.
     """
     c = hermite_columns(values, slopes, np.full(values.shape[1], sign))
     sizes = np.zeros(len(c) - 1)
@@ -86,7 +85,7 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 @compiled_for_vectors
 def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
-    """The means over all stages, (K, s, n), with the weights of the method, (s,)."""
+    """Means over all stages, (K, s, n), with the weights of the method, (s,)."""
     K, s, n = stages.shape
     flat, nodes = stages.reshape(K * s, n), len(p.matrices.weights) - 1
     power, mean, square = np.empty((2, K * s)), np.zeros(2), np.zeros(2)
@@ -106,7 +105,7 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
 
 @compiled_for_vectors
 def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
-    """dE/dt at all nodes but the tip, where it vanishes, of states (m, n) into out, (3, m, nodes + 1)."""
+    """dE/dt at all nodes, 0 at the tip, of states (m, n) into out, (3, m, nodes + 1)."""
     size = len(p.matrices.weights)
     V, G = np.empty((3, size)), np.empty((3, size))
     for k in range(len(states)):
@@ -119,7 +118,7 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def powers(states: Array, out: Array, p: Semidiscrete) -> None:
-    """Power of the follower force, by the reaction, and power lost, of states (m, n) into out, (2, m)."""
+    """Powers of the follower force (by the reaction) and the drag, of states (m, n), into out, (2, m)."""
     size = len(p.matrices.weights)
     V, G, c = np.empty((3, size)), np.empty((3, size)), p.rod
     for k in range(len(states)):

@@ -1,8 +1,8 @@
-"""What is measured on a cycle: extrema, harmonics, energy budget, trajectories and shapes.
+"""Measures of a cycle: extrema, harmonics, energy budget, paths and shapes.
 
-At the starts of the intervals, equidistant in time, strains and their rates are known to the full order of
-the collocation. The trigonometric polynomial through both has spectral accuracy, so that extrema need no
-event located. Means are integrals by the method's own quadrature over its stages.
+At the starts of the intervals, equidistant in time, strains and their rates have the full order of the
+collocation. The trigonometric polynomial through both converges spectrally, so that extrema need no event
+location. Means are integrals by the collocation's quadrature over the stages.
 """
 
 from dataclasses import dataclass, field
@@ -27,11 +27,11 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measures:
-    """Numbers of a cycle, named as in the file; NaN where there is none.
+    """Numbers of a cycle, named as in the result file; NaN where a number is not known.
 
-    period in tau2, frequency = 2 pi/period; tip in L and rad. harmonic_amplitude: in L, of the harmonics of
-    the tip's y, from the first. Injection and dissipation: mean and rms of the fluctuation, k3/(L tau2);
-    energy_imbalance: mean injection over mean dissipation, less 1. least_stretch: min h1.
+    period in tau2; frequency = 2 pi/period; tip in L and rad. harmonic_amplitude: harmonics of the tip's y
+    from the first, in L. injection, dissipation: mean, and rms of the fluctuation, in k3/(L tau2).
+    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1.
     """
 
     period: float = nan
@@ -51,10 +51,11 @@ class Measures:
 
 
 class CyclePath:
-    """An orbit over its whole period as trigonometric polynomials."""
+    """Trigonometric polynomials of an orbit over its whole period."""
 
     def __init__(self, orbit: Orbit) -> None:
-        self.orbit, grid = orbit, orbit.form.mesh
+        self.orbit = orbit
+        grid = orbit.form.mesh
         self._ends = np.ascontiguousarray(orbit.regular_states)
         matrices = tip_matrices(grid.elements, grid.order)
         self._path = tip_path(self._ends, orbit.period, orbit.semidiscrete, matrices)
@@ -62,7 +63,7 @@ class CyclePath:
 
     @cached_property
     def strain_coefficients(self) -> Complex:
-        """Of (h1, h2, Pi) at all nodes, shape (count, 3, nodes + 1)."""
+        """Coefficients of (h1, h2, Pi) at all nodes, shape (count, 3, nodes + 1)."""
         K, size = self._path.nodes.shape[2:]
         values, slopes = self._path.nodes.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION if self.orbit.symmetric else np.zeros(3), size)
@@ -71,30 +72,34 @@ class CyclePath:
 
     @cached_property
     def bending_harmonics(self) -> Array:
-        """The size of Pi's harmonics from the first, sums of squares over all nodes, shape (count - 1,)."""
+        """Sizes of Pi's harmonics from the first, root sums of squares over all nodes, shape (count - 1,)."""
         values, slopes = self._path.nodes[:, 2]
         sizes: Array = harmonic_sizes(values, slopes, REFLECTION[2] * self.orbit.symmetric)
         return sizes
 
     def resampled_tip(self, count: int) -> Array:
-        """`tip_samples` at another number of times, shape (count, 3)."""
+        """`tip_samples` at a different number of times, shape (count, 3)."""
         return samples_of(self.tip_coefficients, count)
 
     @cached_property
     def extrema(self) -> dict[str, float]:
-        """The tip's extrema as `Measures` names them."""
-        x_min, x_max = float(self._path.least[0]), float(self._path.largest[0])
-        y_max, theta_max = float(self._path.largest[1]), float(self._path.largest[2])
-        return {"tip_x_min": x_min, "tip_x_max": x_max, "tip_y_max": y_max, "tip_theta_max": theta_max}
+        """Extrema of the tip, named as in `Measures`."""
+        least, largest = self._path.least.tolist(), self._path.largest.tolist()
+        return {
+            "tip_x_min": least[0],
+            "tip_x_max": largest[0],
+            "tip_y_max": largest[1],
+            "tip_theta_max": largest[2],
+        }
 
     @property
     def tip_y_min(self) -> float:
-        """The smallest y of the tip: the largest with the other sign where the orbit is symmetric."""
+        """Smallest y of the tip; for a symmetric orbit minus the largest y."""
         return -self.extrema["tip_y_max"] if self.orbit.symmetric else float(self._path.least[1])
 
     @cached_property
     def beginning(self) -> float:
-        """When the tip's y rises through its mean, in periods."""
+        """Time in periods at which the tip's y rises through its mean."""
         return rise_through_mean(self.tip_samples[:, 1])
 
     def tip(self, samples: int) -> Array:
@@ -137,7 +142,8 @@ def _at_lobatto(grid: Mesh, nodes: int) -> Array:
 
 def measures_of(path: CyclePath) -> Measures:
     """The measures of an orbit."""
-    orbit, y = path.orbit, path.tip_coefficients[:, 1]
+    orbit = path.orbit
+    y = path.tip_coefficients[:, 1]
     mean = means(np.ascontiguousarray(orbit.states), orbit.method.weights, orbit.semidiscrete)
     return Measures(
         period=orbit.period,

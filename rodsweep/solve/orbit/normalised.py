@@ -1,8 +1,8 @@
-"""An orbit's values in units of its size: what is smooth in a parameter up to a Hopf point and through it.
+"""Values of an orbit in units of its size, which are smooth in a parameter up to and through a Hopf point.
 
-The values that the reflection reverses go as the root of the distance from a Hopf point. In units of the
-moment's size at t = 0 they do not, and the square of this size goes as the distance itself. No parameter
-enters that size, so that it depends on one by way of the state alone.
+The values that change their sign under reflection grow as the square root of the distance from a Hopf point.
+In units of the orbit's size they are smooth, and the squared size grows linearly. The size is that of the
+bending moment at t = 0; its definition contains no parameter.
 """
 
 from functools import lru_cache
@@ -19,14 +19,14 @@ from .symmetry import REFLECTION
 
 
 class Reflected(NamedTuple):
-    """Of a state, (n,): 1 where the reflection reverses it and 0 elsewhere, and the weights of m3^2."""
+    """reversed: 1 where the reflection reverses a state, 0 elsewhere; weights: weights of m3^2; both (n,)."""
 
     reversed: Array
     weights: Array
 
 
 def reflected(orbit: Orbit) -> Reflected:
-    """That of an orbit's states."""
+    """Reflection of an orbit's states."""
     return _reflected(orbit.form.layout, orbit.form.mesh)
 
 
@@ -36,30 +36,31 @@ def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
 
 
 def normalised(orbit: Orbit) -> Array:
-    """Its values, those that the reflection reverses in units of the size, and the size squared, (N + 1,)."""
+    """Normalised values, (N + 1,): reversed values in units of the size, other values, the squared size."""
     values: Array = normalised_values(orbit.values, reflected(orbit))
     return values
 
 
 def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
-    """The derivative of the normalised values where that of the values is (N,), (N + 1,)."""
+    """Derivative of the normalised values, (N + 1,), from the derivative of the values, (N,)."""
     slopes: Array = normalised_slopes(orbit.values, tangent, reflected(orbit))
     return slopes
 
 
 @compiled_for_vectors
 def normalised_values(values: Array, r: Reflected) -> Array:
-    """`normalised` of values, (N,)."""
+    """`normalised` for the values of an orbit, (N,)."""
     squared = squared_size(values, values, r)
     out = np.empty(len(values) + 1)
-    out[:-1], out[-1] = values, squared
+    out[:-1] = values
+    out[-1] = squared
     _scale_reversed(out, squared**-0.5, r)
     return out
 
 
 @compiled_for_vectors
 def values_of(normalised: Array, r: Reflected) -> Array:
-    """The reverse of `normalised_values`, from (N + 1,), whose last one is positive, to (N,)."""
+    """Values, (N,), from normalised values, (N + 1,), whose last entry must be positive."""
     out = normalised[:-1].copy()
     _scale_reversed(out, normalised[-1] ** 0.5, r)
     return out
@@ -67,9 +68,9 @@ def values_of(normalised: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
-    """Of data at places, (m,), in what a polynomial through them adds from 0 to a step, (m,).
+    """Weights of data in the change of their interpolation polynomial from 0 to a step, (m,).
 
-    orders: 1 where a datum is a slope, 0 where it is a value less the one at 0.
+    places: place of each datum, (m,). orders: 1 for a slope, 0 for a value minus the value at 0, (m,).
     """
     m, unit = len(places), np.abs(places).max()
     unit = unit if unit > 0 else 1.0
@@ -85,7 +86,10 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 @compiled_for_vectors
 def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """Values, (N + 1,), and what weights, (m,), add of the slopes and other values in data, (m, N + 1)."""
+    """Values, (N + 1,), plus the change that weights, (m,), give the slopes and values in data, (m, N + 1).
+
+    orders: 1 for a slope, 0 for a value, (m,).
+    """
     out, rest = np.zeros(len(values)), 1.0
     for k in range(len(weights)):
         rest -= weights[k] if orders[k] == 0 else 0.0
@@ -98,9 +102,11 @@ def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array
 
 @compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
-    """`normalised_tangent` of values and their tangent, (N,)."""
-    squared, change = squared_size(values, values, r), 2 * squared_size(values, tangent, r)
-    out, share = np.empty(len(values) + 1), change / (2 * squared)
+    """`normalised_tangent` for values and their tangent, (N,) each."""
+    squared = squared_size(values, values, r)
+    change = 2 * squared_size(values, tangent, r)
+    share = change / (2 * squared)
+    out = np.empty(len(values) + 1)
     for i in range(len(values)):
         out[i] = tangent[i]
     for first in range(0, len(values) - 1, len(r.reversed)):
@@ -113,7 +119,7 @@ def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
 
 @compiled_for_vectors
 def squared_size(values: Array, others: Array, r: Reflected) -> float:
-    """Of the moment at t = 0, the integral of m3^2, or of its product with that of other values; all (N,)."""
+    """Integral of m3^2 at t = 0, or of the product of m3 for two sets of values, (N,) each."""
     total = 0.0
     for i in range(len(r.weights)):
         total += r.weights[i] * values[i] * others[i]
@@ -122,7 +128,7 @@ def squared_size(values: Array, others: Array, r: Reflected) -> float:
 
 @compiled_for_vectors
 def _scale_reversed(values: Array, factor: float, r: Reflected) -> None:
-    """What the reflection reverses of the states at the front of values times a factor, in place."""
+    """Multiplies the reversed components of the states in values by a factor, in place."""
     n = len(r.reversed)
     for first in range(0, len(values) - n + 1, n):
         for i in range(n):

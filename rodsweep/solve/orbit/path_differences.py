@@ -1,4 +1,4 @@
-"""What the tip's paths on two meshes differ by."""
+"""Differences between the tip's paths on two meshes."""
 
 import numpy as np
 
@@ -7,14 +7,14 @@ from .measures import CyclePath
 from .orbit import Orbit
 
 PERIOD, HEIGHT, OTHERS, APART = range(4)
-"""Places of the differences."""
+"""Indices of the differences."""
 
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
-    """Of the period, of the largest y, of the worst extremum, and of the whole paths, (4,).
+    """Differences of the period, the largest y, the worst extremum, and the whole paths, (4,).
 
-    All are relative: the extrema and the largest distance of the paths in units of the largest y. Where the
-    rods differ, on a branch that is followed, what they differ by counts as the period does.
+    The period's difference is relative; the other three are in units of the largest y. On a followed branch
+    the rods may differ as well, and their difference counts as one of the period.
     """
     apart = np.abs(fine.tip_samples - rough.resampled_tip(len(fine.tip_samples))).max()
     extrema = fine.extrema
@@ -25,6 +25,6 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 
 def rods_apart(one: Orbit, other: Orbit) -> float:
-    """The largest relative difference of their parameters."""
+    """Largest relative difference of two rods' parameters."""
     a, b = (np.array([*orbit.form.rod.coefficients, orbit.form.rod.axial_drag]) for orbit in (one, other))
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())

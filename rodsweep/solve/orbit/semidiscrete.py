@@ -1,4 +1,4 @@
-"""The equations of a periodic orbit: the rod on its mesh, a method in time, and how the orbit closes."""
+"""Equations of a periodic orbit: the rod on its mesh, the method in time, and the closing condition."""
 
 from typing import NamedTuple
 
@@ -8,10 +8,10 @@ from ...discretization.nodal_rod import NodalRod
 
 
 class Semidiscrete(NamedTuple):
-    """The rod on its mesh, the method in time, and how an orbit closes.
+    """The rod on its mesh, the method in time, and the closing condition x(T/p) = S x(0) of an orbit.
 
-    mass (n,); differentiation (s, s + 1); lengths: of the intervals, of sum 1, (K,); symmetry: S, by which
-    the state has changed at the end, (n, n); parts: of the period that are equal but for it, 1 or 2.
+    mass: (n,). differentiation: (s, s + 1). lengths: of the intervals, with sum 1, (K,). symmetry: S, (n, n).
+    parts: p, 1 or 2.
     """
 
     rod: NodalRod

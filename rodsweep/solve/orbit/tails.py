@@ -1,7 +1,7 @@
-"""The last coefficients of an orbit's polynomials in space and time, its tails: how fine its mesh is.
+"""Tails of an orbit, the last coefficients of its polynomials in space and time, which show its resolution.
 
-Squares of the tails are the order of the errors of period and largest deflection, which converge twice as
-fast as states do.
+Errors of period and largest deflection are of the order of the squared tails: both converge twice as fast as
+the states.
 """
 
 from dataclasses import dataclass
@@ -18,16 +18,16 @@ from ...model.compiled.compilation import compiled_for_vectors
 from .orbit import Orbit
 
 LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
-"""Bounds of the decay of the coefficients in space, per order, natural logarithm."""
-LASTING = 4
-"""Coefficients at the end whose size changes smoothly from one orbit to the next."""
+"""Bounds of the coefficients' decay in space per order, natural logarithm."""
+LAST_COEFFICIENTS = 4
+"""Number of last coefficients in space whose size changes smoothly from orbit to orbit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tails:
-    """The last coefficients of the polynomials in space and in time in units of the largest ones.
+    """Last coefficients in space and in time, in units of the largest coefficients.
 
-    decay: of those in space, per order, natural logarithm.
+    decay: decay of the coefficients in space per order, natural logarithm.
     """
 
     space: float
@@ -44,7 +44,7 @@ def tails_of(orbit: Orbit) -> Tails:
 
 @compiled_for_vectors
 def _decay(c: Array) -> float:
-    """The mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
+    """Mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
     fields, size = c.shape
     middle, highest = (size - 1) / 2 + (size // 2) / 2, 1e-16
     along, squares = 0.0, 0.0
@@ -57,8 +57,9 @@ def _decay(c: Array) -> float:
 
 
 def _space_coefficients(orbit: Orbit) -> Array:
-    """The largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
-    grid, ends = orbit.form.mesh, np.ascontiguousarray(orbit.states[:, -1])
+    """Largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
+    grid = orbit.form.mesh
+    ends = np.ascontiguousarray(orbit.states[:, -1])
     return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
 
 
@@ -70,7 +71,7 @@ def _analysis_on_element(order: int) -> Array:
 
 @compiled_for_vectors
 def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
-    """The largest moduli of the coefficients of n1, n2, m3, (3, p + 1), of states (m, n) in all elements."""
+    """Largest moduli of the coefficients of n1, n2, m3, (3, p + 1), over all elements of states (m, n)."""
     size = len(analysis)
     nodes = elements * (size - 1)
     largest, c = np.zeros((COMPONENTS, size)), np.empty(size)
@@ -90,26 +91,26 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 
 def lasting_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time that change as smoothly as an orbit does, (2,); in units of largest values.
+    """Tails in space and in time that change as smoothly as an orbit, (2,), in units of the largest values.
 
-    A last coefficient alone comes and goes: in space the last LASTING of all points stand for their envelope.
+    A single last coefficient may vanish, so in space LAST_COEFFICIENTS coefficients at all points are used.
     """
     grid = orbit.form.mesh
-    end = largest_end(orbit.points, grid.elements, _lasting_on_element(grid.order))
-    return np.array([end, _tail_in_time(orbit)])
+    in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
+    return np.array([in_space, _tail_in_time(orbit)])
 
 
 @lru_cache(maxsize=64)
 def _lasting_on_element(order: int) -> Array:
-    """The last LASTING columns of `_analysis_on_element`, (p + 1, LASTING)."""
-    return np.ascontiguousarray(_analysis_on_element(order)[:, -LASTING:])
+    """Last LAST_COEFFICIENTS columns of `_analysis_on_element`, (p + 1, LAST_COEFFICIENTS)."""
+    return np.ascontiguousarray(_analysis_on_element(order)[:, -LAST_COEFFICIENTS:])
 
 
 @compiled_for_vectors
-def largest_end(points: Array, elements: int, analysis: Array) -> float:
-    """The largest end of the coefficients in an element of n1, n2 or m3, in units of its largest value.
+def relative_tail(points: Array, elements: int, analysis: Array) -> float:
+    """Largest 2-norm of the last coefficients of n1, n2 or m3 in an element, in units of its largest value.
 
-    points: (m, n); analysis: from an element's nodes to the coefficients at the end, (p + 1, count).
+    points: (m, n); analysis: from an element's nodes to the last coefficients, (p + 1, count).
     """
     size, count = analysis.shape
     nodes, c, worst = elements * (size - 1), np.empty(count), 0.0
@@ -131,7 +132,7 @@ def largest_end(points: Array, elements: int, analysis: Array) -> float:
 
 
 def _tail_in_time(orbit: Orbit) -> float:
-    """Of n1, n2 and m3 the worst."""
+    """The largest of the tails of n1, n2 and m3 in time."""
     return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
 
 
@@ -145,10 +146,10 @@ def _last_in_interval(stages: int) -> Array:
 
 @compiled_for_vectors
 def largest_tail(points: Array, row: Array, nodes: int) -> float:
-    """The largest last coefficient of n1, n2, m3 in an interval, in units of the largest value of each.
+    """Largest last coefficient of n1, n2, m3 in an interval, in units of the largest value of each.
 
-    points: start and stages one after the other, (1 + K s, n); row: from an interval's values to that
-    coefficient, (s + 1,). Sizes are those of the vectors of a stress at all nodes.
+    points: start and stages one after the other, (1 + K s, n). row: from an interval's values to the last
+    coefficient, (s + 1,). Sizes are 2-norms of a stress over all nodes.
     """
     s, worst = len(row) - 1, 0.0
     for a in range(COMPONENTS):

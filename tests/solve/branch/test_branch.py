@@ -22,7 +22,7 @@ from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
-from rodsweep.watch import heard_by
+from rodsweep.watch import reporting_to
 
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 SHORT = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
@@ -259,7 +259,7 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     done, places = [], []
     eliminate = bordered.eliminate
     monkeypatch.setattr(bordered, "eliminate", lambda *values: done.append(1) or eliminate(*values))
-    with heard_by(lambda place: places.append((len(done), *place()))):
+    with reporting_to(lambda place: places.append((len(done), *place()))):
         solve_branches(
             Rod(F=0.0, k1=4000, k2=300, gamma3=1e-3), BranchRequest("F", 0, 150, 1e-5, True, 500, 50)
         )

@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
-from rodsweep.solve.cycle.along_parameter import MOST_BEHIND, Followed
+from rodsweep.solve.cycle.along_parameter import MAX_EARLIER_ORBITS, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -45,7 +45,7 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
     places, orders = np.array(places), np.array(orders)
     size = np.abs(places).max() or 1.0
     p = np.polynomial.Polynomial(np.random.default_rng(2).normal(size=len(places) + 1), [0, size], [0, 1])
-    here = Followed(None, places, orders, np.empty(0))
+    here = CyclePredictor(None, places, orders, np.empty(0))
     data = np.where(orders == 1, p.deriv()(places), p(places) - p(0))
     for step in (size, -0.4 * size):
         assert here.weights(step) @ data == pytest.approx(p(step) - p(0), rel=1e-10, abs=1e-10)
@@ -53,7 +53,7 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
 
 def test_a_chain_goes_on_by_the_cycles_behind(chain):
     last = chain[-1].branch
-    assert np.count_nonzero(last.orders == 0) == MOST_BEHIND
+    assert np.count_nonzero(last.orders == 0) == MAX_EARLIER_ORBITS
     assert last.places[0] == 0 and np.all(last.places[1:] > 0)  # it went downwards
 
 

@@ -53,8 +53,8 @@ def test_the_nearer_of_two_subcritical_hopf_points_is_named():
         (CycleStatus.cycle, False, SecondState.none_known),
         (CycleStatus.cycle, True, SecondState.straight),
         (CycleStatus.unstable, True, SecondState.straight),
-        (CycleStatus.cycle, None, SecondState.not_told),
-        (CycleStatus.failed, True, SecondState.not_told),
+        (CycleStatus.cycle, None, SecondState.not_known),
+        (CycleStatus.failed, True, SecondState.not_known),
     ],
 )
 def test_state_is_told_from_the_straight_rod(status, stable, state):

@@ -91,7 +91,7 @@ def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypa
     """Far below the Hopf point the motion decays; the spectrum is made to say that it does not know."""
     monkeypatch.setattr(limit_cycle, "straight_rod", lambda rod, near: StraightRod(-1e-13 + 60j, 1e-13))
     c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
-    assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_told)
+    assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_known)
     assert start == "hopf" or "so whether it stays straight is not decided" in c.message
 
 

@@ -1,1 +1,1 @@
-"""A cycle to an accuracy that is asked for: its mesh, its errors, and whether its period is minimal."""
+"""Accuracy of a cycle: the mesh for a requested accuracy, error estimates, and the minimal period."""

@@ -1,9 +1,9 @@
-"""A cycle by way of three coarser meshes, which say where it lies and how large its errors will be.
+"""Prediction of a cycle and its errors on a fine mesh, from three coarser meshes.
 
-One is coarser in space, one in time, one in both. The orbits of the first two less that of the third are that
-of the fine mesh but for a product of two small errors (the combination technique: Griebel, Schneider, Zenger
-1992), so that one elimination there gives the cycle and its multipliers. By what they differ the errors of
-the coarse meshes are known, and those of the fine one by how fast errors fall at least.
+One mesh is coarse in space, one in time, one in both. The sum of the first two orbits minus the third equals
+the orbit on the fine mesh up to a product of two small errors (combination technique: Griebel, Schneider,
+Zenger 1992), so that one elimination on the fine mesh gives the cycle and its multipliers. The differences of
+the three orbits measure the errors of the coarse meshes; slowest rates of decay bound the fine mesh's errors.
 """
 
 from dataclasses import replace
@@ -20,41 +20,45 @@ from ...orbit.tails import tails_of
 from .calibration import LARGEST_FALL, LEAST_FALL, Calibration, calibration_of
 from .finer_meshes import TOLERANCE, ComparedCycle
 
-ORDERS_LESS, TIMES_FEWER = 2, 1.4
-"""Orders and intervals of the coarse mesh beside those of the fine one that it is made for."""
+ORDER_DIFFERENCE, INTERVAL_RATIO = 2, 1.4
+"""Difference in orders, and ratio of intervals, of the fine mesh and the coarse mesh made to predict it."""
 SERVED_ORDERS, SERVED_INTERVALS = 4, 2.0
-"""Orders that a fine mesh may have more, and times how many intervals."""
+"""Largest difference in orders, and largest ratio of intervals, of a predicted mesh and the coarse mesh."""
 SLOWEST_FALL = 1.2
-"""Of errors in space per order, natural logarithm: the least, in units of the decay of the coefficients."""
+"""Slowest decay of errors in space per order, natural logarithm, in units of the coefficients' decay."""
 
 
 class CoarserMeshes:
-    """The cycle on a coarse mesh, and on those that are finer in space or in time alone."""
+    """The cycle on a coarse mesh, and on meshes that are finer in space only or in time only."""
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
-        """mesh: the fine one; near: an orbit near by, on any mesh. Raises Unsolvable."""
-        order, intervals = mesh.order - ORDERS_LESS, round((mesh.intervals - 1) / TIMES_FEWER) + 1
-        self.mesh, self._tolerance = replace(mesh, order=order, intervals=intervals), TOLERANCE * accuracy
+        """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
+        order = mesh.order - ORDER_DIFFERENCE
+        intervals = round((mesh.intervals - 1) / INTERVAL_RATIO) + 1
+        self.mesh = replace(mesh, order=order, intervals=intervals)
+        self._tolerance = TOLERANCE * accuracy
         self._workspace = workspace
         self._both = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def serve(self, mesh: OrbitMesh) -> bool:
-        """Whether they predict the cycle on a fine mesh."""
+        """Whether the coarse meshes can predict the cycle on a fine mesh."""
         few = (
             mesh.order - self.mesh.order <= SERVED_ORDERS and self._refined_in_time(mesh) <= SERVED_INTERVALS
         )
         return few and (mesh.elements, mesh.stages) == (self.mesh.elements, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
-        """The orbit on a fine mesh, and the errors that it will have there; raises Unsolvable."""
-        space, time = self._on(order=mesh.order), self._on(intervals=mesh.intervals)
-        at = [mesh.carry(each.orbit) for each in (space, time, self._both)]
-        orbit = replace(at[0], values=at[0].values + at[1].values - at[2].values)
+        """The predicted orbit on a fine mesh, and the calibration of this mesh; raises Unsolvable."""
+        space = self._on(order=mesh.order)
+        time = self._on(intervals=mesh.intervals)
+        fine, in_intervals, coarse = (mesh.carry(each.orbit) for each in (space, time, self._both))
+        orbit = replace(fine, values=fine.values + in_intervals.values - coarse.values)
         fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, LEAST_FALL), LARGEST_FALL)
         by_orders = np.exp(fall * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
-        # Each of these two has one of the two errors; those of the fine mesh are not said to be smaller.
+        # Each of the two meshes has one of the errors. The fine mesh's multipliers may be as wrong as the two
+        # differ: their errors need not fall as those of the paths.
         apart = multiplier_change(space.multipliers, time.multipliers)
         in_space = np.append(self._errors(space, by_orders), 0.0)
         in_time = np.append(self._errors(time, by_intervals), apart)
@@ -70,7 +74,7 @@ class CoarserMeshes:
         return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
-        """One part of the errors on a mesh where it is smaller than on the coarse one by a factor, (4,)."""
+        """Errors of a finer mesh, (4,), `factor` times smaller than those of the coarse mesh."""
         errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
         return errors
 

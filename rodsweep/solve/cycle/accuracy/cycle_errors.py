@@ -1,4 +1,4 @@
-"""The errors that a cycle states."""
+"""Error estimates of a cycle."""
 
 from dataclasses import dataclass
 from math import nan
@@ -8,19 +8,20 @@ import numpy as np
 from ....arrays import Array
 
 ROUNDING = 2e-14
-"""Relative error that is left of period and extrema however fine the mesh."""
+"""Smallest stated relative error of period and extrema: rounding errors on any mesh."""
 LEAST_CLAIM = 0.1
-"""Share of the accuracy asked for that an error is never said to be below, for it may be by such luck."""
+"""Smallest stated error in units of the accuracy: a smaller estimate may be small by coincidence."""
 EXTREMA_SLACK = 100.0
-"""How much less accurate than period and largest y, which are met by a node in time and converge fastest, the
-tip's other extrema may be."""
+"""Tolerance of the tip's other extrema in units of the tolerance of period and largest y. Period and largest
+y converge fastest; a time node lies at the largest y."""
 
 
 @dataclass(frozen=True, slots=True)
 class CycleErrors:
-    """Estimates, relative: of the period, of the tip's largest y, and of its other extrema in units of it.
+    """Relative error estimates of the period and the tip's largest y, and of other extrema in units of the
+    largest y.
 
-    multiplier_error: absolute, of the largest nontrivial multiplier.
+    multiplier_error: absolute error estimate of the largest nontrivial multiplier.
     """
 
     period_error: float
@@ -30,12 +31,12 @@ class CycleErrors:
 
     @property
     def largest(self) -> float:
-        """What must not exceed the accuracy asked for."""
+        """Error that is compared with the requested accuracy."""
         return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
 def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
-    """The same of numbers or arrays of one shape."""
+    """`CycleErrors.largest` of numbers, or of arrays with a common shape."""
     largest: Array = np.maximum(np.maximum(period, amplitude), np.asarray(extrema) / EXTREMA_SLACK)
     return largest
 

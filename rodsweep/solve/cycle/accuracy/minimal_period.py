@@ -1,9 +1,9 @@
-"""The minimal period of an orbit, by the harmonics that it has.
+"""Minimal period of an orbit, from the harmonics of its bending strain.
 
 An orbit that closes after T has the minimal period T/g, where g is the greatest common divisor of the numbers
-of all its harmonics. The harmonics of the bending strain that stand out of the orbit's error are present for
-sure; if they have no common divisor, T is proved to be minimal. If they have one, T/g is solved for; where
-only harmonics that may be errors speak for T, the period stays in doubt.
+of all harmonics that are present. A harmonic larger than the orbit's error is certainly present; if the
+certain harmonics have g = 1, T is proved minimal. If g > 1 among harmonics of clear size, the orbit is solved
+again over T/g. If g = 1 only by harmonics that may be errors, the minimal period stays undecided.
 """
 
 from dataclasses import replace
@@ -17,21 +17,22 @@ from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit, node_times
 
 PRESENT = 1e-3
-"""Share of the largest harmonic from which another one is taken for present before errors are known."""
+"""Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not known."""
 CERTAIN = 10.0
-"""Share of the largest harmonic, in units of the relative error of the extrema, that is no error for sure."""
+"""Smallest relative size of a certainly present harmonic, in units of the extrema's relative error."""
 LEAST_PRESENT = 1e-6
-"""What is asked of a harmonic at least, whatever the error estimate, which is the tip's."""
+"""Lower bound of this size: the error estimate is the tip's, and the bending strain may have a larger
+error."""
 
 
 def common_divisor(path: CyclePath, present: float) -> int:
-    """g of the harmonics larger than `present` times the largest; 1 proves that the period is minimal."""
+    """Divisor g of the harmonics larger than `present` times the largest; 1 proves the period minimal."""
     return int(_divisor_of(path.bending_harmonics, present))
 
 
 @compiled
 def _divisor_of(sizes: Array, present: float) -> int:
-    """`common_divisor` of the harmonics of these sizes, from the first; 0 of none."""
+    """`common_divisor` of harmonics of these sizes, (harmonics,), from the first; 0 if all sizes are 0."""
     divisor, least = 0, present * sizes.max()
     for k in range(len(sizes)):
         if sizes[k] > least:
@@ -40,18 +41,18 @@ def _divisor_of(sizes: Array, present: float) -> int:
 
 
 def undecided_divisor(path: CyclePath, error: float) -> int:
-    """How many times shorter than the orbit's its period may be for all that is known; 1 is a proof.
+    """Factor by which the minimal period may be shorter than the orbit's; 1 proves the period minimal.
 
-    error: relative, of the extrema.
+    error: relative error of the extrema.
     """
     return common_divisor(path, max(CERTAIN * error, LEAST_PRESENT))
 
 
 def shortened(orbit: Orbit) -> Orbit:
-    """The orbit over the period that its harmonics have in common, still to be solved for."""
+    """The orbit over the common period of its present harmonics, as a start for Newton's method."""
     g = common_divisor(CyclePath(orbit), PRESENT)
     if g == 1:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)
-    # An even divisor of a symmetric orbit would contradict its symmetry: its harmonics are odd and even.
+    # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
     return replace(orbit, values=np.append(orbit.at(times / g), orbit.period / g))

@@ -1,7 +1,7 @@
-"""The cycle to an accuracy that is asked for, on meshes of its own choice.
+"""The cycle to a requested accuracy, on automatically chosen meshes.
 
-The tails of an orbit near by say which mesh reaches the accuracy (`orbit_mesh`). Where its errors, which are
-measured (`finer_meshes`), are too large after all, they say which one does at least cost.
+The tails of a nearby orbit choose the first mesh (`orbit_mesh`). If the measured errors (`finer_meshes`)
+exceed the accuracy, these errors choose the cheapest sufficient mesh.
 """
 
 from contextlib import suppress
@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, Measures, measures_of
-from ...orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.newton import QUADRATIC_ERROR, Converged, at_orbit, linearised, multipliers_of, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
@@ -25,35 +25,33 @@ from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
-"""Relative distance of Newton's matrix from the orbit that leaves the multipliers right, in units of the
-accuracy, and its bounds."""
+"""Relative distance of Newton's matrix for accurate multipliers, in units of the accuracy, and its bounds."""
 MULTIPLIER_FACTOR = 10.0
-"""Errors of multipliers in units of that distance, the trivial one's error, and what two meshes tell."""
-LEAST_ACCURACY = 1e-12
-FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-7, 1e-3, 1e-3
-"""What the first mesh is chosen for at most, by the tails of an orbit near by, which do not tell more;
-tolerance of that orbit; factor of the accuracy where a mesh is too coarse."""
+"""Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
+LEAST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
+"""Finest accuracy for which a mesh is chosen, by measured errors and by the tails of a nearby orbit."""
+NEAR, AIM_FACTOR = 1e-3, 1e-3
+"""Newton tolerance of the nearby orbit, and factor on the accuracy where a mesh is too coarse."""
 FIRST_SHARE = 0.5
-"""Of what the first mesh of a cycle alone is chosen for: another round costs more than a finer mesh."""
+"""Relative accuracy of a single cycle's first mesh: a second round costs more than a finer first mesh."""
 LEAST_PREDICTED = 6
-"""Intervals of the coarsest mesh whose errors are predicted: with 4 and 5, of which the prediction is made,
-errors in time do not yet fall as a power (largest y off by four times its estimate)."""
+"""Smallest number of intervals of a predicted mesh. For 5, the prediction would use meshes with 4 and 5,
+where errors in time do not yet fall as a power (the largest y was off by four times its estimate)."""
 PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
-"""Distance of a cycle from what coarser meshes predict beyond which their errors are no measure of its own,
-in units of the accuracy, of which up to 4.4 were seen; and its least bound, for rounding."""
+"""Largest distance of a cycle from its prediction, in units of the accuracy, at which predicted errors hold
+(up to 4.4 was seen), and the smallest bound on the distance, for rounding errors."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
-"""Size of what Newton's method may find, in units of what it started from: it must be the same motion."""
-LUCK = 10.0
-"""How much larger an error may be on finer meshes: an extremum may have agreed by luck on coarser ones."""
-MOST_ROUNDS = 8
+"""Bounds on the size of a solution in units of the start's size: the motion must stay the same."""
+ALLOWED_INCREASE, MOST_ROUNDS = 10.0, 8
+"""Factor by which an error may grow on a finer mesh, by coincidence, and maximum number of meshes tried."""
 
 
 @dataclass(frozen=True, eq=False)
 class RefinedCycle:
-    """A cycle, its measures, multipliers and errors.
+    """A cycle with its measures, multipliers and errors.
 
-    calibration: by which the errors are known. multipliers: by descending modulus, the trivial one taken out;
-    trivial_error: its distance from 1.
+    calibration: source of the errors. multipliers: nontrivial multipliers, (rank - 1,), by descending
+    modulus. trivial_error: distance of the trivial multiplier from 1.
     """
 
     fine: Converged
@@ -70,55 +68,55 @@ class RefinedCycle:
 
     @property
     def largest_multiplier(self) -> float:
-        """Modulus of the largest one but the trivial."""
+        """Largest modulus of the nontrivial multipliers."""
         return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
 
     @property
     def divisor(self) -> int:
-        """How many times shorter its period may be for all that is known; 1 proves that it is minimal."""
+        """Factor by which the minimal period may be shorter; 1 proves the period minimal."""
         return undecided_divisor(self.path, self.errors.extrema_error)
 
     @property
     def margin(self) -> float:
-        """How far the largest multiplier's modulus must be from 1 to be told from it."""
+        """Error of the largest multiplier's modulus: a modulus nearer to 1 leaves the stability open."""
         return max(self.trivial_error, self.errors.multiplier_error)
 
     @property
     def stable(self) -> bool | None:
-        """Whether all but the trivial one lie inside the circle; None where the margin does not tell."""
+        """Whether all nontrivial multipliers lie in the unit circle; None if the margin leaves this open."""
         beyond = self.largest_multiplier - 1
         return None if abs(beyond) <= self.margin else beyond < 0
 
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
-        """What the cycle is, and why it is no stable one."""
+        """(status of the cycle, the reason why it is not a stable cycle)."""
         if self.measures.least_stretch <= 0:
             return CycleStatus.left_the_model, f"h1 = {self.measures.least_stretch:.3g} on the cycle"
         if self.errors.largest > accuracy:
-            return CycleStatus.not_settled, "the cycle is less accurate than asked for"
+            return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
         if self.divisor != 1:
-            shorter = f"that its period is {self.divisor} times shorter cannot be excluded"
+            shorter = f"a period that is {self.divisor} times shorter cannot be excluded"
             return CycleStatus.not_settled, shorter
         if self.stable is None:
-            return CycleStatus.not_settled, f"its multiplier is 1 within {self.margin:.0e}"
+            return CycleStatus.not_settled, f"its largest multiplier is 1 within {self.margin:.0e}"
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
 
 
 def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
-    """The cycle on a mesh that is calibrated."""
+    """A cycle with the errors of its calibrated mesh."""
     path, errors = CyclePath(found.orbit), calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     by_matrix = MULTIPLIER_FACTOR * largest * (found.distance + trivial_error)
-    at_least = errors.amplitude_error * _by_exponent(multipliers)
-    errors = replace(errors, multiplier_error=max(errors.multiplier_error, at_least) + by_matrix)
+    by_exponent = errors.amplitude_error * _by_exponent(multipliers)
+    errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
 
 
 def _by_exponent(multipliers: Complex) -> float:
-    """Change of the largest multiplier with a relative change of its exponent, |mu ln |mu||.
+    """Change of the largest multiplier per relative change of its exponent, |mu ln |mu||.
 
-    Exponents are relatively as inaccurate as amplitudes, also where two meshes have one multiplier by luck.
+    Exponents have the relative error of amplitudes, even if the multiplier agrees on two meshes by chance.
     """
     modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
     return modulus * abs(log(modulus)) if modulus else 0.0
@@ -127,13 +125,13 @@ def _by_exponent(multipliers: Complex) -> float:
 def refine(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
-    """The cycle near an orbit that is no more than near one, as accurate as asked for or as the limits allow.
+    """The cycle near an approximate orbit, to the accuracy or to the finest mesh; raises Unsolvable.
 
-    Raises Unsolvable where there is none. workspace: memory of the matrices; parameter: along which they have
-    tangents. A cycle without it stands alone: finer meshes measure its errors where coarser ones do not.
+    workspace: memory of the matrices. parameter: parameter of the cycle's tangent; a cycle without one is a
+    single cycle, whose errors are predicted by coarser meshes where possible.
 
-    Next to a Hopf point a coarse mesh has no cycle at all, for its own Hopf point is beyond: finer ones are
-    tried then.
+    Near a Hopf point a coarse mesh may have no cycle, because its own Hopf point lies beyond. Finer meshes
+    are tried in this case.
     """
     aim, start = max(accuracy, FIRST_ACCURACY), orbit
     while True:
@@ -149,19 +147,19 @@ def refine(
             found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
-            if aim <= LEAST_ACCURACY or not orbit.symmetric:  # those born at Hopf points are
+            if aim <= LEAST_ACCURACY or not orbit.symmetric:  # only symmetric cycles are born at Hopf points
                 raise
-            aim = max(AIM_LOWERED * aim, LEAST_ACCURACY)
+            aim = max(AIM_FACTOR * aim, LEAST_ACCURACY)
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
 def _predicted_cycle(
     mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
-    """A cycle that stands alone, on the first mesh or a finer one, as coarser meshes predict it.
+    """A single cycle as coarser meshes predict it, on a mesh or on a finer one.
 
-    The best is returned where limits do not allow the accuracy. Raises Unsolvable where a coarser mesh has no
-    such cycle, where their errors do not fall as they should, or where they do not predict it.
+    The best cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a coarser mesh
+    has no such cycle, if the errors do not decrease, or if the cycle is far from its prediction.
     """
     coarser, last = CoarserMeshes(mesh, near, accuracy, workspace), inf
     orbit, known = best = coarser.predicted(mesh)
@@ -172,8 +170,8 @@ def _predicted_cycle(
         if error <= accuracy:
             break
         if error > last:
-            raise Unsolvable("the errors do not fall on finer meshes")
-        mesh, last = finer_mesh(mesh, known.planned(accuracy)), LUCK * error
+            raise Unsolvable("the errors do not decrease on finer meshes")
+        mesh, last = finer_mesh(mesh, known.planned(accuracy)), ALLOWED_INCREASE * error
         if not mesh.allowed:
             break
         if not coarser.serve(mesh):
@@ -189,9 +187,9 @@ def _predicted_cycle(
 def calibrated_cycle(
     found: Converged, before: Calibration | None, accuracy: float, parameter: str | None
 ) -> RefinedCycle:
-    """A cycle with errors that are measured, on finer meshes if need be; raises Unsolvable.
+    """A cycle with measured errors, on finer meshes if necessary; raises Unsolvable.
 
-    before: the calibration of one near by. The best is returned where limits do not allow the accuracy.
+    before: calibration at a nearby cycle. The best cycle is returned if no allowed mesh reaches the accuracy.
     """
     best, last = None, inf
     for _ in range(MOST_ROUNDS):
@@ -201,7 +199,8 @@ def calibrated_cycle(
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        finer, last = finer_mesh(before.mesh, before.planned(accuracy)), LUCK * cycle.errors.largest
+        last = ALLOWED_INCREASE * cycle.errors.largest
+        finer = finer_mesh(before.mesh, before.planned(accuracy))
         if not finer.allowed:
             break
         found = _on(finer, found, accuracy, parameter)
@@ -211,26 +210,26 @@ def calibrated_cycle(
 
 
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
-    """An orbit on another mesh, with the matrix at itself, whose multipliers are right to rounding."""
-    last = (newton_tolerance(accuracy) / QUADRATIC) ** 0.5  # the matrix at the orbit makes one step more
-    there = newton(mesh.carry(found.orbit), last, found.workspace)
-    return linearised(same_motion(there, found.orbit.size), parameter)
+    """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
+    last = (newton_tolerance(accuracy) / QUADRATIC_ERROR) ** 0.5  # `linearised` makes one more step
+    solution = newton(mesh.carry(found.orbit), last, found.workspace)
+    return linearised(same_motion(solution, found.orbit.size), parameter)
 
 
 def same_motion(found: Converged, size: float) -> Converged:
-    """What was found, if its size is near that of the motion it was sought from; Unsolvable otherwise."""
+    """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
     if not LEAST_SIZE * size < found.orbit.size < LARGEST_SIZE * size:
-        raise Unsolvable("Newton's method left the motion that it started from")
+        raise Unsolvable("Newton's method converged to another motion than the one at its start")
     return found
 
 
 def refined_cycle(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
-    """The cycle near an orbit, over its minimal period; raises Unsolvable where there is none.
+    """The cycle near an orbit, over its minimal period; raises Unsolvable.
 
-    workspace and parameter: as in `refine`. Where its multipliers do not tell whether it is stable, those
-    for a hundredth of the accuracy may.
+    workspace, parameter: as in `refine`. If the multipliers leave the stability open, the cycle is solved
+    again for a hundredth of the accuracy.
     """
     found = refine(shortened(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, PRESENT) > 1:
@@ -241,10 +240,10 @@ def refined_cycle(
 
 
 def newton_tolerance(accuracy: float) -> float:
-    """What Newton's method may leave, relative."""
+    """Relative tolerance of Newton's method for a cycle of this accuracy."""
     return max(1e-2 * accuracy, 1e-13)
 
 
 def matrix_distance(accuracy: float) -> float:
-    """Relative distance from an orbit at which a matrix still has the right multipliers."""
+    """Largest relative distance between an orbit and a matrix with accurate multipliers."""
     return min(max(MATRIX_SHARE * accuracy, LEAST_DISTANCE), LARGEST_DISTANCE)

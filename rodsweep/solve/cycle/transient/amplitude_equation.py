@@ -1,10 +1,11 @@
-"""Slow motions about the straight rod by their amplitude equation, which predicts where they go.
+"""Amplitude equation of slow motions about the straight rod, which predicts their final amplitude.
 
-Per period they grow by g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies
-at a*^2 = g0/c; c is measured where it shows in g, which near a* may be lost in the integrator's error. The
-linear growth of a rod near a limit differs from that of the limit: what is measured is corrected by the
-difference. What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the
-faster the larger it is (c < 0), is scaled up.
+The amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that a cycle has the
+amplitude a* = sqrt(g0/c). The coefficient c is measured where c a^2 exceeds the integrator's error, which it
+may not near a*. A rod near a limit grows linearly at a slightly different rate than the rod in the limit; the
+measured growth is corrected by the difference. A slowly decaying motion is scaled down until the motion
+decays at the linear rate. A slowly growing motion with a growth that increases with the amplitude (c < 0) is
+scaled up.
 """
 
 from math import isnan, nan
@@ -14,81 +15,88 @@ import numpy as np
 from ....arrays import Array
 
 SLOW_GROWTH = 0.2
-"""Linear growth per period below which an amplitude is predicted rather than waited for."""
-WELL_SHOWN = 10.0
-"""What c must show in the growth, in units of the noise, to replace the c of a larger motion: a tenth of it
-is noise then. In the noise itself c changes its sign."""
-NEAR = 0.1
-"""Relative distance from the predicted amplitude that is left to Newton's method."""
+"""Linear growth per period below which the amplitude is predicted instead of integrated."""
+SIGNIFICANT_GROWTH = 10.0
+"""Part of c in the growth, in units of the noise, at which a new c replaces the c of a larger motion. A tenth
+of the new c is noise then; a c measured within the noise may have the wrong sign."""
+NEAR_AMPLITUDE = 0.1
+"""Relative distance from the predicted amplitude within which Newton's method takes over."""
 SHRINK, LARGEST_JUMP = 0.7, 4.0
-"""The factor for what decays slowly (its inverse for what grows so), near enough to 1 to meet a cycle on the
-way; the largest factor."""
-LINEAR = 0.05
-"""Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
+"""Factor on the state of a slowly decaying motion (the inverse applies to a growing motion), near enough to 1
+not to jump over a cycle; and the largest factor."""
+LINEAR_TOLERANCE = 0.05
+"""Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
 
 
 class AmplitudeEquation:
     """g = g0 - c |z|^2 of one rod, from the returns of its motion: times, (k,), and states, (k, unknowns).
 
-    period: of the leading mode; linear_rate: g0 per time; excess: what the rod has of it more than the beam
-    that is followed, both 1/tau2; noise: growth per period that the integrator may add.
+    period: of the leading mode. linear_rate: g0 per time, 1/tau2. excess: linear growth rate of the rod minus
+    that of the integrated beam, 1/tau2. noise: growth per period that the integrator may add.
     """
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
-        self.period, self.linear_rate, self.excess, self.noise = period, linear_rate, excess, noise
-        self.bend = nan
-        """c, once it has shown."""
+        self.period, self.linear_rate = period, linear_rate
+        self.excess, self.noise = excess, noise
+        self.coefficient = nan
+        """Coefficient c; NaN until the growth shows it."""
 
     def growth(self, times: Array, states: Array) -> tuple[float, float]:
-        """(growth of |z| over the last return, that of the leading mode), of the rod and not of the beam.
+        """(growth of |z| over the last return, linear growth over this time), of the rod, not of the beam.
 
         times: (k,); states: (k, unknowns).
         """
-        sizes, duration = np.linalg.norm(states[-2:], axis=1), float(times[-1] - times[-2])
+        sizes = np.linalg.norm(states[-2:], axis=1)
+        duration = float(times[-1] - times[-2])
         growth = float(np.log(sizes[1] / sizes[0]))
         return growth + self.excess * duration, self.linear_rate * duration
 
     def slow(self, times: Array, states: Array) -> bool:
-        """Whether the motion is a slowly growing or decaying leading mode."""
-        return max(map(abs, self.growth(times, states))) <= SLOW_GROWTH and self._in_time(times)
+        """Whether the motion is a slowly growing or decaying leading mode; arguments as of `growth`."""
+        return max(map(abs, self.growth(times, states))) <= SLOW_GROWTH and self._has_period_of_mode(times)
 
     def decays_as_linear(self, times: Array, states: Array) -> bool:
-        """Whether the returns shrink steadily, at last as the leading mode does, or would but for noise."""
+        """Whether the returns shrink steadily and the last as the leading mode, up to noise."""
         growth, linear = self.growth(times, states)
-        sizes, margin = np.linalg.norm(states, axis=1), LINEAR * abs(linear)
+        sizes = np.linalg.norm(states, axis=1)
+        margin = LINEAR_TOLERANCE * abs(linear)
         falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
         alike = bool(falls.all()) and abs(growth - linear) < margin
-        faded = abs(self.bend) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
-        return linear < 0 and (alike or faded) and self._in_time(times)
+        # With a known c the distance from the linear rate is bounded by c |z|^2, whatever the noise.
+        small = abs(self.coefficient) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
+        return linear < 0 and (alike or small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
-        """Whether the motion decays faster than the leading mode, so that no cycle is near."""
+        """Whether the motion decays faster than the leading mode; no cycle is near in this case."""
         growth, linear = self.growth(times, states)
-        known = self.bend > 0 and self.slow(times, states)
+        known = self.coefficient > 0 and self.slow(times, states)
         return linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
 
     def jump(self, times: Array, states: Array) -> float | None:
-        """The factor to where the growth should vanish, or towards it; None if that is here, or not known."""
+        """Factor on the state to the amplitude at which the growth vanishes, or towards this amplitude.
+
+        None if the state has the right amplitude already, or if this amplitude is not known.
+        """
         growth, linear = self.growth(times, states)
         if not self.slow(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))
-        here = (linear - growth) / size**2
-        if abs(linear - growth) > self.noise * (1 if isnan(self.bend) else WELL_SHOWN):
-            self.bend = here
-        bend = here if isnan(self.bend) else self.bend
-        if isnan(self.bend) and linear > 0:
-            factor = LARGEST_JUMP  # too small to feel what bends its growth
-        elif linear > 0 and bend > 0:
-            factor = float(np.clip(np.sqrt(linear / bend) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
-        elif linear > 0 or (bend < 0 and growth > self.noise):
-            factor = 1 / SHRINK  # it grows the faster the larger it is
-        elif bend > 0 or growth < -self.noise:
+        measured = (linear - growth) / size**2
+        if abs(linear - growth) > self.noise * (1 if isnan(self.coefficient) else SIGNIFICANT_GROWTH):
+            self.coefficient = measured
+        coefficient = measured if isnan(self.coefficient) else self.coefficient
+        if isnan(self.coefficient) and linear > 0:
+            factor = LARGEST_JUMP  # at this small amplitude the growth does not show c
+        elif linear > 0 and coefficient > 0:
+            factor = float(np.clip(np.sqrt(linear / coefficient) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
+        elif linear > 0 or (coefficient < 0 and growth > self.noise):
+            factor = 1 / SHRINK  # the growth increases with the amplitude
+        elif coefficient > 0 or growth < -self.noise:
             factor = SHRINK
         else:
             return None
-        return factor if abs(factor - 1) >= NEAR else None
+        return factor if abs(factor - 1) >= NEAR_AMPLITUDE else None
 
-    def _in_time(self, times: Array) -> bool:
-        """Whether the tip returns as the leading mode does: elsewhere its growth predicts nothing."""
-        return bool(abs((times[-1] - times[-2]) / self.period - 1) < LINEAR)
+    def _has_period_of_mode(self, times: Array) -> bool:
+        """Whether the return time is the leading mode's period; otherwise the growth predicts nothing."""
+        return bool(abs((times[-1] - times[-2]) / self.period - 1) < LINEAR_TOLERANCE)

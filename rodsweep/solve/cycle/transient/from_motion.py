@@ -1,4 +1,4 @@
-"""From the motion of a rod near a cycle to an orbit from which Newton's method can start."""
+"""Start of Newton's method: an orbit from the integrated motion of a rod near a cycle."""
 
 import numpy as np
 
@@ -11,26 +11,26 @@ from ...orbit.orbit import Orbit, node_times
 from ...orbit.symmetry import NONE, REFLECTION
 
 STAGES, INTERVALS = 3, 20
-"""Of the first orbit, over its period."""
+"""Collocation stages of the start, and its intervals per return of the tip."""
 PHASES = 128
-"""Times at which the largest y is sought."""
+"""Number of times at which the largest y is searched."""
 SYMMETRIC = 0.2
-"""Largest relative distance of a motion from its reflection, half a period on, if it is symmetric."""
+"""Largest relative distance of a symmetric motion from its reflection half a period later."""
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
     """The last period of a run as an orbit of the rod `form`, on the beam's mesh.
 
-    turns: returns of the tip in a period. form may be the limit of a rod that the beam is near.
+    turns: returns of the tip per period. The beam may be a rod near the limit in which the rod of `form` is.
     """
     from scipy.interpolate import CubicSpline  # a tenth of a second of every start
 
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
     times = begin + period * np.arange(PHASES) / PHASES
-    turn = spline(times)
-    top = float(times[int(np.argmax(beam.tip(turn)[1]))])
-    symmetry = REFLECTION if asymmetry(beam, turn) < SYMMETRIC else NONE
+    whole = spline(times)
+    top = float(times[int(np.argmax(beam.tip(whole)[1]))])
+    symmetry = REFLECTION if asymmetry(beam, whole) < SYMMETRIC else NONE
     intervals = INTERVALS * turns // symmetry.parts
     duration = period / symmetry.parts
     at = top + duration * node_times(intervals, STAGES)
@@ -40,16 +40,20 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
 
 def asymmetry(beam: Beam, states: Array) -> float:
-    """Relative distance of the bending moments of states (m, n) over a period from their reflection."""
+    """Relative distance of the bending moments of states (m, n) from their reflection half a period later.
+
+    The m states are equidistant over a period.
+    """
     moments = beam.layout.field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
 def stressed(beam: Beam, form: StressForm, z: Array) -> Array:
-    """States of `form`, (m, unknowns), of the time stepper's z, (m, its unknowns), on the same mesh."""
+    """States of `form`, (m, unknowns), from states z of the beam, (m, its unknowns), on the same mesh."""
     S = beam.stresses(z)
-    V, G = np.empty(S.shape), np.empty((len(S), S.shape[-1]))
+    V = np.empty(S.shape)
+    G = np.empty((len(S), S.shape[-1]))
     if form.omega_unknown:
         for k, state in enumerate(beam.layout.state(S, S)):
             velocity = np.empty(G.shape)

@@ -1,7 +1,7 @@
-"""The tip's path from a start to where its motion is left, from the integrator's steps.
+"""Path of the tip from the start of a motion to the end of its integration, from the integrator's steps.
 
-Kept of each step are the tip and its velocity, whose cubics have an error below the integrator's own; a state
-is some hundred numbers, the tip with its velocity six.
+Tip and velocity are kept for each step. Their cubics have errors below the integrator's own, and six numbers
+replace a state of several hundred.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from ...motion.integrator import Trajectory
 
 
 class TipTrace:
-    """Tip and velocity of one motion at the steps of its runs, which follow each other."""
+    """Tip and velocity at the steps of successive runs of one motion."""
 
     def __init__(self, beam: Beam) -> None:
         self.beam = beam
@@ -21,9 +21,9 @@ class TipTrace:
         """Tip (x, y, theta) and velocity of each run, (6, steps)."""
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
-        """The start z and the state it relaxes to, both (unknowns,): a straight line between their tips.
+        """Adds a straight line between the tips of the start z and of its relaxed state, both (unknowns,).
 
-        Rates of what relaxes are so large, 1e10/tau2, that they say nothing of the way.
+        The relaxation rates, up to 1e10/tau2, are too large for a cubic.
         """
         tips = self.beam.tip(np.stack([z, relaxed]))
         slope = (tips[:, 1:] - tips[:, :1]) / duration
@@ -31,12 +31,14 @@ class TipTrace:
         self.tips.append(np.concatenate([tips, np.repeat(slope, 2, axis=1)]))
 
     def add(self, run: Trajectory, clock: float) -> None:
-        """The run that begins at the time clock, in tau2."""
-        there = np.isfinite(run.states).all(axis=1)
-        states = run.states[there]
+        """Adds a run that begins at the time `clock`, in tau2."""
+        # A run that left the model may end with a state that is not finite.
+        finite = np.isfinite(run.states).all(axis=1)
+        states = run.states[finite]
+        # A small imaginary step along the rates gives the tip's velocity without cancellation.
         moved = states + 1j * TINY * self.beam.rate(states)
         tips = self.beam.tip(moved)
-        self.times.append(clock + run.times[there])
+        self.times.append(clock + run.times[finite])
         self.tips.append(np.concatenate([tips.real, tips.imag / TINY]))
 
     def at_equal_times(self, count: int) -> Array:
@@ -45,13 +47,13 @@ class TipTrace:
 
         times = np.linspace(0.0, self.times[-1][-1], count)
         starts = np.array([run[0] for run in self.times])
-        of = np.searchsorted(starts, times, side="right") - 1
+        runs = np.searchsorted(starts, times, side="right") - 1
         out = np.empty((4, count))
         out[0] = times
         for number, (at, tips) in enumerate(zip(self.times, self.tips, strict=True)):
-            here = of == number
-            if len(at) > 1 and here.any():
-                out[1:, here] = CubicHermiteSpline(at, tips[:3], tips[3:], axis=1)(times[here])
+            within = runs == number
+            if len(at) > 1 and within.any():
+                out[1:, within] = CubicHermiteSpline(at, tips[:3], tips[3:], axis=1)(times[within])
             else:
-                out[1:, here] = tips[:3, :1]
+                out[1:, within] = tips[:3, :1]
         return out

@@ -1,1 +1,1 @@
-"""Newton's matrix of a periodic orbit: its elimination, its solutions, the memory that it takes."""
+"""Newton's matrix of a periodic orbit: elimination, solutions, multipliers, memory."""

@@ -1,16 +1,16 @@
-"""The elimination of Newton's matrix of an orbit, interval by interval, compiled.
+"""Elimination of an orbit's Newton matrix, interval by interval, compiled.
 
-On each of the intervals, from the state x_0 at its start, the stages x_1 ... x_s satisfy
+In each interval, with the state x_0 at its start, the stages x_1 ... x_s satisfy
 
     sum_j d_ij M x_j = h F(x_i),        j = 0 ... s,
 
-with the method's differentiation matrix d (s is at least 3), the diagonal mass matrix M (0 where an unknown
-has no time derivative) and the balance F. The blocks of Newton's matrix off its diagonal are d_ij M: diagonal
-matrices. So the first stage is eliminated at the price of an inverse X, the second at that of an inverse Y
-and three products, for all that both leave of the other blocks is a combination of Z = M X, W = M Y, Z W, W Z
-and Z W Z. The others are eliminated by products of blocks, and the interval becomes a map of its start to its
-end. The maps' product P is the derivative of the flow over all intervals. A block's pivots are its own; the
-blocks on the diagonal, d_ii M - h F', are regular while h is short against what grows.
+with the method's differentiation matrix d (s >= 3), the diagonal mass matrix M (0 where an unknown has no
+time derivative) and the balance F. The off-diagonal blocks of Newton's matrix, d_ij M, are diagonal matrices.
+Therefore the elimination of the first stage costs one inverse X, and that of the second stage one inverse Y
+and three products: both change the other blocks by combinations of Z = M X, W = M Y, Z W, W Z and Z W Z. The
+other stages are eliminated by products of blocks. Each interval becomes a map of its start to its end, and
+the product P of these maps is the derivative of the flow over all intervals. Pivots are chosen within a
+block: the diagonal blocks d_ii M - h F' are regular if h is short compared with the time of growth.
 """
 
 import numpy as np
@@ -25,17 +25,17 @@ from .substitution import reduce, to_end
 from .workspace import Factors
 
 ROWS = 8
-"""Rows of several blocks that stay in the fastest memory together."""
+"""Rows of several blocks that fit into the first-level cache together."""
 
 
 @compiled_for_vectors
 def eliminate(
     points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
 ) -> Array:
-    """Newton's matrix at the points, (1 + K s, n), into the factors; raises nothing.
+    """Eliminates Newton's matrix at the points, (1 + K s, n), into the factors.
 
-    V: of the stages, (K, s, 3, nodes + 1). columns: right sides, (K, s, columns, n), which become `reduced`.
-    Returns what they make of the last end where the start stays, (columns, n).
+    V: velocities of the stages, (K, s, 3, nodes + 1). columns: right sides, (K, s, columns, n), which are
+    reduced in place. Returns the changes of the last end by the right sides for a fixed start, (columns, n).
     """
     K, s, n = columns.shape[0], columns.shape[1], columns.shape[3]
     tip, right, parts = np.empty((3, n)), np.empty((s, n, n)), np.empty((5, n, n))
@@ -63,9 +63,9 @@ def eliminate(
 
 @compiled_for_vectors
 def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """The blocks of one interval, (s, s, n, n), of which the diagonal is given; right side for x_0 = M^-1.
+    """Eliminates the blocks of one interval, (s, s, n, n), of which the diagonal is given.
 
-    parts: work array, (5, n, n).
+    right: right side of each stage for x_0 = M^-1, (s, n, n), made here. parts: work array, (5, n, n).
     """
     s, n = B.shape[0], B.shape[2]
     pivots, rows = np.empty(n, np.int64), np.empty((n, PANEL))
@@ -90,9 +90,9 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
 @compiled_for_vectors
 def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """The first two stages out of one interval's others: their blocks, and their right side for x_0 = M^-1.
+    """Other stages' blocks, and right sides for x_0 = M^-1, after elimination of the first two stages.
 
-    parts: (5, n, n), of which the first is M X; the others are made.
+    parts: (5, n, n), of which the first is M X; the others are computed here.
     """
     s, n = B.shape[0], B.shape[2]
     d, mass, minus = p.differentiation, p.mass, -np.ones(n)
@@ -125,10 +125,10 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 def _subtract_parts(
     out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
 ) -> None:
-    """What the first two stages leave in the equations of another one out of rows of a block, (n, n).
+    """Subtracts the effect of the first two stages from rows of another stage's block, (n, n).
 
-    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); place: the stage, and the column of d, (s, s + 1), that the
-    block is of; rows: from one to another; scale: of the block's columns, (n,).
+    parts: Z, W, Z W, W Z and Z W Z, (5, n, n). place: the stage, and the column of d, (s, s + 1), of the
+    block. rows: first and last row. scale: factors of the block's columns, (n,).
     """
     i, c = place
     first, second = d[0, c], d[1, c]

@@ -1,4 +1,4 @@
-"""The inverse of a small dense matrix in place, compiled: most of its work is products of panels."""
+"""Inverse of a small dense matrix in place, compiled: most of the work is products of panels."""
 
 from typing import Any
 
@@ -9,17 +9,17 @@ from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import product
 
 PANEL = 12
-"""Columns that `invert` treats one by one before it updates the others by a product."""
+"""Number of columns swept one by one by `invert` before a product updates the remaining columns."""
 LEAST_PIVOT = 0.1
-"""Pivots smaller than this share of the largest in their column are exchanged for it."""
+"""Smallest pivot in units of its column's largest entry; a smaller pivot is exchanged for this entry."""
 
 
 @compiled_for_vectors
 def invert(A: Array, pivots: Any, rows: Array) -> None:
-    """A^-1 in place, by Gauss and Jordan with partial pivoting, PANEL columns at a time.
+    """Replaces A by A^-1 with Gauss-Jordan elimination and partial pivoting, PANEL columns at a time.
 
-    A: (n, n); work arrays: pivots (n,) of integers, rows (n, PANEL). A row of A is read as a column of its
-    transpose, whose inverse is the transpose of the inverse.
+    A: (n, n). Work arrays: pivots, (n,) integers, and rows, (n, PANEL). A row of A in memory is treated as a
+    column of A's transpose: the inverse of the transpose is the transpose of the inverse.
     """
     n = len(A)
     ones, extents = np.ones(2), np.empty(6, np.int32)
@@ -45,7 +45,7 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
 
 @compiled_for_vectors
 def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
-    """The steps of Gauss and Jordan for the columns from first to last, within these."""
+    """Gauss-Jordan steps for the columns from first to last, applied to these columns only."""
     n = len(A)
     for k in range(first, last):
         row, largest, p = A[k], 0.0, k

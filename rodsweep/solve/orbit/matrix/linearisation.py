@@ -1,7 +1,7 @@
-"""Newton's matrix at an orbit: its step, the tangents of the branch, and all Floquet multipliers.
+"""Newton's matrix at an orbit: Newton's step, the tangent of the branch, and all Floquet multipliers.
 
-One elimination of the intervals (`elimination`) leaves a system for the state at t = 0 and the period, with
-the phase condition as its last row.
+The elimination of the intervals (`elimination`) leaves a system for the state at t = 0 and the period. The
+last row of this system is the phase condition.
 """
 
 import numpy as np
@@ -23,48 +23,51 @@ from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
 
 class Linearisation:
-    """Newton's matrix at an orbit; it corrects others until its workspace is used by another matrix.
+    """Newton's matrix at an orbit. It corrects nearby orbits until another matrix is made in its workspace.
 
-    step: Newton's step there; tangent: the derivative of the orbit by the parameter, where one is given. Both
-    are arrays like `Orbit.values`.
+    step: Newton's step at the orbit, (N,). tangent: derivative of the orbit by the parameter, (N,); None
+    without a parameter.
     """
 
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
-        self.orbit, self.workspace = orbit, workspace
+        self.orbit = orbit
+        self.workspace = workspace
         self._memory = MatrixMemory(workspace, orbit.intervals, orbit.stages, orbit.form.unknowns)
-        p, factors = orbit.semidiscrete, self._memory.factors
+        p = orbit.semidiscrete
+        factors = self._memory.factors
         along = Along(STILL, p.mass) if parameter is None else change_along(orbit.form, parameter)
         count = 2 if parameter is None else 3
         steps, self._by_period = linearise(orbit.values, count, along, p, factors)
-        self.step, self.tangent = steps[0], None if parameter is None else steps[1]
+        self.step = steps[0]
+        self.tangent = None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
-        """Newton's step at another orbit near by, (N,); raises RuntimeError once the factors are lost."""
+        """Newton's step at a nearby orbit, (N,); raises RuntimeError if the factors were overwritten."""
         step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._memory.factors)
         return step
 
     def multipliers(self) -> Complex:
-        """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
+        """Floquet multipliers above rounding errors, (rank,), trivial one included, by descending modulus."""
         return over_period(returns_of(self._memory.propagator, self.orbit), self.orbit)
 
 
 def returns_of(propagator: Array, orbit: Orbit) -> Complex:
-    """The multipliers of the map over what is solved, S^-1 P, but rounding, (rank,); P: (n, n)."""
+    """Nonzero multipliers, (rank,), of the map S^-1 P over the solved part of the period; P: (n, n)."""
     return nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
 
 
 def over_period(returns: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers by descending modulus from those of the map over what is solved, both (rank,)."""
+    """Floquet multipliers by descending modulus, from those of the map over the solved part, (rank,) each."""
     values: Complex = returns**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
 STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
-"""No change of the rod: nothing of it is read."""
+"""Placeholder for no change of the rod, which compiled code never reads."""
 
 
 def change_along(form: StressForm, name: str) -> Along:
-    """How a rod changes with the coordinate of a parameter, the mass, (n,), among it."""
+    """Change of a rod and of its mass, (n,), with the coordinate of a parameter."""
     change = form.change(name)
     return Along(change, form.mass_of(change))
 
@@ -73,10 +76,10 @@ def change_along(form: StressForm, name: str) -> Along:
 def linearise(
     values: Array, count: int, along: Along, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """Newton's matrix at an orbit, values (N,), into the factors: steps, and reduced slopes by the period.
+    """Eliminates Newton's matrix at an orbit, values (N,), into the factors.
 
-    count: 2 for Newton's step alone, 3 for the derivative of the orbit along a parameter behind it. The steps
-    are (count - 1, N), the others (K, s, n).
+    Returns the steps, (count - 1, N), and the reduced derivative by the period, (K, s, n). count: 2 for
+    Newton's step alone; 3 for Newton's step, then the orbit's derivative along a parameter.
     """
     K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
@@ -106,7 +109,7 @@ def linearise(
 
 @compiled_for_vectors
 def jump_of(points: Array, p: Semidiscrete) -> Array:
-    """S x(0) - x(T/p) of points, (1 + K s, n), shape (n,)."""
+    """Residual S x(0) - x(T/p) of points, (1 + K s, n), shape (n,)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):
@@ -116,9 +119,10 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """The steps, (columns, N), for right sides at the ends, (columns, n + 1), and reduced ones of the stages.
+    """Steps, (columns, N), from right sides of the closing and phase conditions, (columns, n + 1).
 
-    by_period: (K, s, n), columns: (K, s, columns, n).
+    by_period: reduced derivative by the period, (K, s, n). columns: reduced right sides of the stages, (K, s,
+    columns, n).
     """
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
@@ -150,9 +154,9 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 def reduced_residuals(
     points: Array, duration: float, rod: Semidiscrete, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """The residuals of points, (1 + K s, n), for a rod, reduced by the matrix of another one, p, near by.
+    """Residuals of points, (1 + K s, n), for a rod, reduced by the matrix of a nearby rod p.
 
-    Returns them, (K, s, 1, n), and what they make of the last end where the start stays, (1, n).
+    Returns the reduced residuals, (K, s, 1, n), and the change of the last end for a fixed start, (1, n).
     """
     K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
     columns, ends = np.empty((K, s, 1, n)), np.zeros((1, n))
@@ -167,9 +171,9 @@ def reduced_residuals(
 def reduced_variations(
     values: Array, rod: Semidiscrete, along: Along, variations: Array, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """`variation_sides` of an orbit's values for a rod, reduced by the matrix of another one, p, near by.
+    """`variation_sides` of an orbit's values for a rod, reduced by the matrix of a nearby rod p.
 
-    Returns them, (K, s, m, n), and what they make of the last end where the start stays, (m, n).
+    Returns the reduced right sides, (K, s, m, n), and the changes of the last end for a fixed start, (m, n).
     """
     K, s, n, m = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass), len(variations)
     columns, ends = np.empty((K, s, m, n)), np.zeros((m, n))
@@ -182,7 +186,7 @@ def reduced_variations(
 
 @compiled_for_vectors
 def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Newton's step at an orbit, values and result (N,), by the matrix of another one near by."""
+    """Newton's step at an orbit by the matrix of a nearby orbit; values and step (N,)."""
     K, s, n = by_period.shape
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
@@ -194,7 +198,7 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
 
 @compiled_for_vectors
 def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
-    """The largest change of n2, m3 and the period by a step, (N,), each in units of its largest value."""
+    """Largest change of n2, m3 and the period by a step, (N,), each in units of its largest value."""
     largest = abs(step[-1]) / abs(values[-1])
     for change in step:
         if not np.isfinite(change):

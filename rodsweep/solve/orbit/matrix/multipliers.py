@@ -1,8 +1,8 @@
-"""The eigenvalues of a matrix of low rank, as the derivative of a flow over a period is: all but rounding.
+"""Nonzero eigenvalues of a matrix of low rank, such as the derivative of a flow over a period.
 
-Few directions survive a period. A = Q R of that rank, found by pivoted Gram-Schmidt, has the nonzero
-eigenvalues of the small matrix R Q. For this Q need not be orthogonal: only A = Q R must hold to rounding,
-and it does, however much the columns of A differ in size.
+Few directions survive a period. The factorisation A = Q R of this rank, by pivoted Gram-Schmidt, has the
+nonzero eigenvalues of the small matrix R Q. For this purpose Q need not be orthogonal. A = Q R must hold to
+rounding, which it does even if the columns of A differ much in size.
 """
 
 import numpy as np
@@ -12,13 +12,13 @@ from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.small_eigenvalues import eigenvalues
 
 NEGLIGIBLE = 1e-17
-"""Share of the derivative of the flow below which it is rounding."""
+"""Largest norm of a negligible column, in units of the largest column of the flow's derivative."""
 
 
 def nonzero_eigenvalues(A: Array) -> Complex:
-    """The eigenvalues, (rank,), of a matrix (n, n) of low rank, without those that are 0 to rounding.
+    """Eigenvalues, (rank,), of a matrix (n, n) of low rank, without those that are 0 to rounding.
 
-    Raises LinAlgError where A has entries that are not finite.
+    Raises LinAlgError if A has entries that are not finite.
     """
     values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), NEGLIGIBLE)
     if not len(values):
@@ -28,7 +28,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
 @compiled_for_vectors
 def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
-    """Those of A after `compressed`, (rank,); none, (0,), where A has entries that are not finite."""
+    """Eigenvalues of A after `compressed`, (rank,); empty, (0,), if A has entries that are not finite."""
     small = compressed(A, negligible)
     for value in small.flat:
         if not np.isfinite(value):
@@ -38,9 +38,9 @@ def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
 
 @compiled_for_vectors
 def compressed(A: Array, negligible: float) -> Array:
-    """A matrix (rank, rank) with the eigenvalues of A, (n, n), but those that a change of A makes 0.
+    """Matrix (rank, rank) with the eigenvalues of A, (n, n), apart from zeros of a slightly changed A.
 
-    negligible: the largest column of that change in units of A's.
+    negligible: largest column of this change in units of A's largest column.
     """
     n = len(A)
     columns, norms = A.T.copy(), np.empty(n)
@@ -58,7 +58,7 @@ def compressed(A: Array, negligible: float) -> Array:
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _without(columns[j], q, r, j)
-        # What rounding leaves of the column is none of its own.
+        # The rest of the pivot column is rounding error: its norm is 0 by definition.
         r[p], norms[p] = size, 0.0
         rank += 1
     small = np.zeros((rank, rank))
@@ -73,7 +73,7 @@ def compressed(A: Array, negligible: float) -> Array:
 
 @compiled_for_vectors
 def _without(column: Array, q: Array, r: Array, j: int) -> float:
-    """The norm of a column after its part along q is taken out of it and into r[j]."""
+    """Moves a column's component along q into r[j], and returns the norm of the remaining column."""
     along, left = 0.0, 0.0
     for i in range(len(q)):
         along += q[i] * column[i]

@@ -1,6 +1,6 @@
-"""The condition of phase of an orbit in the plane: at t = 0 the tip's y is at an extremum, compiled.
+"""Phase condition of an orbit in the plane, compiled: at t = 0 the tip's y is at an extremum.
 
-Its velocity there is that by the reaction, which converges twice as fast as the velocity field.
+The velocity of the tip is computed from the reaction, which converges twice as fast as the velocity field.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from ....model.compiled.compilation import compiled_for_vectors
 
 @compiled_for_vectors
 def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
-    """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
+    """Derivative of `phase` at a start, (n,), along a change of the parameters, negated as a right side."""
     V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((3, *c.drag.shape))
     balance(start, V, G, c, m)
     balance_change(start, V, changes, change, c, m)
@@ -24,7 +24,7 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 
 @compiled_for_vectors
 def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
-    """The tip's dy/dt at the start, (n,), by the reaction there."""
+    """dy/dt of the tip at the start, (n,), by the reaction at the tip."""
     V, G = np.empty(c.drag.shape), np.empty(c.drag.shape)
     balance(start, V, G, c, m)
     return float(lateral_velocity(G, tip_angle(start, m)))
@@ -32,13 +32,13 @@ def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def lateral_velocity(G: Array, theta: float) -> float:
-    """dy/dt of the tip at an angle, by G at all nodes, (3, nodes + 1)."""
+    """dy/dt of the tip at an angle, from G at all nodes, (3, nodes + 1)."""
     return -(np.sin(theta) * G[0, -1] + np.cos(theta) * G[1, -1])
 
 
 @compiled_for_vectors
 def tip_angle(x: Array, m: NodeMatrices) -> float:
-    """theta at the tip of a state, (n,)."""
+    """Angle theta of the tip for a state, (n,)."""
     theta, nodes = 0.0, len(m.weights) - 1
     for i in range(nodes):
         theta += m.weights[i] * x[stress_place(BENDING, i, nodes)]
@@ -47,7 +47,7 @@ def tip_angle(x: Array, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
-    """The derivative of `phase` by the start into row, both (n,)."""
+    """Derivative of `phase` with respect to the start, into row, (n,) each."""
     n = len(start)
     V, G, J, tip = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((n, n)), np.empty((COMPONENTS, n))
     balance(start, V, G, c, m)

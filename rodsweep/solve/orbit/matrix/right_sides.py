@@ -1,4 +1,4 @@
-"""The right sides of Newton's systems of a periodic orbit: its residuals, and their derivatives, compiled."""
+"""Right sides of Newton's systems for a periodic orbit, compiled: residuals and their derivatives."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ from .substitution import add_products
 
 
 class Along(NamedTuple):
-    """How the rod changes along a parameter: the rod itself, and the mass, (n,), per unit of it."""
+    """Change of the rod per unit of a parameter: of the rod's arrays, and of the mass, (n,)."""
 
     change: NodalChange
     mass: Array
@@ -22,16 +22,16 @@ class Along(NamedTuple):
 
 @compiled_for_vectors
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
-    """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
+    """F(x), shape (n,), and the intermediate V and G, (3, nodes + 1) each."""
     balance(x, V, G, p.rod, p.matrices)
-    _take(G, F)
+    _store_stresses(G, F)
     if len(p.rod.kept):
         velocity_balance(x, F, p.rod, p.matrices)
 
 
 @compiled_for_vectors
-def _take(G: Array, F: Array) -> None:
-    """G at all nodes but the tip, (3, nodes + 1), into its places in F, (n,)."""
+def _store_stresses(G: Array, F: Array) -> None:
+    """Copies G at all nodes but the tip, (3, nodes + 1), to its places in F, (n,)."""
     d, n = G.shape[0], G.shape[1] - 1
     for a in range(d):
         for i in range(n):
@@ -40,12 +40,12 @@ def _take(G: Array, F: Array) -> None:
 
 @compiled_for_vectors
 def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: Semidiscrete) -> None:
-    """The derivative of `equations` along a change of the parameters into F, (n,).
+    """Derivative of `equations` along a change of the parameters, into F, (n,).
 
-    V at the state x is known; out, (3, 3, nodes + 1), is made on the way.
+    V: velocity at the state x. out: work array, (3, 3, nodes + 1).
     """
     balance_change(x, V, out, change, p.rod, p.matrices)
-    _take(out[2], F)
+    _store_stresses(out[2], F)
     d, size = V.shape
     for k in range(len(p.rod.kept)):
         for i in range(size):
@@ -54,9 +54,9 @@ def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChan
 
 @compiled_for_vectors
 def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> None:
-    """h F(x_i) - sum_j d_ij M x_j of all stages into out, (K, s, n).
+    """Residuals h F(x_i) - sum_j d_ij M x_j of all stages, into out, (K, s, n).
 
-    points: the start and the stages one after the other, (1 + K s, n).
+    points: states at the start and the stages one after the other, (1 + K s, n).
     """
     K, s, n = out.shape
     size = len(p.matrices.weights)
@@ -74,10 +74,10 @@ def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> No
 def right_sides(
     points: Array, duration: float, p: Semidiscrete, along: Along, V: Array, columns: Array
 ) -> None:
-    """What Newton's method needs of the stages into columns, (K, s, columns, n), and V, (K, s, 3, nodes + 1).
+    """Right sides of Newton's system, (K, s, columns, n), and V of the stages, (K, s, 3, nodes + 1).
 
-    The columns: the derivative by the period, the `residuals`, and, if there is a third, their derivative
-    along the change of a parameter.
+    The columns are the derivative by the period, the `residuals`, and, if there is a third column, the
+    residuals' derivative along the change of a parameter.
     """
     K, s, count, n = columns.shape
     G, changes, slopes = np.empty(V.shape[2:]), np.empty((3, *V.shape[2:])), np.empty(n)
@@ -98,9 +98,9 @@ def right_sides(
 
 @compiled_for_vectors
 def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Array, columns: Array) -> None:
-    """The derivatives of an orbit's `residuals` along variations into columns, (K, s, columns, n).
+    """Derivatives of an orbit's `residuals` along variations, into columns, (K, s, columns, n).
 
-    values: the orbit's, (N,); variations: of these and of the parameter that `along` is of, (columns, N + 1).
+    values: of the orbit, (N,). variations: of the values and of the parameter of `along`, (columns, N + 1).
     """
     K, s, count, n = columns.shape
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
@@ -132,7 +132,7 @@ def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Ar
 
 @compiled_for_vectors
 def _slopes(points: Array, i: int, d: Array, out: Array) -> None:
-    """sum_j d_ij x_j of one interval's start and stages, (s + 1, n), into out, (n,)."""
+    """Slopes sum_j d_ij x_j of one interval's start and stages, (s + 1, n), into out, (n,)."""
     out[:] = 0.0
     for j in range(len(points)):
         for r in range(len(out)):

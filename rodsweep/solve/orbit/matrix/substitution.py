@@ -1,6 +1,6 @@
-"""Solutions with an eliminated matrix (`elimination`) for several right sides at once, compiled.
+"""Solutions with an eliminated matrix (`elimination`), compiled, for several right sides at once.
 
-The first two stages of an interval are known by their inverses alone; the others by blocks.
+The first two stages of an interval need their inverses only; the other stages need the interval's blocks.
 """
 
 import numpy as np
@@ -13,9 +13,9 @@ from .workspace import Factors
 
 @compiled_for_vectors
 def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
-    """Right sides of one interval, (s, columns, n), in place: those of the first two stages stay.
+    """Reduces the right sides of one interval, (s, columns, n), in place; those of the first two stages stay.
 
-    The others are what elimination leaves, but the last ones what all make of its end where its start stays.
+    The last stage's right side becomes the change of the interval's end for a fixed start.
     """
     s, count, n = columns.shape
     d, mass = p.differentiation, p.mass
@@ -34,7 +34,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
-    """From changes of the start of one interval to its end, in place, (columns, n), for reduced columns."""
+    """Maps changes of an interval's start to its end, in place, (columns, n), with reduced right sides."""
     scaled = ends * p.mass
     ends[:] = columns[-1]
     add_products(B[0, 1], scaled, ends, 1.0)
@@ -42,7 +42,7 @@ def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
 
 @compiled_for_vectors
 def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
-    """The first two stages, t and u, (columns, n), for right sides y, (s, columns, n), where others are 0."""
+    """First two stages, t and u, (columns, n), for right sides y, (s, columns, n), and other stages of 0."""
     d, mass, (count, n) = p.differentiation, p.mass, t.shape
     side = np.empty((count, n))
     t[:], u[:] = 0.0, 0.0
@@ -59,7 +59,7 @@ def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
 
 @compiled_for_vectors
 def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
-    """y += factor A x for each of the columns x, y, both of shape (columns, n); two columns at a time."""
+    """Adds factor A x to y for columns x and y, (columns, n) each, two columns at a time."""
     count, n = x.shape
     for m in range(0, count - 1, 2):
         for i in range(n):
@@ -79,9 +79,9 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 @compiled_for_vectors
 def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
-    """The changes of all stages, out, for changes of the start and reduced columns; several at once.
+    """Changes of all stages, into out, from changes of the start and reduced right sides.
 
-    start: (columns, n), columns and out: (K, s, columns, n).
+    start: (columns, n); columns and out: (K, s, columns, n).
     """
     K, s, count, n = columns.shape
     y, first, scaled = np.empty((2, count, n)), start.copy(), np.empty((count, n))
@@ -105,7 +105,7 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
 
 @compiled_for_vectors
 def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
-    """Stage a, the third or a later one, into out, for reduced columns, both (s, columns, n).
+    """Stage a >= 2 (the third or a later one), into out, from reduced right sides, (s, columns, n) both.
 
     scaled: M times the changes of the start, (columns, n).
     """
