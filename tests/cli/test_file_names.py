@@ -76,7 +76,7 @@ def test_results_may_have_each_of_the_endings(name, results):
     [
         (
             "tolerance=3",
-            "unknown key tolerance; known keys are title, task, parameters, accuracy, thresholds",
+            "unknown key tolerance; known keys are title, task, parameters, accuracy, material, thresholds",
         ),
         ("gamma3=3", "unknown key gamma3; did you mean parameters.gamma3?"),
         ("crossings=3", "unknown key crossings; did you mean thresholds.crossings?"),
@@ -84,8 +84,8 @@ def test_results_may_have_each_of_the_endings(name, results):
         ("parameters.length=3", "unknown key parameters.length; did you mean parameters.arm.length?"),
         ("parameters.accuracy=1", "unknown key parameters.accuracy; did you mean accuracy?"),
         (
-            "parameters.taper=3",
-            "unknown key parameters.taper; known keys are F, k1, k2, gamma3, gamma1, points, arm",
+            "parameters.twist=3",
+            "unknown key parameters.twist; known keys are F, k1, k2, gamma3, gamma1, taper, points, arm",
         ),
     ],
 )
