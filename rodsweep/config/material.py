@@ -79,6 +79,8 @@ class MaterialSection(Strict):
 
     @model_validator(mode="after")
     def _is_known(self) -> "MaterialSection":
+        if not self.model_fields_set:
+            raise ValueError("the section is empty; give law, section or profile")
         assert self.build
         return self
 

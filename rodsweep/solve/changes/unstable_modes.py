@@ -7,8 +7,11 @@ winding number confirms it at both ends and between.
 import math
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
-from .path_problem import PathProblem
+if TYPE_CHECKING:
+    from .path_problem import PathProblem  # for annotations only: the module imports solvers
+
 
 SHORT_OF_CRUSHED = 1e-6
 """How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
@@ -64,7 +67,7 @@ class Counts:
     the counts do not confirm.
     """
 
-    def __init__(self, problem: PathProblem, gaps: list[tuple[float, float]], certify: bool):
+    def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
         self.problem, self.path, self.gaps, self.certify = problem, problem.path, gaps, certify
         self.doubts: list[str] = []
 
