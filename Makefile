@@ -45,7 +45,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
 	done
 	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability; do
+	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability taper slender; do
 	  $$draw results/$$name.h5 -o results/$$name.pdf
 	  $$draw results/$$name.h5 -o docs/$$name.png
 	done
@@ -54,6 +54,11 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	for end in results/hysteresis.pdf docs/hysteresis.png; do
 	  $$draw results/hysteresis_up.h5 results/hysteresis_down.h5 -o $$end
 	done
+	run="$(BIN)/mpiexec -n 2 $(BIN)/rodsweep run configs/rubber.yaml --set material.section=fixed"
+	$$run -o results/rubber_fixed.h5
+	$$run --set material.law=linear -o results/rubber_linear.h5
+	laws="results/rubber_linear.h5 results/rubber_fixed.h5 results/rubber.h5"
+	for end in results/rubber.pdf docs/rubber.png; do $$draw $$laws -o $$end; done
 	$$draw results/fig5.h5 --what energy -o docs/energy.png
 	$$draw results/fig5.h5 -o docs/fig5.gif
 
@@ -72,7 +77,7 @@ test-peers: .venv/installed  ## install what the tests use where it is there: Sl
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time; further Hopf points and branches (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/solve/hopf/test_criticality.py tests/solve/branch/test_branch.py tests/solve/branch/test_branch_auto.py tests/solve/branch/test_coexistence.py tests/solve/cycle/test_torus.py tests/solve/cycle/test_marched.py tests/solve/spectrum/test_following.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_branch_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py tests/hard/test_random_rods.py tests/hard/test_sentences.py tests/post/test_figure_layout.py tests/cli/test_start.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/solve/hopf/test_criticality.py tests/solve/branch/test_branch.py tests/solve/branch/test_branch_auto.py tests/solve/branch/test_coexistence.py tests/solve/cycle/test_torus.py tests/solve/cycle/test_marched.py tests/solve/spectrum/test_following.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_branch_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py tests/hard/test_random_rods.py tests/determinant/test_arm_count.py tests/solve/spectrum/test_arm_spectrum.py tests/solve/changes/test_arm_thresholds.py tests/hard/test_sentences.py tests/post/test_figure_layout.py tests/cli/test_start.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, damage files and configs CASES (10) times as often (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/results/test_stress.py tests/solve/test_interrupts.py

@@ -226,8 +226,8 @@ def test_taper(command):
 
 
 def test_segments(command):
-    stable, unstable = stated("segments")[-2:]
-    with run(command, "segments", f"parameters.F=[{stable}, {unstable}]") as file:
+    hopf = stated("segments")[-1]
+    with run(command, "segments", f"parameters.F=[{hopf * (1 - 1e-8)}, {hopf * (1 + 1e-8)}]") as file:
         assert file["unstable_count"][...].ravel().tolist() == [0, 2]
         assert file["certified"][...].all()
 

@@ -169,7 +169,7 @@ class SoftRod:
 
 
 def _material(given: Mapping[str, Any]) -> MaterialSection | None:
-    """The material of a rod, None for the standard one; InputError for one that is not known."""
+    """The section `material` of a rod, or None without keys; InputError for an unknown law."""
     tree = {name: plain(value) for name, value in given.items() if value is not None}
     if not tree:
         return None

@@ -16,31 +16,35 @@ MOST_ROWS = 1000
 """Largest number of rows of a profile."""
 LARGEST_FILE = 1_000_000
 """Largest number of characters in a profile's file."""
-Column = Annotated[list[Number], Field(max_length=MOST_ROWS)]
+Column = Annotated[
+    list[Number] | None, Field(max_length=MOST_ROWS, description=f"a list of at most {MOST_ROWS} numbers")
+]
 
 
 class ProfileTable(Strict):
     """Factors along the arm: columns of one length. A column that is left out is 1 all along the arm."""
 
-    u: Column
+    u: Annotated[list[Number], Field(max_length=MOST_ROWS, description="a list of numbers from 0 to 1")]
     """Material coordinate, from 0 at the base to 1 at the tip, not decreasing; a value twice is a jump."""
-    k1: Column | None = None
+    k1: Column = None
     """Factor of the stretch stiffness at each u."""
-    k2: Column | None = None
+    k2: Column = None
     """Factor of the shear stiffness at each u."""
-    k3: Column | None = None
+    k3: Column = None
     """Factor of the bending stiffness at each u."""
-    gamma1: Column | None = None
+    gamma1: Column = None
     """Factor of the axial drag at each u."""
-    gamma2: Column | None = None
+    gamma2: Column = None
     """Factor of the normal drag at each u."""
-    gamma3: Column | None = None
+    gamma3: Column = None
     """Factor of the rotational drag at each u."""
 
     @cached_property
     def profile(self) -> Profile:
         """The profile; ValueError for a table that is none."""
-        columns = {name: getattr(self, name) or [1.0] * len(self.u) for name in FACTORS}
+        given = {name: getattr(self, name) for name in FACTORS}
+        ones = [1.0] * len(self.u)
+        columns = {name: ones if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
                 raise ValueError(f"{name} has {len(column)} values and u has {len(self.u)}")
@@ -58,7 +62,7 @@ def _or_file(schema: dict[str, Any]) -> None:
 
 
 class MaterialSection(Strict):
-    """What the arm is made of, and how it varies along its length."""
+    """Constitutive law of the arm, and how the arm varies along its length."""
 
     law: Literal["linear", "neo_hookean"] = "linear"
     """Constitutive law: stress proportional to strain, or incompressible neo-Hookean rubber."""

@@ -46,7 +46,7 @@ class Config(Strict):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters of a point of the sweep: those that the task needs, and optional ones that are given."""
+        """Parameters of a point of the sweep: what the task needs, and what the config adds."""
         given = (name for name in OPTIONAL_PARAMETERS if name in self.parameters.given_axes)
         return (*self.taken_of_a_rod({}), *given)
 

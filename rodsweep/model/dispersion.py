@@ -8,6 +8,8 @@ No eigenvalue of the finite rod is claimed to be near; its largest growth rate a
 tell where to look for eigenvalues and how fine a mesh will be needed.
 """
 
+from typing import Any
+
 import numpy as np
 
 from ..arrays import Array
@@ -16,6 +18,8 @@ from .rod import Rod
 SAMPLES = 64
 LOWEST = 1e-4
 """K is sampled from LOWEST F g to F g in equal ratios; the answer need not be sharper."""
+FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
+"""The samples of K in units of F g, (SAMPLES,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -23,30 +27,36 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
     Not compiled: `check` needs it, and would load numba for nothing else.
     """
-    rates, numbers = most_amplified_waves(*(np.array([value]) for value in rod.coefficients))
-    return float(rates[0]), float(numbers[0])
+    F, nu, c2, gamma3 = rod.coefficients
+    top = F * rod.g
+    if top <= 0:
+        return 0.0, 0.0
+    K, rates = _growth_rates(top, rod.g * nu, c2, gamma3)
+    best = int(np.argmax(rates))
+    return (float(rates[best]), float(np.sqrt(K[best]))) if rates[best] > 0 else (0.0, 0.0)
 
 
 def local_growth(rod: Rod, u: Array) -> tuple[Array, Array]:
-    """`most_amplified_wave` at points of an arm, (n,), as if the arm were uniform there."""
-    nu, c2, c3, gamma2, gamma3, _ = rod.local(u)
-    rates, numbers = most_amplified_waves(rod.F * c3, nu, c2 / c3, gamma3 / gamma2)
-    return rates / (gamma2 * c3), numbers
+    """`most_amplified_wave` at points of an arm, both (n,), as if the arm were uniform there."""
+    nu, c2, c3, gamma2, gamma3, g = rod.local(u)
+    top = np.maximum(rod.F * c3 * g, 0.0)
+    K, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
+    best = np.argmax(rates, axis=-1)[:, None]
+    largest, at = (np.take_along_axis(table, best, axis=-1)[:, 0] for table in (rates, K))
+    return largest / (gamma2 * c3), np.where(largest > 0, np.sqrt(at), 0.0)
 
 
-def most_amplified_waves(F: Array, nu: Array, c2: Array, gamma3: Array) -> tuple[Array, Array]:
-    """(growth rates, wave numbers) of the most amplified waves of n rods with k3 = gamma2 = 1, all (n,)."""
-    g, square = nu + F * c2, (c2 * gamma3)[:, None]
-    top = np.where(F * g > 0, F * g, 0.0)[:, None]
-    K = top * LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
+def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
+    """(K, growth rates) of the sampled waves of rods with k3 = gamma2 = 1, both (..., SAMPLES); 0 for decay.
+
+    top: F g, and relaxation: g nu, numbers of one rod, or arrays (n, 1) like the compliance and the drag.
+    """
+    square = c2 * gamma3
+    K = top * FRACTIONS
     with np.errstate(all="ignore"):
         drive = K * (top - K)
-        linear = (c2 + gamma3)[:, None] * K + (g * nu)[:, None]
+        linear = (c2 + gamma3) * K + relaxation
         spread = np.sqrt(linear**2 + 4 * square * drive)
         slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)
         rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)
-    rates = np.where(rates > 0, rates, 0.0)
-    best = np.argmax(rates, axis=1)
-    every = np.arange(len(best))
-    largest = rates[every, best]
-    return largest, np.where(largest > 0, np.sqrt(K[every, best]), 0.0)
+    return K, np.where(rates > 0, rates, 0.0)

@@ -29,8 +29,12 @@ class ThresholdsTask(ProvedTask):
     not_proved: ClassVar[str] = "crossings may be missed"
 
     def headline(self) -> str:
-        F_max = self.config.thresholds.F_max
-        return f"{count_of(self.points)}, each searched from F = 0 to {F_max:g}, or to just below k1"
+        until = f"{self.config.thresholds.F_max:g}"
+        if self.config.standard:
+            until += ", or to just below k1"
+        elif np.isfinite(self.config.build.constitutive_law.largest_load):
+            until += ", or to just below the force that crushes the weakest section"
+        return f"{count_of(self.points)}, each searched from F = 0 to {until}"
 
     def asked(self) -> list[Part]:
         most = self.config.thresholds.crossings
@@ -42,7 +46,7 @@ class ThresholdsTask(ProvedTask):
     def certificate(self) -> tuple[bool, str]:
         asked, proof = ProvedTask.certificate(self)
         if asked and not self.config.standard:
-            return True, f"{proof} at some forces; between them slopes of the eigenvalues"
+            return True, f"{proof} at some forces, estimated in part; between them slopes of the eigenvalues"
         return asked, proof
 
     def cost(self) -> Estimate:

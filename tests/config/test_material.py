@@ -78,6 +78,9 @@ def test_profiles_that_are_none_are_refused_in_a_sentence(tmp_path, text, senten
         ("material: {profile: no.csv}", "", "no.csv does not exist"),
         ("material: {laws: linear}", "", "unknown key material.laws; did you mean law?"),
         ("material: {mu: 2}", "", "unknown key material.mu"),
+        ("material: {profile: {u: [0, 1], k3: []}}", "", "material.profile: k3 has 0 values and u has 2"),
+        ("material: {profile: {u: [0, 1], k3: 2}}", "", "k3 = 2 is not allowed; it should be a list of"),
+        ("material: {}", "", "material: the section is empty; give law, section or profile"),
         ("material: {profile: {u: [0, 1], k3: [1]}}", "", "material.profile: k3 has 1 values and u has 2"),
         ("spectrum: {longitudinal: true}", ", gamma1: 1, taper: 0.5", "spectrum.longitudinal is true, but"),
     ],
@@ -137,3 +140,50 @@ def test_rod_of_python_repeats_its_material():
     assert rod != rod.replace(section="fixed")
     assert rod != rs.Rod(F=3, k1=500, k2=1e4, gamma3=1e-4, taper=0.5)
     assert hash(rod) == hash(rod.replace())
+
+
+def test_show_and_files_say_what_rests_on_an_estimate(command):
+    """The winding number of a cone is estimated in part; that of uniform rods of any law is not."""
+    said = {}
+    for name, taper, law in (
+        ("cone", "0.5", "linear"),
+        ("rubber", "1", "neo_hookean"),
+        ("plain", "1", "linear"),
+    ):
+        for task, F in (("spectrum", "F: [10, 20], "), ("thresholds", "")):
+            axes = f"{F}k1: 1.0e4, k2: 1.0e4, gamma3: 1.0e-4, taper: {taper}"
+            text = f"task: {task}\nparameters: {{{axes}}}\nmaterial: {{law: {law}}}\n"
+            command.write(f"{name}.yaml", text)
+            assert command("run", f"{name}.yaml", "--fresh").returncode == 0
+            with h5py.File(command.directory / f"{name}.h5") as file:
+                meaning = file["certified"].attrs["long_name"]
+            said[name, task] = command("show", f"{name}.h5").stdout + meaning
+    assert "at most 2, counted by an estimate at 2 of 2 points" in said["cone", "spectrum"]
+    assert "not located between the forces of the file" in said["cone", "spectrum"]
+    assert "it is estimated in part" in said["cone", "spectrum"]
+    for name in ("rubber", "plain"):
+        assert "proved at 2 of 2 points" in said[name, "spectrum"]
+        assert "estimated" not in said[name, "spectrum"]
+    for name in ("cone", "rubber"):
+        assert "the list of crossings is confirmed by counts of unstable modes" in said[name, "thresholds"]
+        assert "proved" not in said[name, "thresholds"]
+    assert "the list of crossings is proved complete" in said["plain", "thresholds"]
+
+
+def test_compression_is_judged_where_the_arm_is_weakest_and_not_for_rubber():
+    arm = {
+        "length": "12 cm",
+        "radius": "6 mm",
+        "young": "100 kPa",
+        "viscosity": "4 kPa s",
+        "pressure": "2 kPa",
+    }
+    found = {}
+    for taper, law in ((1.0, "linear"), (0.5, "linear"), (0.5, "neo_hookean")):
+        data = rs.sweep("spectrum", arm=arm, taper=taper, law=law)
+        words = data.neglected_effect.attrs["flag_meanings"].split()
+        found[taper, law] = words[1 + data.neglected_effect.item()], data.neglected_excess.item()
+    share = 2e3 * np.pi * 0.006**2 / (1e5 * np.pi * 0.006**2)
+    assert found[1.0, "linear"] == ("compression", pytest.approx(share / 0.1))
+    assert found[0.5, "linear"] == ("compression", pytest.approx(4 * share / 0.1))
+    assert found[0.5, "neo_hookean"][0] != "compression"

@@ -27,6 +27,7 @@ KEYWORDS = {
     "exclusiveMinimum": (float | int, lambda value, bound, _: value > bound),
     "exclusiveMaximum": (float | int, lambda value, bound, _: value < bound),
     "minItems": (list, lambda value, bound, _: len(value) >= bound),
+    "maxItems": (list, lambda value, bound, _: len(value) <= bound),
     "minLength": (str, lambda value, bound, _: len(value) >= bound),
     "maxLength": (str, lambda value, bound, _: len(value) <= bound),
     "required": (dict, lambda value, keys, _: all(key in value for key in keys)),

@@ -33,6 +33,15 @@ UNITS |= {"m^2": 1.0, "mm": 1e-3, "g/cm^3": 1e3}
 UNIT = "|".join(sorted(map(re.escape, UNITS), key=len, reverse=True))
 SIDES = ("radius", "inner_radius", "width", "height")
 LOADS = ("pressure", "force")
+WITHOUT_CYCLE = {
+    "straight": "does not beat",
+    "unstable": "has a cycle that it leaves at the least disturbance",
+    "torus": "beats without repeating",
+    "not_settled": "is not settled: no stable cycle is known, nor that there is none",
+    "left_the_model": "is crushed somewhere, where the model ends",
+    "failed": "is not known: the integration failed",
+}
+"""What is said of arms of which none beats, by status."""
 SAID = {
     "flutters at": "hopf",
     "is straight again from": "restabilization",
@@ -381,6 +390,9 @@ def _answer(view, page, fine, scales):
             hertz[chosen],
             y[chosen],
         )
+        codes = {word: code for code, word in view.flags.items()}
+        for status, words in WITHOUT_CYCLE.items():
+            told(rf"{words}{some}$", (view.variables["status"].ravel()[chosen] == codes.get(status)).sum())
         power = v["injection_mean"].ravel() * scales["force_scale"] * scales["length"] / scales["tau2"]
         numbers = {"frequency": hertz, "reach of the tip": y, "power": power}
         found += _drag_sentences(view, page, start, chosen, numbers)

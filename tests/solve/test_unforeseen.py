@@ -42,7 +42,7 @@ def break_it():
 
     class Broken(search.Search):
         def outcome(self):
-            if self.rod.F == 20:
+            if self.problem.rod.F == 20:
                 raise StopIteration("a bug")
             return super().outcome()
 

@@ -90,7 +90,7 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest region of those that can be shown for the arm; `UNKNOWN` if there is none."""
+    """The smallest of the regions that contain the spectrum of the arm; `UNKNOWN` where none is found."""
     pieces = _pieces(rod)
     candidates = [*_constant(rod.F, pieces), *_following(rod, pieces), *_by_clamp(rod.F, pieces)]
     best = min(candidates, key=lambda hull: hull.a**2 / (1 - hull.c), default=UNKNOWN)

@@ -68,6 +68,11 @@ class Build:
         """The force that crushes the weakest section, in units of k1 at the base; inf if no force does."""
         return self.constitutive_law.largest_load * _smallest_area(self.profile, taper)
 
+    def crushing_shares(self, tapers: Array) -> Array:
+        """`crushing_share` of each taper, of the shape of `tapers`, (...,)."""
+        shares = [self.crushing_share(taper) for taper in tapers.ravel().tolist()]
+        return np.array(shares).reshape(tapers.shape)
+
     def local(self, F: float, at_base: Mapping[str, float], u: Array) -> LocalCoefficients:
         """Coefficients at points u, any shape (...,), under the force F; at_base: parameters at u = 0.
 

@@ -1,6 +1,5 @@
 """Common style of figures: symbols, labels, colours and titles, scales of axes, and refusals."""
 
-import json
 from collections.abc import Mapping, Sequence
 from math import isinf
 from typing import Any, Literal
@@ -75,18 +74,20 @@ def heading(view: View, *lines: str) -> str:
 
 def material_text(view: View) -> str:
     """Law and profile of the arms of a file; empty for arms of linear material without a profile."""
-    material = json.loads(view.attributes.get("config_resolved", "{}")).get("material", {})
+    material = view.config.get("material", {})
     law, section = material.get("law", "linear"), material.get("section", "fixed")
     words = [] if law == "linear" else [f"neo-Hookean, {section} section"]
     return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
 
 
 def name_in(view: View, views: Sequence[View]) -> str:
-    """Name of a file in a figure of several: its law where the laws differ, else its title or name."""
+    """Name of a file in a figure of several: its law or title if all differ, else its path."""
     laws = [material_text(each) or "linear" for each in views]
     if len(set(laws)) == len(laws):
         return laws[list(views).index(view)]
-    return " ".join(plain(view.attributes.get("title", "")).split()) or plain(view.path.stem)
+    titles = [" ".join(plain(each.attributes.get("title", "")).split()) for each in views]
+    distinct = len(set(titles)) == len(titles) and all(titles)
+    return titles[list(views).index(view)] if distinct else plain(view.path.stem)
 
 
 def number(value: float, digits: int = 6) -> str:

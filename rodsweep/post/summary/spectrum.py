@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...results.file.view import View
+from ...results.layouts.variables import estimates_counts, has_covering
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .ranges import span, to_error
@@ -13,6 +14,8 @@ HOW_FOUND = (
     "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
     "eigenvalue changes so between two forces of the file; `task: thresholds` proves that none is missing"
 )
+NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
+"""Explanation of the intervals of force for arms that are not uniform or not of linear material."""
 """Explanation of the forces in `threshold_lines`."""
 PROOFS = {True: "proved by a winding number", False: "not proved"}
 """Words for the proof of the number of unstable modes at a single point."""
@@ -58,7 +61,8 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     All are empty if F is no axis.
     """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
-    return lines, [f"thresholds: {HOW_FOUND}"] if lines else [], of_arm
+    how = HOW_FOUND if has_covering(view.config) else NOT_LOCATED
+    return lines, [f"thresholds: {how}"] if lines else [], of_arm
 
 
 def eigenvalue_lines(view: View) -> list[str]:
@@ -73,6 +77,8 @@ def eigenvalue_lines(view: View) -> list[str]:
     ]
     unstable = int(v["unstable_count"].max())
     proof = PROOFS[bool(v["certified"].all())]
+    if v["certified"].all() and estimates_counts(view.config):
+        proof = "counted by a winding number that is estimated in part"
     count = f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
     return [count, *lines]
 
@@ -102,7 +108,8 @@ def stability_line(view: View, done: np.ndarray) -> str:
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
     certified = int(view.variables["certified"][done].sum())
-    text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, proved at "
+    how = "counted by an estimate" if estimates_counts(view.config) else "proved"
+    text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, {how} at "
     text += some_of(certified, points, "point")
     unknown = int((unstable < 0).sum())
     return text + (f", not known at {unknown}" if unknown else "")

@@ -1,14 +1,12 @@
 """Thresholds in `rodsweep show`: positions, completeness, and the cost of the search."""
 
-import json
 from itertools import product
 
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts import varies_along_the_arm
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...results.layouts.variables import ANGULAR
+from ...results.layouts.variables import ANGULAR, has_covering
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, rounded, span, to_error
@@ -80,8 +78,9 @@ def trust_of_one(view: View) -> list[str]:
     v = {name: view.variables[name].ravel() for name in ("crossing_count", "crossing_kind", "certified")}
     end, open_from, open_to = (float(view.variables[n].ravel()[0]) for n in ("F_end", "open_from", "open_to"))
     hidden = int(v["crossing_count"][0]) - int((v["crossing_kind"] > 0).sum())
-    proof = "proved" if v["certified"].all() else "not proved"
-    lines = [f"searched up to F = {end:.15g}; the list of crossings is {proof} complete{not_stored(hidden)}"]
+    proof = "proved complete" if _is_covered(view) else "confirmed by counts of unstable modes"
+    proof = proof if v["certified"].all() else f"not {proof}"
+    lines = [f"searched up to F = {end:.15g}; the list of crossings is {proof}{not_stored(hidden)}"]
     if np.isfinite(open_from):
         lines.append(f"undecided: F = {open_from:.9g} to {open_to:.9g}")
     return lines
@@ -142,9 +141,7 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
     proved = some_of(int(v["certified"][done].sum()), searches, noun)
-    config = json.loads(view.attributes["config_resolved"])
-    by_counts = varies_along_the_arm(config)
-    complete = "is confirmed by counts of unstable modes" if by_counts else "is proved complete"
+    complete = "is proved complete" if _is_covered(view) else "is confirmed by counts of unstable modes"
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
@@ -158,7 +155,13 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
     """Line on the cost of the searches; done: a mask of the points' shape."""
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))
-    return [f"cost of a search: {spans(boxes, 'evaluation')} of D, {spans(solves, 'eigenproblem')}"]
+    evaluations = f"{spans(boxes, 'evaluation')} of D over a box, " if _is_covered(view) else ""
+    return [f"cost of a search: {evaluations}{spans(solves, 'eigenproblem')}"]
+
+
+def _is_covered(view: View) -> bool:
+    """Whether a covering proves the crossings in a file."""
+    return has_covering(view.config)
 
 
 def spans(values: np.ndarray, noun: str) -> str:

@@ -1,5 +1,6 @@
 """Read-only view of a result file together with the points in its journals, for `show` and `plot`."""
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -72,6 +73,12 @@ class View:
     def task(self) -> str:
         """Task of the results."""
         return str(self.attributes["task"])
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """The resolved config; empty if the file has none."""
+        resolved: dict[str, Any] = json.loads(self.attributes.get("config_resolved", "{}"))
+        return resolved
 
     @property
     def is_grid(self) -> bool:

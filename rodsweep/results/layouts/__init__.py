@@ -47,14 +47,6 @@ def layout_of(config: dict[str, Any]) -> Layout:
     return with_si(replace(layout, parameters=(*layout.parameters, *optional)), config)
 
 
-def varies_along_the_arm(config: dict[str, Any]) -> bool:
-    """Whether the rods of a resolved config vary along their length, or are not of linear material."""
-    material = config.get("material", {})
-    taper = config["parameters"].get("taper")
-    tapered = taper is not None and taper.get("values") != [1.0]
-    return tapered or material.get("law", "linear") != "linear" or "profile" in material
-
-
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables that the file of a resolved config may hold besides the points.
 

@@ -18,8 +18,10 @@ from .variables import (
     Layout,
     Variable,
     boolean,
+    estimates_counts,
     integer,
     real,
+    with_meaning,
     word,
 )
 
@@ -44,6 +46,11 @@ EACH_MODE = (
     ),
 )
 CERTIFIED = boolean("certified", "whether the winding number of D proves the list of leading modes complete")
+ESTIMATED = (
+    "whether the winding number of D says that the list of leading modes is complete; for arms that vary "
+    "along their length it is estimated in part"
+)
+"""Meaning of `certified` in a file of arms that vary along their length."""
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
@@ -117,7 +124,10 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config; eigenmodes only if the config asks for them."""
     options = config["spectrum"]
+    each_point: tuple[Variable, ...] = EACH_FOLLOWED_POINT
     extents = {"mode": options["modes"]}
+    if estimates_counts(config):
+        each_point = with_meaning(each_point, CERTIFIED.name, ESTIMATED)
     if not options["vectors"]:
-        return Layout(EACH_MODE + EACH_FOLLOWED_POINT, extents)
-    return Layout(EACH_MODE + VECTORS + EACH_FOLLOWED_POINT, extents | {"u": options["nodes"]})
+        return Layout(EACH_MODE + each_point, extents)
+    return Layout(EACH_MODE + VECTORS + each_point, extents | {"u": options["nodes"]})

@@ -12,8 +12,10 @@ from .variables import (
     Layout,
     Variable,
     boolean,
+    has_covering,
     integer,
     real,
+    with_meaning,
     word,
 )
 
@@ -71,11 +73,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
-        boolean(
-            "certified",
-            "whether the list of crossings is proved complete; of arms that are not uniform, whether counts "
-            "of unstable modes confirm it, between which it rests on slopes of the eigenvalues",
-        ),
+        boolean("certified", "whether the list of crossings is proved complete"),
         integer("boxes", "number of evaluations of D over a box"),
         integer("solves", "number of eigenproblems solved"),
         SECONDS,
@@ -83,6 +81,11 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
+CONFIRMED = (
+    "whether counts of unstable modes confirm the list of crossings; between the counts it rests on slopes "
+    "of the eigenvalues"
+)
+"""Meaning of `certified` in a file of arms that are not uniform or not of linear material."""
 CROSSINGS = Increase(lambda records, before: records["crossing_count"] <= before)
 """Increase of the length of the list of crossings; a list with room left is complete already."""
 INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
@@ -91,4 +94,6 @@ INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
     variables = THRESHOLDS + search_variables("F", "crossing_F")
+    if not has_covering(config):
+        variables = with_meaning(variables, "certified", CONFIRMED)
     return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, all_but("F"))

@@ -5,7 +5,7 @@ table of every task.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 from typing import Any
 
@@ -204,3 +204,19 @@ class Layout:
     def inner(self, variable: Variable) -> tuple[int, ...]:
         """Shape of a variable at a point."""
         return tuple(self.extents[d] for d in variable.extra)
+
+
+def estimates_counts(config: Mapping[str, Any]) -> bool:
+    """Whether a resolved config has rods that vary along their length, so that counts are estimated."""
+    taper = config["parameters"].get("taper")
+    return "profile" in config.get("material", {}) or (taper is not None and taper.get("values") != [1.0])
+
+
+def has_covering(config: Mapping[str, Any]) -> bool:
+    """Whether a covering proves the crossings of all rods: those that are uniform and of linear material."""
+    return config.get("material", {}).get("law", "linear") == "linear" and not estimates_counts(config)
+
+
+def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:
+    """The variables, of which one has another long name."""
+    return tuple(replace(v, long_name=meaning) if v.name == name else v for v in variables)

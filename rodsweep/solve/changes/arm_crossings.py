@@ -50,14 +50,13 @@ class AxisPlace:
 class CrossingSearch:
     """The search along one path.
 
-    gaps: intervals of p in which two crossings may hide. proved: whether every count is certified.
+    gaps: intervals of p in which two crossings may hide.
     """
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem, self.certify = problem, certify
         self.places: dict[float, AxisPlace] = {}
         self.gaps: list[tuple[float, float]] = []
-        self.proved = certify
 
     def place(self, p: float) -> AxisPlace:
         """The place at p; Unsolvable where its eigenvalues or their number cannot be had."""
@@ -69,7 +68,6 @@ class CrossingSearch:
                 found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
-            self.proved = self.proved and found.certified
             slopes = found.eigenvalues.copy()
             for i, w in enumerate(found.eigenvalues.tolist()):
                 slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
@@ -94,7 +92,7 @@ class CrossingSearch:
             else:
                 share = 0.5
                 crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
-                beside = self._beside(crossing, (a, b), length) if crossing is not None else None
+                beside = self._confirmed(crossing, left, right, length) if crossing is not None else None
                 if crossing is not None and beside is not None:
                     found.append(crossing)
                     stack += [(beside[1], b), (a, beside[0])]
@@ -105,14 +103,14 @@ class CrossingSearch:
             stack += [(middle, b), (a, middle)]
         return sorted(found, key=lambda crossing: crossing.at)
 
-    def _beside(
-        self, crossing: Crossing, ends: tuple[float, float], length: float
+    def _confirmed(
+        self, crossing: Crossing, left: AxisPlace, right: AxisPlace, length: float
     ) -> tuple[float, float] | None:
-        """The places on both sides of a crossing; None where the counts there do not confirm it."""
+        """The p just before and just behind a crossing; None where the counts there do not confirm it."""
         p = self.problem.path.variable(crossing.at)
-        before, behind = max(ends[0], p - BESIDE * length), min(ends[1], p + BESIDE * length)
+        before, behind = max(left.p, p - BESIDE * length), min(right.p, p + BESIDE * length)
         change = self.place(behind).unstable - self.place(before).unstable
-        return (before, behind) if abs(change) == 2 else None
+        return (before, behind) if change == right.unstable - left.unstable else None
 
     def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
         """The crossing between two places at which the numbers of unstable modes differ by a pair."""
@@ -152,7 +150,7 @@ class CrossingSearch:
 
 
 def hidden(left: AxisPlace, right: AxisPlace) -> float:
-    """Where to look between two places whether a pair touches the axis, as a share; 0 where none can."""
+    """Where to count next between two places, as a pair may touch the axis: a share, or 0 for nowhere."""
     h = right.p - left.p
     for growing in (False, True):
         a, b = left.nearest(growing), right.nearest(growing)

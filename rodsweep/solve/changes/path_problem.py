@@ -101,4 +101,4 @@ class ArmPath(PathProblem):
 
 def path_problem(path: Path) -> PathProblem:
     """The problem of a path."""
-    return UniformPath(path) if path.rod.standard and path.name != "taper" else ArmPath(path)
+    return UniformPath(path) if path.rod.standard else ArmPath(path)

@@ -14,7 +14,11 @@ from .unstable_modes import SHORT_OF_CRUSHED, Crossing, Kind
 class ThresholdStatus(PointStatus):
     """Outcome of a search for changes along a path."""
 
-    ok = 0, "every change is found, as accurate as asked for, and proved complete where asked for", True
+    ok = (
+        0,
+        "the changes are as accurate as asked for, and their list is certified where asked for",
+        True,
+    )
     not_certified = (
         1,
         "the changes are accurate, but a count of the unstable modes between them could not be decided or "

@@ -78,8 +78,7 @@ class Search:
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
-        self.rod, self.problem = rod, problem_of(rod)
-        self.request, self.modes = request, request.modes
+        self.problem, self.request, self.modes = problem_of(rod), request, request.modes
         self.with_vectors = request.vector_nodes > 0
         bounded = self.problem.bounded
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy

@@ -48,10 +48,8 @@ def grid_of_arms(
             covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     if "F" in table:
-        tapers = table.get("taper", np.ones(1))
-        shares = np.array([build.crushing_share(taper) for taper in tapers.ravel().tolist()])
-        crushing = CRUSHED_FROM * table["k1"] * shares.reshape(tapers.shape)
-        crushed = np.broadcast_to(table["F"] >= crushing, shape)
+        crushing = table["k1"] * build.crushing_shares(table.get("taper", np.ones(1)))
+        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * crushing, shape)
         covered[(covered == SLENDER) & crushed] = CRUSHED
     if (covered != SLENDER).all():
         _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()))

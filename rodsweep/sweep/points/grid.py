@@ -57,7 +57,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:
         return None
     along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
-    shares = crushing_shares(build, along.get("taper", np.ones(1)))
+    shares = build.crushing_shares(along.get("taper", np.ones(1)))
     if axes["F"].max() < axes["k1"].min() * shares.min():
         return None
     shape = tuple(map(len, axes.values()))
@@ -86,12 +86,6 @@ def refuse_outside(
         )
 
 
-def crushing_shares(build: Build, tapers: Array) -> Array:
-    """The force that crushes arms of these tapers, in units of their k1, of the shape of `tapers`, (...,)."""
-    shares = [build.crushing_share(taper) for taper in tapers.ravel().tolist()]
-    return np.array(shares).reshape(tapers.shape)
-
-
 def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build = STANDARD) -> None:
     """Raises InputError for a forbidden value on an axis, each (n,), and for crushed rods.
 
@@ -101,7 +95,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
         refuse_outside(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING) <= axes.keys():
         return
-    shares = crushing_shares(build, axes.get("taper", np.ones(1)))
+    shares = build.crushing_shares(axes.get("taper", np.ones(1)))
     if (shares == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
     elif axes["F"].max() >= axes["k1"].min() * shares.min():

@@ -19,6 +19,7 @@ from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import HALF_LENGTH, effects_of, least_drag, worst_validity
+from ...model.material.laws import LINEAR
 from ...results.layouts.arm import EFFECTS
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...sweep.points.points import Points
@@ -91,7 +92,7 @@ class ArmValidity:
     def __init__(self, config: Config, points: Points):
         assert config.parameters.arm is not None
         self.section: ArmSection = config.parameters.arm
-        self.points, self.task = points, config.task
+        self.points, self.task, self.build = points, config.task, config.build
         sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
@@ -123,7 +124,7 @@ class ArmValidity:
         drag = arm.own_drag if "drag" in self.points.over else least_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force(arm, motion, index)
-        effects = effects_of(arm, rate, F, drag=drag, amplitude=motion.amplitude)
+        effects = effects_of(arm, rate, self._compressing(F, index), drag=drag, amplitude=motion.amplitude)
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
@@ -148,6 +149,17 @@ class ArmValidity:
             return np.asarray(F)
         own = own.reshape(own.shape + (1,) * (np.ndim(F) - own.ndim))
         return np.asarray(F) * (arm.k1 / own)
+
+    def _compressing(self, F: Array, index: int | NDArray[np.int64]) -> Array:
+        """The force that would compress the base as F does the weakest section; nan for rubber.
+
+        Rubber is compressed by its own law, which neglects nothing of it.
+        """
+        if self.build.law != LINEAR.law:
+            return np.full(np.shape(F), np.nan)
+        tapers = self._column("taper", index)
+        shares = self.build.crushing_shares(np.ones(()) if tapers is None else tapers)
+        return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """A parameter at a point, shape (), or at n points, (n,); None if it is no parameter of the

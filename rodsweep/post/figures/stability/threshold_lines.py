@@ -82,6 +82,10 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
         handles.append(Line2D([], [], color=shade, lw=2, label=style.name_in(view, views)))
     longest = max(views, key=lambda view: len(view.axes[along]))
     _label(axes, longest, along, tables)
+    forces = np.sort(tables[np.isfinite(tables)])
+    if style.is_logarithmic(forces):
+        style.scale(axes, "y", forces)
+        axes.set_ylim(forces[0] / HEADROOM, forces[-1] * HEADROOM)
     axes.set_ylabel(style.CRITICAL_FORCE)
     style.legend_below(figure, handles, columns=2)
     figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))

@@ -192,13 +192,9 @@ def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     cycles = rods & _with_status(view, "cycle")
-    others = [
-        f"{words}{_share(mask, rods)}"
-        for status, words in NO_CYCLE.items()
-        if (mask := rods & _with_status(view, status)).any()
-    ]
-    if not cycles.any():
-        return others
+    if not cycles.any():  # where some arms beat, the line with all outcomes counts the others
+        masks = {words: rods & _with_status(view, status) for status, words in NO_CYCLE.items()}
+        return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
         spanned(view, v[name][beats], unit, errors[name][beats])
@@ -207,7 +203,7 @@ def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
     motion = f"beats{_share(cycles, rods)} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
-    return [motion, *others, *_decided(view, rods), *drag_lines(view, numbers)]
+    return [motion, *_decided(view, rods), *drag_lines(view, numbers)]
 
 
 def _decided(view: View, rods: np.ndarray) -> list[str]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ....model.arm.drag import DRAGS
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE, SCALE_OF, UNITS
+from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import compact, written_in
 from ....results.file.view import View
 from ....results.layouts import LAYOUTS
@@ -79,10 +80,14 @@ def given_columns(view: View) -> dict[str, np.ndarray]:
 
 
 def region_of_arms(view: View, mask: np.ndarray) -> str:
-    """Ranges of the varied quantities over points, a mask of their shape; empty for a single arm."""
-    ranges = (
-        quantity_range(view, name, column, mask.ravel()) for name, column in given_columns(view).items()
-    )
+    """Ranges of varied quantities and tapers over points, a mask of their shape; empty for a single arm."""
+    chosen = mask.ravel()
+    ranges = [quantity_range(view, name, column, chosen) for name, column in given_columns(view).items()]
+    for name in OPTIONAL_PARAMETERS:
+        column = view.listed.point_columns.get(name, np.ones(1)).ravel()
+        if len(np.unique(column)) > 1:
+            ends = sorted({float(column[chosen].min()), float(column[chosen].max())})
+            ranges.append(f"{name} {' to '.join(f'{end:.{DIGITS + 1}g}' for end in ends)}")
     return ", ".join(filter(None, ranges))
 
 
