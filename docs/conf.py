@@ -21,7 +21,7 @@ html_title = f"rodsweep {version}"
 html_copy_source = False
 html_show_sphinx = False
 
-myst_enable_extensions = ["deflist", "dollarmath", "colon_fence"]
+myst_enable_extensions = ["deflist"]  # no formulas by MathJax, which a page would load from the network
 myst_heading_anchors = 4
 # Links to files of the clone, such as ../configs/fig2c.yaml: Sphinx copies them into the site.
 

@@ -19,12 +19,14 @@ FIGURES = {"hysteresis_up": "hysteresis.png", "hysteresis_down": "hysteresis.png
 """Figures whose name is not that of the config."""
 GALLERY = """# Gallery
 
-Every config of `configs/` with the number that it must show, its source, and its figure. `make figures` computes all
-configs on two ranks and draws all figures; the commands below compute one. Each number is asserted by a test.
+Every config of `configs/` with the number that it must show, its source, and its figure. `make figures`
+computes all configs on two ranks and draws all figures; the commands below compute one. Each number is asserted
+by a test.
 """
 COMMANDS = """# Commands
 
-Every command of `rodsweep` with its options, as its help prints them. The [guide](guide.md) explains when to use which.
+Every command of `rodsweep` with its options, as its help prints them. The [guide](guide.md) explains when to
+use which.
 """
 
 
@@ -44,7 +46,8 @@ def entry(path: Path) -> str:
     figure = FIGURES.get(path.stem, f"{path.stem}.png")
     picture = f"![{title}]({figure})\n\n" if (DOCS / figure).exists() else ""
     command = f"    rodsweep run {place(path)}\n    rodsweep plot {path.stem}.h5\n"
-    return f"\n## {title} ({path.stem})\n\n{picture}{told}\nThe config is [{place(path)}](../{place(path)}).\n\n{command}"
+    link = f"The config is [{place(path)}](../{place(path)})."
+    return f"\n## {title} ({path.stem})\n\n{picture}{told}\n{link}\n\n{command}"
 
 
 def place(path: Path) -> str:
@@ -62,7 +65,7 @@ def section(name: str, command: click.Command) -> str:
     options = [each for each in command.params if isinstance(each, click.Option)]
     arguments = [each for each in command.params if isinstance(each, click.Argument)]
     usage = " ".join([f"rodsweep {name}", *(["[OPTIONS]"] if options else []), *map(typed, arguments)])
-    rows = "".join(f"| `{words(each)}` | {described(each)} |\n" for each in options)
+    rows = "".join(f"| {words(each)} | {described(each)} |\n" for each in options)
     table = f"\n| option | meaning |\n| --- | --- |\n{rows}" if rows else ""
     return f"\n## rodsweep {name}\n\n{command.help}\n\n```text\n{usage}\n```\n{table}"
 
@@ -80,7 +83,8 @@ def words(option: click.Option) -> str:
     kind = option.type
     text = "|".join(kind.choices) if isinstance(kind, click.Choice) else kind.name.upper()
     value = "" if option.is_flag else f" {option.metavar or text}"
-    return f"{', '.join(option.opts)}{value}".replace("|", r"\|")
+    names = ", ".join(f"`{name}`" for name in option.opts)
+    return f"{names}{value}".replace("|", r"\|")
 
 
 def described(option: click.Option) -> str:
