@@ -20,8 +20,8 @@ FIGURES = {"hysteresis_up": "hysteresis.png", "hysteresis_down": "hysteresis.png
 GALLERY = """# Gallery
 
 Every config of `configs/` with the number that it must show, its source, and its figure. `make figures`
-computes all configs on two ranks and draws all figures; the commands below compute one. Each number is asserted
-by a test.
+computes all configs on two ranks and draws all figures; the commands below compute one. A test asserts each
+number.
 """
 COMMANDS = """# Commands
 
