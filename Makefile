@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo figures test test-kernels test-peers survey lint check stress bench clean distclean help FORCE
+.PHONY: install demo docs figures test test-kernels test-peers survey lint check stress bench clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -82,6 +82,9 @@ survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) r
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, damage files and configs CASES (10) times as often (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/results/test_stress.py tests/solve/test_interrupts.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_CASES=$(or $(CASES),10) $(BIN)/python -m pytest -n auto tests/cli/test_bad_files.py tests/cli/test_bad_input.py tests/results/test_edited_files.py
+docs: .venv/docs  ## build the documentation site, build/site/index.html: runs its tutorials, checks its links (a minute)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m sphinx -q -W --keep-going -E -b html docs build/site
+	$(BIN)/python docs/links.py build/site
 bench: .venv/installed  ## run the benchmarks, with the peers of benchmarks/: docs/performance.md and its figures; the numbers are in results/bench.h5
 	mkdir -p results
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md
@@ -183,3 +186,9 @@ endef
 	wait $$spectra
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'
+
+# NumPy stays: Debian's h5py and petsc4py speak the binary interface of its present version.
+.venv/docs: .venv/installed
+	numpy=$$($(BIN)/python -c 'import numpy; print("numpy==" + numpy.__version__)')
+	$(BIN)/python -m pip --disable-pip-version-check install -e '.[docs]' "$$numpy"
+	touch $@

@@ -22,7 +22,9 @@ from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
 
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+ENTRANCE = DOCS / "index.md"
+"""First page of the site, with all other pages in its table of contents."""
+PAGES = [ROOT / "README.md", *(page for page in sorted(DOCS.rglob("*.md")) if page != ENTRANCE), ENTRANCE]
 MOST_LINES = 150
 """Lines of the README."""
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
@@ -37,12 +39,17 @@ each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 
 
 @cache
-def reference():
-    """The script that writes docs/file-format.md."""
-    spec = importlib.util.spec_from_file_location("reference", DOCS / "reference.py")
+def script(name):
+    """A script of docs/ that writes pages."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def reference():
+    """The script that writes docs/file-format.md."""
+    return script("reference")
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -90,10 +97,17 @@ def test_readme_is_short():
     assert len((ROOT / "README.md").read_text().splitlines()) <= MOST_LINES
 
 
-def test_readme_names_every_task_and_every_page():
+def test_readme_names_every_task_and_the_site():
     text = (ROOT / "README.md").read_text()
     assert all(f"`{task}`" in text for task in CONFIGS)
-    assert all(f"(docs/{page.name})" in text for page in PAGES[1:])
+    assert "`make docs`" in text and "(docs/index.md)" in text
+
+
+def test_the_contents_of_the_site_have_every_page():
+    trees = re.findall(r"^```\{toctree\}\n(.*?)^```", ENTRANCE.read_text(), re.MULTILINE | re.DOTALL)
+    listed = [line for tree in trees for line in tree.splitlines() if line and line[0] != ":"]
+    pages = [*PAGES[1:-1], DOCS / "notebook.ipynb"]
+    assert sorted(listed) == sorted(str(page.relative_to(DOCS).with_suffix("")) for page in pages)
 
 
 def test_headline_numbers_are_those_of_the_tables():
@@ -169,6 +183,11 @@ def test_developers_read_the_order_of_the_packages_that_is_enforced():
     layers = next(contract["layers"] for contract in contracts if contract["id"] == "layers")
     order = " < ".join(re.sub(r"\(rodsweep\.(\w+)\)", r"\1", layer) for layer in reversed(layers))
     assert f"    {order}\n" in (DOCS / "developers.md").read_text()
+
+
+def test_gallery_and_commands_are_those_of_the_code():
+    for page, text in script("generated").PAGES.items():
+        assert page.read_text() == text(), "write it anew: python docs/generated.py"
 
 
 def test_reference_is_that_of_the_code():

@@ -1,0 +1,101 @@
+"""Writes docs/gallery.md from the configs, and docs/commands.md from the command line.
+
+    python docs/generated.py
+
+`tests/test_docs.py` compares the stored pages with these.
+"""
+
+import re
+from pathlib import Path
+
+import click
+
+from rodsweep.cli import commands
+from rodsweep.config.document.parsing import parse
+
+DOCS = Path(__file__).parent
+CONFIGS = DOCS.parent / "configs"
+FIGURES = {"hysteresis_up": "hysteresis.png", "hysteresis_down": "hysteresis.png"}
+"""Figures whose name is not that of the config."""
+GALLERY = """# Gallery
+
+Every config of `configs/` with the number that it must show, its source, and its figure. `make figures`
+computes all configs on two ranks and draws all figures; the commands below compute one. A test asserts each
+number.
+"""
+COMMANDS = """# Commands
+
+Every command of `rodsweep` with its options, as its help prints them. The [guide](guide.md) explains when to
+use which.
+"""
+
+
+def gallery() -> str:
+    """The page with all configs."""
+    return GALLERY + "".join(map(entry, sorted(CONFIGS.glob("*.yaml"))))
+
+
+def entry(path: Path) -> str:
+    """One config: title, figure, opening comment, command."""
+    text = path.read_text()
+    title = parse(text, path.name)["title"]
+    comment = re.match(r"(#.*\n)+", text)
+    assert comment is not None
+    told = re.sub(r"^# ?", "", comment[0], flags=re.MULTILINE).replace("\n# Expected", "\n\nExpected")
+    told = told.replace("*", r"\*").replace("Expected:", "\n*Expected:*", 1)
+    figure = FIGURES.get(path.stem, f"{path.stem}.png")
+    picture = f"![{title}]({figure})\n\n" if (DOCS / figure).exists() else ""
+    command = f"    rodsweep run {place(path)}\n    rodsweep plot {path.stem}.h5\n"
+    link = f"The config is [{place(path)}](../{place(path)})."
+    return f"\n## {title} ({path.stem})\n\n{picture}{told}\n{link}\n\n{command}"
+
+
+def place(path: Path) -> str:
+    """A path from the top of the clone."""
+    return f"configs/{path.name}"
+
+
+def command_line() -> str:
+    """The page with all commands."""
+    return COMMANDS + "".join(section(name, commands.commands[name]) for name in sorted(commands.commands))
+
+
+def section(name: str, command: click.Command) -> str:
+    """One command: what it does, its usage, a table of its options."""
+    options = [each for each in command.params if isinstance(each, click.Option)]
+    arguments = [each for each in command.params if isinstance(each, click.Argument)]
+    usage = " ".join([f"rodsweep {name}", *(["[OPTIONS]"] if options else []), *map(typed, arguments)])
+    rows = "".join(f"| {words(each)} | {described(each)} |\n" for each in options)
+    table = f"\n| option | meaning |\n| --- | --- |\n{rows}" if rows else ""
+    return f"\n## rodsweep {name}\n\n{command.help}\n\n```text\n{usage}\n```\n{table}"
+
+
+def typed(argument: click.Argument) -> str:
+    """An argument as it is typed. Written here, because click's own text differs between its releases."""
+    kind = argument.type
+    text = "|".join(kind.choices) if isinstance(kind, click.Choice) else str(argument.name).upper()
+    text += "..." if argument.nargs < 0 else ""
+    return text if argument.required else f"[{text}]"
+
+
+def words(option: click.Option) -> str:
+    """An option as it is typed, with the name of its value."""
+    kind = option.type
+    text = "|".join(kind.choices) if isinstance(kind, click.Choice) else kind.name.upper()
+    value = "" if option.is_flag else f" {option.metavar or text}"
+    names = ", ".join(f"`{name}`" for name in option.opts)
+    return f"{names}{value}".replace("|", r"\|")
+
+
+def described(option: click.Option) -> str:
+    """Meaning of an option, with its default where there is one."""
+    shown = f" Default: {option.default}." if option.show_default else ""
+    return f"{option.help or ''}{shown}".replace("|", r"\|")
+
+
+PAGES = {DOCS / "gallery.md": gallery, DOCS / "commands.md": command_line}
+"""Function that gives the text of each generated page."""
+
+if __name__ == "__main__":
+    for page, text in PAGES.items():
+        page.write_text(text())
