@@ -46,7 +46,7 @@ class CoarserMeshes:
         few = (
             mesh.order - self.mesh.order <= SERVED_ORDERS and self._refined_in_time(mesh) <= SERVED_INTERVALS
         )
-        return few and (mesh.elements, mesh.stages) == (self.mesh.elements, self.mesh.stages)
+        return few and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """The predicted orbit on a fine mesh, and the calibration of this mesh; raises Unsolvable."""

@@ -37,7 +37,7 @@ from .returns import (
     section_crossings,
     until_returns,
 )
-from .stepped_rod import near_rod
+from .motion_mesh import near_rod
 from .trace import TipTrace
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
