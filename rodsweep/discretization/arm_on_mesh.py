@@ -1,8 +1,8 @@
 """Compliances, drags and rest of an arm at the nodes of a mesh, and their derivatives by a parameter.
 
 At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
-contain the mean of both sides, weighted by the quadrature: this keeps the accuracy of the mesh if elements end
-at the jumps.
+contain the mean of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if elements
+end at the jumps, for a linear law; with another law s(S) differs on the two sides, and jumps are refused.
 """
 
 from functools import lru_cache
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..model.balance import Material
 from ..model.material.build import Sections
+from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
@@ -25,8 +26,11 @@ taken: at a jump an element has those of its own side."""
 def material_on(rod: Rod, grid: Mesh) -> Material:
     """The material of a rod on a mesh; an arm has arrays over the nodes, (3, nodes + 1).
 
-    The elements of an arm must end at the breaks of its profile.
+    The elements of an arm must end at the breaks of its profile. ValueError for a law that is not linear and
+    a profile that jumps.
     """
+    if not (rod.build.continuous or rod.build.constitutive_law is LINEAR):
+        raise ValueError("the nonlinear motion of an arm with jumps is known for the linear law only")
     if rod.standard:
         return rod.material
     compliance, drag, rest = _at_nodes(rod.sections(_points_of(grid)), grid)

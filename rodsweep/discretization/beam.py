@@ -1,10 +1,9 @@
 """One nonlinear rod on one mesh as a time stepper sees it: dz/dt = f(z), f compiled, with its exact Jacobian.
 
 The unknown is z = C^(1/2) S, the stresses S of a linear rod beyond those of the straight rod in units of
-energy, at all nodes but the tip, where they vanish: z1 at every node, then z2, then z3. |z|^2/2 is an energy of
-the linear rod, the mass matrix is
-the identity, and no digits are lost for large k1 or k2. It asks for c1, c2, gamma3 > 0; `StressForm` has
-every limit.
+energy, at all nodes but the tip, where they vanish: z1 at every node, then z2, then z3. |z|^2/2 is an energy
+of the linear rod, the mass matrix is the identity, and no digits are lost for large k1 or k2. It asks for
+c1, c2, gamma3 > 0; `StressForm` has every limit.
 """
 
 from dataclasses import dataclass

@@ -7,8 +7,8 @@ import numpy as np
 from ...arrays import Array
 from ...model.dispersion import local_growth
 from ...model.rod import Rod
-from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WAVE_FACTOR, required_order
 from ..elements.elements import Elements
+from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WAVE_FACTOR, required_order
 from .arm_pencil import ArmMesh
 
 SAMPLES = 33

@@ -1,11 +1,11 @@
 """The nonlinear rod in the plane in its mixed form: stresses and velocities in the body frame, on a mesh.
 
-The balance of `rodsweep.model.balance` with both fields kept as unknowns. S is what the stress of a linear rod
-has beyond that of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3); W are the weights of the
+The balance of `rodsweep.model.balance` with both fields kept as unknowns. S is what the stress of a linear
+rod has beyond that of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3); W are the weights of the
 quadrature, D is the derivative, and s(S) is the constitutive law, S itself for a linear rod:
 
     W C dS/dt = -D^T W V + W ad_E V          at all nodes but the tip; the clamp V(0) = 0 is natural
-    0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + s(S), and S(1) = 0 is essential
+    0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + s(S); S(1) = 0 is essential
 
 where E = (nu, 0, 0) + C S. With X = (S; v1, v2, Omega3) this is
 
@@ -26,8 +26,7 @@ from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
 from ..arm_on_mesh import material_on
-from ..elements.elements import Elements
-from ..elements.mesh import Mesh, mesh_on, reconstruction
+from ..elements.mesh import Mesh, reconstruction
 from ..nodal_rod import NodalRod, nodal_rod
 from ..state_layout import COMPONENTS, StateLayout, plane_layout
 from .law_at_rest import LawAtRest, law_at_rest
@@ -114,7 +113,9 @@ class MixedForm:
         y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
         """
         W, c = self.mesh.quadrature[:-1], self.nodal.compliance[:, :-1]
-        return self.layout.row({"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self.nodal.rest[0])[:-1] * W})
+        return self.layout.row(
+            {"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self.nodal.rest[0])[:-1] * W}
+        )
 
     def fields(self, X: Values) -> tuple[Values, Values]:
         """(S, V) at all nodes, the tip included, each of shape (3, ..., nodes + 1)."""
@@ -128,7 +129,7 @@ class MixedForm:
         """B(X, Y) = B(Y, X), shape (..., unknowns)."""
         (S, U), (T, V) = self.fields(X), self.fields(Y)
         CS, CT, W = self._strain(S), self._strain(T), self.mesh.quadrature
-        forces = W * (coad(CS, self._stressed(T)) + coad(CT, self._stressed(S)))
+        forces: Values = W * (coad(CS, self._stressed(T)) + coad(CT, self._stressed(S)))
         if self.law.nonlinear:
             second = self.law.second(S, T)
             forces = forces + W * coad(self._along(self.nodal.rest, S), second) + self._slope(second)
@@ -193,8 +194,3 @@ def remaining(grid: Mesh, values: Array) -> Array:
         here = slice(e * grid.order, (e + 1) * grid.order + 1)
         total[here] = total[here.start] + length * (values[here] @ ends)
     return total[-1] - total
-
-
-def mixed_form(rod: Rod, elements: Elements) -> MixedForm:
-    """The mixed form on some elements."""
-    return MixedForm(rod, mesh_on(elements.edges, elements.order))

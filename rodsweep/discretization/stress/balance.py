@@ -9,8 +9,8 @@ straight rod under its force,
     E = E0 + C S,    Sigma = Sigma(1) + s(S),    Gamma V = D*_E Sigma = D s(S) + ad*_E Sigma,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
 
-The constitutive law is s(S), local at each node (`rodsweep.model.material.response`), and s(S) = S of a linear
-rod. The strain is affine in S for every law, so that the left side is constant and diagonal.
+The constitutive law is s(S), local at each node (`rodsweep.model.material.response`), and s(S) = S of a
+linear rod. The strain is affine in S for every law, so that the left side is constant and diagonal.
 
 Nothing is divided by a stiffness, so that a compliance of 0 is one like others: its stress is then without a
 derivative. At the tip G is the reaction r, and -r is the tip's velocity: it converges twice as fast as V

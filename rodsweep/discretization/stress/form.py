@@ -25,7 +25,8 @@ class StressForm(RodOnMesh):
     """One rod on one mesh.
 
     A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L of a linear rod with the same
-    strain, at every node but the tip, where they vanish, and Omega in 1/tau2 at all nodes where gamma3 is small.
+    strain, at every node but the tip, where they vanish, and Omega in 1/tau2 at all nodes where gamma3 is
+    small.
     """
 
     @property

@@ -8,8 +8,8 @@ law, see `stress_balance`, consists of
 
 Blocks that vanish for every E are known from the algebra, the first argument `g`.
 
-Another law has s(S) in place of S in Sigma alone. The derivative above has a part P by the stresses and a part
-by the strains; with the law's tangent T = ds/dS, local at each node, J becomes J - P + P T.
+Another law has s(S) in place of S in Sigma alone. The derivative above has a part P by the stresses and a
+part by the strains; with the law's tangent T = ds/dS, local at each node, J becomes J - P + P T.
 """
 
 import numpy as np

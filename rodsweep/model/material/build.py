@@ -152,7 +152,9 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     if profile is None:
         return ends
     column = FACTORS.index(name)
-    rows = [(1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)]
+    rows = [
+        (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
+    ]
     inside = (np.arange(AREA_SAMPLES) + 0.5) / AREA_SAMPLES
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
     between = (1 - (1 - taper) * points) ** power * profile.factors(points)[column]

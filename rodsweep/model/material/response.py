@@ -5,8 +5,8 @@ strain: h1 = nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses beyond tho
 
     N(q1, q3) = q1 [W'(h1) - W'(nu)]/(h1 - nu) + B'(h1) c3 q3^2/2,     q2,     M(q1, q3) = B(h1) q3
 
-with the stretch energy W and the bending factor B of `laws`. Nothing is divided by a compliance, so that c1 = 0
-is a value like others. A linear rod has N = q1 and M = q3.
+with the stretch energy W and the bending factor B of `laws`. Nothing is divided by a compliance, so that
+c1 = 0 is a value like others. A linear rod has N = q1 and M = q3.
 """
 
 from typing import NamedTuple

@@ -31,6 +31,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .cycle import Cycle, CycleRequest, measured
 from .status import MarchedStatus
 from .transient.from_motion import stressed
+from .transient.motion_mesh import motion_mesh, near_rod
 from .transient.returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
@@ -40,7 +41,6 @@ from .transient.returns import (
     section_crossings,
     until_returns,
 )
-from .transient.motion_mesh import motion_mesh, near_rod
 
 TOLERANCE = 0.01
 """Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as much."""

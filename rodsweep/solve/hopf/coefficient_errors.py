@@ -3,7 +3,7 @@
 The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
 from the coarser mesh is the error estimate, which overestimates the error by some decades. Rounding and the
 error of the Hopf point itself are added. The slope dw/dF is the slope of the root of D, free of mesh error;
-its difference from the slope on the finer mesh is the error estimate.
+its difference from the slope on the finer mesh is the error estimate. Arms have the slope of the finer mesh.
 """
 
 import math
@@ -93,13 +93,15 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         if change <= max(accuracy, rounding):
             break
     slope, bend = _slope(rod, w)
+    if rod.standard:
+        off = abs(fine.slope - slope) / abs(slope)
+    else:  # the slope of the root is a difference there, less accurate than that of a mesh
+        slope = fine.slope
+        off = abs(fine.slope - coarse.slope) / abs(slope)
     moved = (
-        SENSITIVITY
-        * hopf.error
-        * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F))
+        SENSITIVITY * hopf.error * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F))
     )
     landau_error = max(change, rounding) + moved
-    off = abs(fine.slope - slope) / abs(slope)
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
     return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
 

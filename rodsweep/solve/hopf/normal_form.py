@@ -8,8 +8,8 @@ A q = w M q and p^H A = w p^H M, its small motions at a force F' near F are, to 
     h20 = (2 i Im w M - A)^-1 B(q, q),                  h11 = -A^-1 B(q, conj q),
     c = p^H [B(conj q, h20) + 2 B(q, h11) + C(q, q, conj q)]/2,           lambda_F = dw/dF = p^H A_F q.
 
-A linear constitutive law has no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with z = Z exp(i phase) the
-tip's y is Re z to second order, and |Z| its largest value in L.
+A linear constitutive law has no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with
+z = Z exp(i phase) the tip's y is Re z to second order, and |Z| its largest value in L.
 
 The mirror image of a motion is a motion too: q and p are transverse, h20 and h11 longitudinal. Where w has a
 real part, away from a Hopf point, h20 and h11 are those of a cycle, on which |z| stands still.
@@ -24,11 +24,12 @@ from ...arrays import Array, Complex
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.value import newton_correction
 from ...discretization.elements.elements import Elements, equal_edges, halved
+from ...discretization.elements.mesh import mesh_on
 from ...discretization.elements.resolution import LARGEST_ORDER as LARGEST_ELEMENT_ORDER
 from ...discretization.elements.resolution import resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
-from ...discretization.straight.mixed_form import MixedForm, mixed_form
+from ...discretization.straight.mixed_form import MixedForm
 from ...discretization.straight.whole_matrices import WholeMatrices, straight_matrices
 from ...model.rod import Rod
 from ..point import Unsolvable
@@ -167,7 +168,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     nodes, most = elements.nodes, MOST_NODES if rod.standard else MOST_NODES_OF_ARMS
     if nodes > most:
         raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {most}")
-    normal = normal_form(mixed_form(rod, elements), w)
+    normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, FOUND) * abs(w):
         raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
     return normal

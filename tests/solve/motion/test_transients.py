@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from known_cycles import make_view
 from rods import rod_of
+from rodsweep.solve.cycle.transient.stepped_rod import motion_resolution
 from scipy.integrate import solve_ivp
 
 from rodsweep.discretization.beam import Beam
@@ -18,7 +19,6 @@ from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle.limit_cycle import MOTION_ACCURACY, CycleRequest, solve_cycle
 from rodsweep.solve.cycle.transient import transient
-from rodsweep.solve.cycle.transient.stepped_rod import motion_resolution
 from rodsweep.solve.motion.integrator import RELAXATION_SHARE
 from rodsweep.solve.motion.leading_mode import leading_mode
 
