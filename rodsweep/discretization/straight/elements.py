@@ -221,13 +221,13 @@ class ElementFactors:
 
 
 def factorised(K: Complex) -> LU:
-    """LU with partial pivoting; a singular matrix gives what is infinite or nan, as in LAPACK."""
+    """LU with partial pivoting of K, (n, n); a singular matrix gives infinite or nan numbers."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
 def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
-    """x of K x = right, or of K^H x = right."""
+    """x of K x = right, or of K^H x = right, with right sides (n,) or (n, m)."""
     x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
     return x
 

@@ -64,7 +64,7 @@ class MixedForm:
     @cached_property
     def nodal(self) -> NodalRod:
         """Compliance, drag and rest at all nodes, and the force."""
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh)
+        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, tuple(range(COMPONENTS)))
 
     @cached_property
     def law(self) -> LawAtRest:
