@@ -2,7 +2,14 @@
 
 import numpy as np
 
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.model.balance import ad
+
+
+def mixed_form(rod, elements, order):
+    """The mixed form on `elements` equal elements of order `order`."""
+    return MixedForm(rod, mesh(elements, order))
 
 
 def along(constant, field):
@@ -27,15 +34,15 @@ def reaction(form, X):
     """
     _, V = form.fields(X)
     WD = -form.mesh.matrices.weak.T
-    return form.mesh.quadrature[-1] * ad(along(form.straight, V), V)[..., -1] - V @ WD[:, -1]
+    return form.mesh.quadrature[-1] * ad(along(form.rod.material.rest, V), V)[..., -1] - V @ WD[:, -1]
 
 
 def energy(form, X):
     """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
     S, _ = form.fields(X)
-    return form.material.energy(S + along(form.material.tip_stress, S)) @ form.mesh.quadrature
+    return form.rod.material.energy(S + along(form.rod.material.tip_stress, S)) @ form.mesh.quadrature
 
 
 def dissipation(form, X):
     """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
-    return form.material.dissipation(form.fields(X)[1]) @ form.mesh.quadrature
+    return form.rod.material.dissipation(form.fields(X)[1]) @ form.mesh.quadrature

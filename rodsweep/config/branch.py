@@ -6,12 +6,18 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS, all_but
+from ..model.parameters import (
+    LINEAR_PARAMETERS,
+    NONLINEAR_PARAMETERS,
+    OPTIONAL_PARAMETERS,
+    PARAMETERS,
+    all_but,
+)
 from .axes import DEFAULTS, NonlinearParameters
 from .schema import Config
 from .values import Number, Strict
 
-FOLLOWED = LINEAR_PARAMETERS
+FOLLOWED = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which branches can be followed; gamma1 is excluded because Hopf points do not depend on
 it."""
 
@@ -59,10 +65,13 @@ class BranchConfig(Config):
     branch: BranchOptions = BranchOptions()
 
     others_may_be_needed: ClassVar[bool] = True
+    takes_arms: ClassVar[bool] = True
+    of_cycles: ClassVar[bool] = True
 
     @property
     def names(self) -> tuple[str, ...]:
-        return all_but(self.branch.along, NONLINEAR_PARAMETERS)
+        given = (name for name in OPTIONAL_PARAMETERS if name in self.parameters.given_axes)
+        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *given)
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

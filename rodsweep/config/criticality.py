@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import inf
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -32,6 +32,9 @@ class CriticalityConfig(Config):
     """Relative error of each Hopf point, of the slope of its eigenvalue and of its Landau coefficient. The
     amplitude coefficient and the frequency slope follow from these; the file holds error estimates of all."""
     criticality: CriticalityOptions = CriticalityOptions()
+
+    takes_arms: ClassVar[bool] = True
+    of_cycles: ClassVar[bool] = True
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

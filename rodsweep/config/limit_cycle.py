@@ -1,17 +1,17 @@
 """Config of the task limit_cycle: the nonlinear rod, including its axial drag gamma1."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import NONLINEAR_PARAMETERS
+from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.axes import AXIS_OF
 from .axes import NonlinearParameters, words
 from .schema import Config, Nodes
 from .values import Number, Strict
 
 LONGEST = "longest"
-Along = Literal[(*NONLINEAR_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+Along = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
 class LimitCycleOptions(Strict):
@@ -53,6 +53,9 @@ class LimitCycleConfig(Config):
     """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
     hundred times larger, in units of the largest y. The file holds error estimates of all."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
+
+    takes_arms: ClassVar[bool] = True
+    of_cycles: ClassVar[bool] = True
 
     @property
     def along(self) -> str:

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, model_validator
 
 from ..model.material.build import STANDARD, Build
+from ..model.material.laws import LINEAR
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .axes import Axes, LinearParameters
 from .material import MaterialSection
@@ -36,6 +37,8 @@ class Config(Strict):
 
     takes_arms: ClassVar[bool] = False
     """Whether the task solves arms that vary along their length, or are not of linear material."""
+    of_cycles: ClassVar[bool] = False
+    """Whether the task solves the nonlinear motion of the rods."""
     into_crushed: ClassVar[bool] = False
     """Whether a grid may contain crushed rods, because they are one of the task's states."""
 
@@ -106,6 +109,11 @@ class Config(Strict):
 
     @model_validator(mode="after")
     def _arms_only_where_solved(self) -> "Config":
+        if self.of_cycles and self.build.law != LINEAR.law and not self.build.continuous:
+            raise ValueError(
+                f"material.profile has a jump and material.law is {self.build.law}, but the task {self.task} "
+                "solves jumps of linear material only; remove the jump or set law: linear"
+            )
         if self.takes_arms:
             return self
         asked = "material" if not self.build.standard else ""

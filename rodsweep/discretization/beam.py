@@ -1,9 +1,9 @@
 """One nonlinear rod on one mesh as a time stepper sees it: dz/dt = f(z), f compiled, with its exact Jacobian.
 
-The unknown is z = C^(1/2) S, the stresses beyond those of the straight rod in units of energy, at all nodes
-but the tip, where they vanish: z1 at every node, then z2, then z3. |z|^2/2 is an energy, the mass matrix is
-the identity, and no digits are lost for large k1 or k2. It asks for c1, c2, gamma3 > 0; `StressForm` has
-every limit.
+The unknown is z = C^(1/2) S, the stresses S of a linear rod beyond those of the straight rod in units of
+energy, at all nodes but the tip, where they vanish: z1 at every node, then z2, then z3. |z|^2/2 is an energy
+of the linear rod, the mass matrix is the identity, and no digits are lost for large k1 or k2. It asks for
+c1, c2, gamma3 > 0; `StressForm` has every limit.
 """
 
 from dataclasses import dataclass
@@ -35,6 +35,11 @@ class Beam(RodOnMesh):
     def roots(self) -> Array:
         """Square roots of C, (3, nodes + 1): z = roots S, and the strains beyond rest are roots z."""
         return np.sqrt(self.nodal.compliance)
+
+    @cached_property
+    def crushed(self) -> Array:
+        """z1 at which h1 = 0, at all nodes but the tip, (nodes,)."""
+        return np.ascontiguousarray(-self.nodal.rest[0, :-1] / self.roots[0, :-1])
 
     def stresses(self, z: Values) -> Values:
         scaled = self.layout.stresses(z)

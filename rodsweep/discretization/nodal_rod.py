@@ -18,7 +18,7 @@ class NodalRod(NamedTuple):
 
     tip_stress: Sigma(1), (d,). rest: E0, with compliance and drag (d, nodes + 1); mobility: 1/drag, but 0
     where V is unknown. second: -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: which components of V are
-    unknowns.
+    unknowns. law: number of the constitutive law, see `rodsweep.model.material.response`.
     """
 
     tip_stress: Array
@@ -28,6 +28,7 @@ class NodalRod(NamedTuple):
     mobility: Array
     second: Array
     kept: Integers
+    law: int
 
 
 class NodalChange(NamedTuple):
@@ -39,15 +40,12 @@ class NodalChange(NamedTuple):
     drag: Array
 
 
-def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = ()) -> NodalRod:
+def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0) -> NodalRod:
     """A material on a mesh, of which these components of V are unknowns."""
     size = grid.nodes + 1
     rest, compliance = _at_nodes(material.rest, size), _at_nodes(material.compliance, size)
-    if material.drag.ndim == 1:
-        resistance = _uniform_resistance(tuple(material.drag.tolist()), grid, kept)
-    else:
-        resistance = _resistance(material.drag, grid, kept)
-    return NodalRod(material.tip_stress, rest, compliance, *resistance)
+    resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, kept)
+    return NodalRod(material.tip_stress, rest, compliance, *resistance, law)
 
 
 def nodal_change(change: Material, grid: Mesh) -> NodalChange:
@@ -57,11 +55,12 @@ def nodal_change(change: Material, grid: Mesh) -> NodalChange:
 
 
 @lru_cache(maxsize=64)
-def _uniform_resistance(
-    drag: tuple[float, ...], grid: Mesh, kept: tuple[int, ...]
+def _resistance_of(
+    drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Integers]:
-    """`_resistance` of a uniform rod: rods of a chain over F share it."""
-    return _resistance(np.array(drag)[:, None], grid, kept)
+    """`_resistance` of a drag as bytes: rods of a chain over F share it."""
+    values = np.frombuffer(drag).reshape(shape)
+    return _resistance(values if len(shape) > 1 else values[:, None], grid, kept)
 
 
 def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, Array, Array, Integers]:

@@ -12,8 +12,9 @@ from typing import Self
 import numpy as np
 
 from ..arrays import Array
-from ..model.balance import Material, Values
+from ..model.balance import Values
 from ..model.rod import Rod
+from .arm_on_mesh import material_on
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
@@ -33,7 +34,10 @@ class RodOnMesh(ABC):
 
     @abstractmethod
     def stresses(self, x: Values) -> Values:
-        """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+        """S at all nodes, the tip included, shape (3, ..., nodes + 1): the strains beyond rest are C S.
+
+        In a linear rod S is (n1 + F, n2, m3).
+        """
 
     def with_coordinate(self, name: str, coordinate: float) -> Self:
         """The rod elsewhere along a parameter, on the same mesh; ValueError where the model has none."""
@@ -49,14 +53,9 @@ class RodOnMesh(ABC):
         return self.layout.unknowns
 
     @cached_property
-    def material(self) -> Material:
-        """Compliances, drags and the force."""
-        return self.rod.material
-
-    @cached_property
     def nodal(self) -> NodalRod:
         """The rod as the compiled functions take it."""
-        return nodal_rod(self.material, self.mesh, self.kept)
+        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, self.kept, self.rod.build.law_number)
 
     def strains(self, x: Values) -> Values:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
@@ -72,11 +71,27 @@ class RodOnMesh(ABC):
         return self.shape(x)[..., -1]
 
     def energy(self, x: Array) -> Array:
-        """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
-        S = self.stresses(x)
-        Sigma = S + _along(self.nodal.tip_stress[:, None], S)
-        energy: Array = self.material.energy(Sigma) @ self.mesh.quadrature
+        """U, the integral of the law's energy along the rod, in k3/L, shape (...).
+
+        Of a linear rod: 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 for k3 = 1 all along.
+        """
+        S, law = self.stresses(x), self.rod.build.constitutive_law
+        compliance = _along(self.nodal.compliance, S)
+        h1 = _along(self.nodal.rest, S)[0] + compliance[0] * S[0]
+        push = S[0] - _along(self._shortening[None], S)[0]  # (h1 - 1)/c1
+        stretched = compliance[0] * push**2 * law.energy_over_square(h1)
+        bent = compliance[1] * S[1] ** 2 / 2 + law.bending(h1) * compliance[2] * S[2] ** 2 / 2
+        energy: Array = (stretched + bent) @ self.mesh.quadrature
         return energy
+
+    @cached_property
+    def _shortening(self) -> Array:
+        """1 - nu of the straight rod in units of c1, (nodes + 1,), in the limit where c1 = 0."""
+        F, law = self.rod.F, self.rod.build.constitutive_law
+        load = F * self.nodal.compliance[0]
+        ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
+        shortening: Array = F * ratio
+        return shortening
 
     def least_stretch(self, x: Array) -> float:
         """min h1 over the nodes of all states; the model holds while it is positive."""

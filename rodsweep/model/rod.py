@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from .balance import Material, first_component
-from .material.build import STANDARD, Build, LocalCoefficients
+from .material.build import STANDARD, Build, LocalCoefficients, Sections
 from .parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
 
 Decorated = TypeVar("Decorated")
@@ -129,6 +129,13 @@ class Rod:
         return self.build.crushing_share(self.taper) * self.stretch_stiffness
 
     @property
+    def least_rotational_drag(self) -> float:
+        """The smallest drag on the angular velocity along the arm, in gamma2 L^2."""
+        if self.standard:
+            return self.rotational_drag
+        return self.build.least_drag_share(self.taper) * self.rotational_drag
+
+    @property
     def uniform(self) -> bool:
         """Whether stiffnesses and drags are the same all along the rod."""
         return self.taper == 1 and self.build.profile is None
@@ -220,6 +227,15 @@ class Rod:
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return Material(compliance, drag, self.F, first_component(self.nu, 3))
+
+    def sections(self, u: Array) -> Sections:
+        """Cross-sections at points u, (points,), none of them a break."""
+        return self.build.sections(self.F, scaled(self.values), u)
+
+    def section_changes(self, name: str, u: Array) -> Sections:
+        """Derivatives of the cross-sections by the coordinate of a parameter, at points u, (points,)."""
+        slopes = {"taper": 1.0} if name == "taper" else self._slopes(name)
+        return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
         """The material of the rod that moves in space; twist stiffness in k3, twist drag in gamma2 L^2."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..model.parameters import LINEAR_PARAMETERS
+from ..model.parameters import PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 
@@ -87,7 +87,7 @@ class StoredBranch:
 def followed_parameter(view: View) -> str:
     """Parameter along which the branches of a file are followed."""
     names = {str(name) for name in view.variables}
-    return next(name for name in LINEAR_PARAMETERS if f"branch_{name}" in names)
+    return next(name for name in PARAMETERS if f"branch_{name}" in names)
 
 
 def count_incomplete_branches(view: View, rod: int) -> int:

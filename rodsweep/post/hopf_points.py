@@ -11,7 +11,7 @@ from math import inf, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.parameters import all_but
+from ..model.parameters import OPTIONAL_PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
@@ -76,7 +76,10 @@ class StoredChanges:
         points = v["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth = v[growth].reshape(points, -1)[:, 0]
-        self.others = all_but(name)
+        names = [
+            other for other in HOPF_ALONG if other not in OPTIONAL_PARAMETERS or other in view.point_columns
+        ]
+        self.others = [other for other in names if other != name]
         self.by_rod: dict[tuple[float, ...], list[LocatedChange]] = {}
         if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
             self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))

@@ -3,6 +3,7 @@ rod.
 """
 
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -28,7 +29,7 @@ from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import count_of, rod_parts
+from .parts import count_of, material_parts, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ class LimitCycleTask(Task):
         lines = hopf_lines_of(self.points)
         if lines:
             require_solvers()
-        return hopf_variables(lines, in_order(lines, HopfLine.search))
+        return hopf_variables(self.points.names, lines, in_order(lines, HopfLine.search))
 
     def headline(self) -> str:
         options, chains = self.config.limit_cycle, self.chains
@@ -101,6 +102,7 @@ class LimitCycleTask(Task):
         gamma1, marched = np.unique(self.points.of_rods["gamma1"])[:5], options.method == "integration"
         return [
             *rod_parts(self.points.of_rods),
+            *material_parts(self.config, self.points),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
@@ -147,13 +149,14 @@ class LimitCycleTask(Task):
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
+        restored = partial(Neighbour.from_arrays, build=self.config.build)
         chains = self.chains
         return Solver(
             statuses=tuple(CycleStatus),
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
+            chained=ChainedWork(chains, solve_from, restored) if chains else None,
         )
 
     def _request(self) -> "CycleRequest":

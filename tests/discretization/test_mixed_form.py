@@ -5,13 +5,13 @@ from dataclasses import replace
 import mixed_motion as mixed
 import numpy as np
 import pytest
+from mixed_motion import mixed_form
 from rods import rod_of
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto
-from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 
@@ -46,8 +46,8 @@ def some_state(form, seed=1, imaginary=False):
 def consistent(form, X):
     """X with the velocities that its stresses give it, of a rod with rotational drag."""
     S, _ = form.fields(X)
-    Sigma = S + form.material.tip_stress[:, None]
-    return form.unknown(S, form.material.velocity(Sigma, Sigma @ form.mesh.matrices.D.T))
+    Sigma = S + form.rod.material.tip_stress[:, None]
+    return form.unknown(S, form.rod.material.velocity(Sigma, Sigma @ form.mesh.matrices.D.T))
 
 
 def finite_eigenvalues(form):
@@ -208,7 +208,7 @@ def test_consistent_velocities_satisfy_their_equation(elements, order):
 @MESHES
 def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, order):
     form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
-    root = np.repeat(np.sqrt(form.material.compliance), form.mesh.nodes)
+    root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
     X = consistent(form, some_state(form))
     z = root * X[: form.stresses]
     expected = Beam(rod.changed(gamma1=GAMMA1), mesh(elements, order)).rate(z)
@@ -223,7 +223,7 @@ def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, ord
         mixed_form(rod.changed(gamma1=GAMMA1), elements, order),
         Beam(rod.changed(gamma1=GAMMA1), mesh(elements, order)),
     )
-    u, root = form.mesh.positions[:-1], np.repeat(np.sqrt(form.material.compliance), form.mesh.nodes)
+    u, root = form.mesh.positions[:-1], np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
     exact = beam.tip_velocity(np.zeros(beam.layout.unknowns), root * S)[1]
     assert form.tip_y @ np.append(S, np.zeros(form.unknowns - len(S))) == pytest.approx(exact, rel=1e-12)

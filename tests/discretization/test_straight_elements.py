@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from mixed_motion import mixed_form
 
 from rodsweep.discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
-from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.model.rod import Rod
 
 INF = np.inf

@@ -62,7 +62,7 @@ def period_and_largest_y(orbit, phases):
     form = MixedForm(orbit.form.rod, orbit.form.mesh)
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
     S, _ = form.fields(X)
-    E = S * form.material.compliance[:, None, None] + form.straight[:, None, None]
+    E = S * form.nodal.compliance[:, None, :] + form.nodal.rest[:, None, :]
     y = configuration(form.mesh, np.ascontiguousarray(E), np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
     return 2 * np.pi / frequency, float(maxima(coefficients(whole), whole)[0])

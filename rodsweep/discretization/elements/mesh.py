@@ -1,4 +1,4 @@
-"""Equal elements on the rod, the matrices on their nodes, and the way from strains to a shape.
+"""Elements on the rod, the matrices on their nodes, and the way from strains to a shape.
 
 Fields are continuous in P_p with Lobatto nodes and lumped mass. theta(u) = int Pi, r(u) = int R(theta) (h1,
 h2).
@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from .basis import differentiation, interpolation
-from .equal_elements import EqualElements
+from .elements import Elements, equal_edges
 from .quadrature import gauss, gauss_lobatto
 
 EXTRA_POINTS = 10
@@ -32,17 +32,17 @@ class NodeMatrices(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Mesh(EqualElements):
-    """Equal elements, and the matrices on all their nodes; `nodes` is without the tip.
+class Mesh(Elements):
+    """Elements, and the matrices on all their nodes; `nodes` is without the tip.
 
-    The matrices follow from elements and order, by which meshes are equal, also that of another process.
+    The matrices follow from edges and order, by which meshes are equal, also that of another process.
     """
 
     matrices: NodeMatrices = field(compare=False, repr=False)
 
-    def __reduce__(self) -> tuple[Any, tuple[int, int]]:
-        """Pickled, also in a message to another rank, as the two numbers."""
-        return mesh, (self.elements, self.order)
+    def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int]]:
+        """Pickled, also in a message to another rank, as edges and order."""
+        return mesh_on, (self.edges, self.order)
 
     @property
     def quadrature(self) -> Array:
@@ -50,20 +50,25 @@ class Mesh(EqualElements):
         return self.matrices.weights
 
 
-@lru_cache(maxsize=64)
 def mesh(elements: int, order: int) -> Mesh:
     """The mesh of `elements` equal elements of order `order`."""
+    return mesh_on(equal_edges(elements), order)
+
+
+@lru_cache(maxsize=64)
+def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
+    """The mesh of elements between `edges`, all of order `order`."""
     x, w = gauss_lobatto(order)
-    slopes, weights = differentiation(x), w / (2 * elements)
-    nodes = elements * order
+    slopes, lengths = differentiation(x), np.diff(edges)
+    nodes = len(lengths) * order
     weighted, total = np.zeros((nodes + 1, nodes + 1)), np.zeros(nodes + 1)
-    for first in range(0, nodes, order):
+    for length, first in zip(lengths, range(0, nodes, order), strict=True):
         here = slice(first, first + order + 1)
         weighted[here, here] += w[:, None] * slopes  # the lengths of the element cancel
-        total[here] += weights
+        total[here] += length / 2 * w
     D = weighted / total[:, None]
     parts = D, D.T, -weighted.T, total
-    return Mesh(elements, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
+    return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
 @lru_cache(maxsize=256)
@@ -75,17 +80,17 @@ def transfer(source: Mesh, target: Mesh) -> Array:
 def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
     """(x, y, theta) at all nodes from strains (h1, h2, Pi), both (3, ..., nodes + 1), and `clamp`, (3,)."""
     values, angles, integrals, ends = reconstruction(grid.order)
-    m, p = grid.elements, grid.order
+    p = grid.order
     state = np.empty_like(strains)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
-    for e in range(m):
+    for e, length in enumerate(grid.lengths):
         here = slice(e * p, (e + 1) * p + 1)
         h1, h2, Pi = (strain[..., here] for strain in strains)
-        theta = start[2] + Pi @ angles / m
+        theta = start[2] + length * (Pi @ angles)
         cos, sin = np.cos(theta), np.sin(theta)
-        state[0][..., here] = start[0] + (cos * (h1 @ values) - sin * (h2 @ values)) @ integrals / m
-        state[1][..., here] = start[1] + (sin * (h1 @ values) + cos * (h2 @ values)) @ integrals / m
-        state[2][..., here] = start[2] + Pi @ ends / m
+        state[0][..., here] = start[0] + length * ((cos * (h1 @ values) - sin * (h2 @ values)) @ integrals)
+        state[1][..., here] = start[1] + length * ((sin * (h1 @ values) + cos * (h2 @ values)) @ integrals)
+        state[2][..., here] = start[2] + length * (Pi @ ends)
         start = state[..., here][..., -1:]
     return state
 

@@ -5,8 +5,6 @@ Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. An element ends wher
 the solution is smooth within each. The matrix is not affine in any parameter: it is filled for every arm.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +13,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
+from ..elements.elements import Elements
 from ..elements.quadrature import gauss, gauss_lobatto
 from .pencil import LEAST_ANGLE_WEIGHT, SHEAR_WEIGHT
 
@@ -23,22 +22,8 @@ INSIDE = 1e-9
 taken: at a jump an element has those of its own side."""
 
 
-@dataclass(frozen=True, slots=True)
-class ArmMesh:
-    """Elements between `edges`, from 0 to 1, all of one order."""
-
-    edges: tuple[float, ...]
-    order: int
-
-    @property
-    def elements(self) -> int:
-        """The number of elements."""
-        return len(self.edges) - 1
-
-    @property
-    def nodes(self) -> int:
-        """The number of Lobatto nodes without the clamp."""
-        return self.elements * self.order
+class ArmMesh(Elements):
+    """Elements that end where a coefficient jumps."""
 
     @property
     def unknowns(self) -> int:
@@ -69,7 +54,7 @@ class ArmPencil:
         self.mesh = mesh
         self.order, self.nodes, self.unknowns = mesh.order, mesh.nodes, mesh.unknowns
         edges = np.array(mesh.edges)
-        self._h = np.diff(edges)
+        self._h = mesh.lengths
         self._x, self._w = gauss_lobatto(mesh.order)
         xg, self._wg = gauss(mesh.order)
         self._value = interpolation(self._x, xg)
@@ -82,14 +67,10 @@ class ArmPencil:
         )
         self.rows, self.columns, self._where = self._pattern()
 
-    @cached_property
+    @property
     def positions(self) -> Array:
         """u of all nodes, both ends included, shape (nodes + 1,)."""
-        inner = (self._x[1:] + 1) / 2
-        starts = np.array(self.mesh.edges[:-1])[:, None]
-        positions: Array = np.append(0.0, (starts + self._h[:, None] * inner).ravel())
-        positions[self.order :: self.order] = self.mesh.edges[1:]
-        return positions
+        return self.mesh.positions
 
     def finite(self, rod: Rod) -> int:
         """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
@@ -138,15 +119,7 @@ class ArmPencil:
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
-        edges = np.array(self.mesh.edges)
-        element = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.mesh.elements - 1)
-        matrix = np.zeros((len(points), self.nodes + 1))
-        for e in np.unique(element):
-            here = np.nonzero(element == e)[0]
-            local = 2 * (points[here] - edges[e]) / self._h[e] - 1
-            first = int(e) * self.order
-            matrix[here, first : first + self.order + 1] = interpolation(self._x, local)
-        return matrix
+        return self.mesh.evaluation(points)
 
     def _at_nodes(self, values: Array) -> Array:
         """Sums over elements of values at their nodes, (elements, order + 1), without the clamp, (nodes,)."""

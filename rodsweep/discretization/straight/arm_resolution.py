@@ -7,6 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.dispersion import local_growth
 from ...model.rod import Rod
+from ..elements.elements import Elements
 from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WAVE_FACTOR, required_order
 from .arm_pencil import ArmMesh
 
@@ -20,24 +21,51 @@ FOR_PROFILES = 2
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """The mesh that should give so many leading eigenvalues to a relative accuracy."""
+    points, weights = _samples(rod)
+    _, amplified = local_growth(rod, points)
+    at_rest = (modes - MODE_OFFSET) * pi * _local_share(rod, points, weights)
+    waves = np.hypot(WAVE_FACTOR * amplified, at_rest)
+    elements = _resolving(rod, waves * weights, accuracy, LARGEST_ORDER)
+    return ArmMesh(elements.edges, elements.order)
+
+
+def arm_elements(
+    rod: Rod, wave_number: float, accuracy: float, largest_order: int = LARGEST_ORDER
+) -> Elements:
+    """Elements that resolve a field of an arm with a mean wave number to a relative accuracy."""
+    points, weights = _samples(rod)
+    waves = wave_number * _local_share(rod, points, weights)
+    return _resolving(rod, waves * weights, accuracy, largest_order)
+
+
+def _samples(rod: Rod) -> tuple[Array, Array]:
+    """Points of the smooth pieces of an arm, and the length that each stands for, (n,) both."""
     breaks = rod.build.breaks
     inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
     points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
-    weights = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
+    return points, np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
+
+
+def _local_share(rod: Rod, points: Array, weights: Array) -> Array:
+    """Wave numbers of one frequency at points, in units of their mean; all (n,)."""
     local = rod.local(points)
-    at_rest = (local.gamma2 * local.c3) ** 0.25
-    at_rest /= weights @ at_rest
-    _, amplified = local_growth(rod, points)
-    waves = np.hypot(WAVE_FACTOR * amplified, (modes - MODE_OFFSET) * pi * at_rest)
-    shares = (waves * weights).reshape(len(breaks) - 1, -1).sum(axis=1)
+    at_rest: Array = (local.gamma2 * local.c3) ** 0.25
+    return at_rest / (weights @ at_rest)
+
+
+def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
+    """Elements that resolve waves which turn by `turns` around each sample, (n,)."""
+    breaks = rod.build.breaks
+    shares = turns.reshape(len(breaks) - 1, -1).sum(axis=1)
     edges, largest = [0.0], 0.0
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
-        count = max(1, ceil(ratio / log(LARGEST_RATIO)), _elements_for(float(share), accuracy))
+        needed = _elements_for(float(share), accuracy, largest_order)
+        count = max(1, ceil(ratio / log(LARGEST_RATIO)), needed)
         edges += _edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
     order = max(SMALLEST_ORDER, ceil(required_order(hypot(largest, 1.0), accuracy)))
-    return ArmMesh(tuple(edges), order + (0 if rod.uniform else FOR_PROFILES))
+    return Elements(tuple(edges), order + (0 if rod.uniform else FOR_PROFILES))
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
@@ -51,10 +79,10 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     return ArmMesh(tuple(edges), ceil(2 / 3 * mesh.order))
 
 
-def _elements_for(share: float, accuracy: float) -> int:
+def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
     """The number of elements of the largest order that resolve a piece whose waves turn by `share`."""
     count = 1
-    while required_order(share / count, accuracy) > LARGEST_ORDER:
+    while required_order(share / count, accuracy) > largest_order:
         count += 1
     return count
 

@@ -88,13 +88,14 @@ class StraightElements:
     def A(self) -> Array:
         """What an element has of A, shape (local, local)."""
         form, each, some = self.form, np.eye(COMPONENTS), np.ix_(self.components, self.components)
-        E, Sigma = form.straight[:, None], form.material.tip_stress[:, None]
+        material = form.rod.material
+        E, Sigma = material.rest[:, None], material.tip_stress[:, None]
         WD, W = self._reference
         half, nodes = len(self.components), np.arange(len(W))
         at_nodes = np.zeros((2 * half, 2 * half))
         at_nodes[:half, half:] = ad(E, each)[some]
-        at_nodes[half:, :half] = (coad(E, each) + coad(np.diag(form.material.compliance), Sigma))[some]
-        at_nodes[half:, half:] = -np.diag(form.material.drag)[some]
+        at_nodes[half:, :half] = (coad(E, each) + coad(np.diag(material.compliance), Sigma))[some]
+        at_nodes[half:, half:] = -np.diag(material.drag)[some]
         A = np.zeros((2 * half, len(W), 2 * half, len(W)))
         A[:, nodes, :, nodes] = W[:, None, None] * at_nodes
         for stress in range(half):
@@ -105,7 +106,7 @@ class StraightElements:
     @cached_property
     def M(self) -> Array:
         """What an element has of the diagonal of M, shape (local,)."""
-        stresses = np.outer(self.form.material.compliance[list(self.components)], self._reference[1])
+        stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
     @property
@@ -148,11 +149,11 @@ class StraightElements:
         for here in numbering.between:
             whole[np.ix_(here, here)] += condensed
         return ElementFactors(
-            elements=self, K=K, inside=inside, between=_factorised(whole[np.ix_(asked, asked)])
+            elements=self, K=K, inside=inside, between=factorised(whole[np.ix_(asked, asked)])
         )
 
 
-_LU = tuple[Complex, NDArray[np.int32]]
+LU = tuple[Complex, NDArray[np.int32]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -162,7 +163,7 @@ class _Inside:
     Of the shapes (inside, ends), (ends, inside), (inside, ends), (inside, ends).
     """
 
-    factors: _LU
+    factors: LU
     leaving: Complex
     entering: Complex
     right: Complex
@@ -172,9 +173,9 @@ class _Inside:
     def of(cls, K: Complex, numbering: _Numbering) -> Self:
         """Elimination of the interior of an element from its matrix K, (local, local)."""
         inside, ends = numbering.inside, numbering.ends
-        factors = _factorised(K[np.ix_(inside, inside)])
+        factors = factorised(K[np.ix_(inside, inside)])
         leaving, entering = K[np.ix_(inside, ends)], K[np.ix_(ends, inside)]
-        right, left = _solved(factors, leaving), _solved(factors, entering.conj().T, adjoint=True)
+        right, left = solved_with(factors, leaving), solved_with(factors, entering.conj().T, adjoint=True)
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
     def passed(self, adjoint: bool) -> tuple[Complex, Complex]:
@@ -189,7 +190,7 @@ class ElementFactors:
     elements: StraightElements
     K: Complex
     inside: _Inside | None
-    between: _LU
+    between: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """x of K x = b, or of K^H x = b, (unknowns,).
@@ -210,23 +211,23 @@ class ElementFactors:
         right[numbering.between] = b[ends]
         if inside is not None:
             to_ends, from_ends = inside.passed(adjoint)
-            alone = _solved(inside.factors, b[within].T, adjoint).T
+            alone = solved_with(inside.factors, b[within].T, adjoint).T
             np.subtract.at(right, numbering.between, alone @ to_ends.T)
-        between[numbering.asked] = _solved(self.between, right[numbering.asked], adjoint)
+        between[numbering.asked] = solved_with(self.between, right[numbering.asked], adjoint)
         x[ends] = between[numbering.between]
         if inside is not None:
             x[within] = alone - between[numbering.between] @ from_ends.T
         return x[:-1]
 
 
-def _factorised(K: Complex) -> _LU:
-    """LU with partial pivoting; a singular matrix gives what is infinite or nan, as in LAPACK."""
+def factorised(K: Complex) -> LU:
+    """LU with partial pivoting of K, (n, n); a singular matrix gives infinite or nan numbers."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
-def _solved(factors: _LU, right: Values, adjoint: bool = False) -> Complex:
-    """x of K x = right, or of K^H x = right."""
+def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
+    """x of K x = right, or of K^H x = right, with right sides (n,) or (n, m)."""
     x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
     return x
 

@@ -1,20 +1,20 @@
 """The nonlinear rod in the plane in its mixed form: stresses and velocities in the body frame, on a mesh.
 
-The balance of `rodsweep.model.balance` with both fields kept as unknowns. S is what the stress has beyond
-that of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3); W are the weights of the quadrature,
-D is the derivative:
+The balance of `rodsweep.model.balance` with both fields kept as unknowns. S is what the stress of a linear
+rod has beyond that of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3); W are the weights of the
+quadrature, D is the derivative, and s(S) is the constitutive law, S itself for a linear rod:
 
     W C dS/dt = -D^T W V + W ad_E V          at all nodes but the tip; the clamp V(0) = 0 is natural
-    0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + S, and S(1) = 0 is essential
+    0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + s(S); S(1) = 0 is essential
 
-where E = (nu, 0, 0) + C S. With X = (n1 + F, n2, m3; v1, v2, Omega3) this is quadratic,
+where E = (nu, 0, 0) + C S. With X = (S; v1, v2, Omega3) this is
 
-    M dX/dt = A X + B(X, X)/2,
+    M dX/dt = A X + B(X, X)/2 + C(X, X, X)/6 + ...,
 
-and affine in F. No stiffness is divided by, so that c1 = c2 = gamma3 = 0 are ordinary values. M is singular:
-what of X carries no time derivative is bound by the equations. On several elements the fields are continuous
-and D = W^-1 sum_e W_e D_e. Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and with it the energy
-law hold to rounding on every mesh.
+where only the law makes terms beyond the quadratic ones. No stiffness is divided by, so that
+c1 = c2 = gamma3 = 0 are ordinary values. M is singular: what of X carries no time derivative is bound by the
+equations. On several elements the fields are continuous and D = W^-1 sum_e W_e D_e. Summation by parts,
+W D + D^T W = diag(-1, 0, ..., 0, 1), and with it the energy law hold to rounding on every mesh.
 """
 
 from dataclasses import dataclass
@@ -23,10 +23,13 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array
-from ...model.balance import Material, Values, ad, coad
+from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
-from ..elements.mesh import Mesh, mesh
+from ..arm_on_mesh import material_on
+from ..elements.mesh import Mesh, reconstruction
+from ..nodal_rod import NodalRod, nodal_rod
 from ..state_layout import COMPONENTS, StateLayout, plane_layout
+from .law_at_rest import LawAtRest, law_at_rest
 
 MIRROR = np.array([1.0, -1.0, -1.0])
 """Signs of the components of a stress or a velocity under reflection in the straight rod's axis."""
@@ -36,8 +39,8 @@ MIRROR = np.array([1.0, -1.0, -1.0])
 class MixedForm:
     """One rod on one mesh; k1, k2 may be inf and gamma3 may be 0.
 
-    X has the shape (..., unknowns): with N = mesh.nodes first the N values of n1 + F, of n2 (k3/L^2) and of
-    m3 (k3/L) at the nodes but the tip, then the N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at
+    X has the shape (..., unknowns): with N = mesh.nodes first the N values of S1, of S2 (k3/L^2) and of
+    S3 (k3/L) at the nodes but the tip, then the N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at
     all nodes. It may be complex everywhere.
     """
 
@@ -59,14 +62,14 @@ class MixedForm:
         return self.layout.unknowns
 
     @cached_property
-    def material(self) -> Material:
-        """C, Gamma and the force."""
-        return self.rod.material
+    def nodal(self) -> NodalRod:
+        """Compliance, drag and rest at all nodes, and the force."""
+        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, tuple(range(COMPONENTS)))
 
     @cached_property
-    def straight(self) -> Array:
-        """E of the straight rod, (nu, 0, 0), shape (3,)."""
-        return np.array([self.rod.nu, 0.0, 0.0])
+    def law(self) -> LawAtRest:
+        """Derivatives of the constitutive law at rest."""
+        return law_at_rest(self.rod, self.nodal)
 
     @cached_property
     def parity(self) -> Array:
@@ -77,7 +80,7 @@ class MixedForm:
     @cached_property
     def M(self) -> Array:
         """The diagonal of M, (W C, 0), shape (unknowns,)."""
-        weighted = np.outer(self.material.compliance, self.mesh.quadrature)
+        weighted = self.nodal.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     @cached_property
@@ -87,22 +90,32 @@ class MixedForm:
         WD, each = -self.mesh.matrices.weak.T, np.eye(COMPONENTS)
         A = self._coupling()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
-        A[velocities, stresses] += np.kron(each, WD[:, :N])
-        A[velocities, velocities] -= np.diag(np.kron(self.material.drag, self.mesh.quadrature))
+        A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law.tangent[:, :N].ravel()
+        A[velocities, velocities] -= np.diag((self.nodal.drag * self.mesh.quadrature).ravel())
         return A
 
     def times_A_F(self, X: Values) -> Values:
-        """dA/dF X, shape (..., unknowns), the same for every F: E and Sigma at rest are affine."""
+        """dA/dF X, shape (..., unknowns)."""
         (S, V), W = self.fields(X), self.mesh.quadrature
-        Sigma = -self._along(self.material.straight, S)
-        E = self.rod.c1 * Sigma
-        return self.unknown(W * ad(E, V), W * (coad(E, S) + coad(self._strain(S), Sigma)))
+        change = self.law.change
+        E = first_field(change.nu)
+        moved = self._along(change.tangent, S) * S
+        Sigma = first_field(-np.ones(len(W)))
+        at_rest = self._along(self.nodal.rest, S)
+        forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
+        forces = forces + coad(self._strain(S), self._along(Sigma, S))
+        return self.unknown(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
 
     @cached_property
     def tip_y(self) -> Array:
-        """The row that gives the tip's y in L to first order in X, int nu (1 - u) m3 + c2 n2, (unknowns,)."""
-        u, W = self.mesh.positions[:-1], self.mesh.quadrature[:-1]
-        return self.layout.row({"n2": self.rod.c2 * W, "m3": self.rod.nu * (1 - u) * W})
+        """The row that gives the tip's y in L to first order in X, (unknowns,).
+
+        y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
+        """
+        W, c = self.mesh.quadrature[:-1], self.nodal.compliance[:, :-1]
+        return self.layout.row(
+            {"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self.nodal.rest[0])[:-1] * W}
+        )
 
     def fields(self, X: Values) -> tuple[Values, Values]:
         """(S, V) at all nodes, the tip included, each of shape (3, ..., nodes + 1)."""
@@ -116,31 +129,68 @@ class MixedForm:
         """B(X, Y) = B(Y, X), shape (..., unknowns)."""
         (S, U), (T, V) = self.fields(X), self.fields(Y)
         CS, CT, W = self._strain(S), self._strain(T), self.mesh.quadrature
-        return self.unknown(W * (ad(CS, V) + ad(CT, U)), W * (coad(CS, T) + coad(CT, S)))
+        forces: Values = W * (coad(CS, self._stressed(T)) + coad(CT, self._stressed(S)))
+        if self.law.nonlinear:
+            second = self.law.second(S, T)
+            forces = forces + W * coad(self._along(self.nodal.rest, S), second) + self._slope(second)
+        return self.unknown(W * (ad(CS, V) + ad(CT, U)), forces)
+
+    def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
+        """C(X, Y, Z), symmetric, shape (..., unknowns); 0 for a linear law."""
+        S, T, R = (self.fields(each)[0] for each in (X, Y, Z))
+        W, law = self.mesh.quadrature, self.law
+        third = law.third(S, T, R)
+        forces = W * coad(self._along(self.nodal.rest, S), third) + self._slope(third)
+        for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
+            forces = forces + W * coad(self._strain(one), law.second(two, three))
+        return self.unknown(np.zeros_like(forces), forces)
 
     def _strain(self, S: Values) -> Values:
         """C S, the strain beyond that of the straight rod."""
-        return self._along(self.material.compliance, S) * S
+        return self._along(self.nodal.compliance, S) * S
+
+    def _stressed(self, S: Values) -> Values:
+        """s(S) to first order."""
+        return self._along(self.law.tangent, S) * S
+
+    def _slope(self, field: Values) -> Values:
+        """W D of a field at all nodes, (3, ..., nodes + 1)."""
+        return field @ -self.mesh.matrices.weak
 
     @staticmethod
     def _along(constant: Values, field: Values) -> Values:
-        """One number a component, to be combined with a field."""
-        return constant.reshape(-1, *(1,) * (field.ndim - 1))
+        """Values at the nodes of each component, (3, nodes + 1), to be combined with (3, ..., nodes + 1)."""
+        return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)
 
     def _coupling(self) -> Array:
-        """The matrix of W (ad_E v; ad*_E s + ad*_{C s} Sigma) in (s; v) about the straight rod."""
-        each, C = np.eye(COMPONENTS), np.diag(self.material.compliance)
-        E, Sigma = self.straight[:, None], self.material.tip_stress[:, None]
+        """The matrix of W (ad_E v; ad*_E T s + ad*_{C s} Sigma) in (s; v) about the straight rod."""
         N, W = self.mesh.nodes, self.mesh.quadrature[:-1]
+        each = np.eye(COMPONENTS)[:, :, None]
+        E, C, T = (a[:, None, :N] for a in (self.nodal.rest, self.nodal.compliance, self.law.tangent))
+        Sigma = self.nodal.tip_stress[:, None, None]
         s = np.arange(self.stresses).reshape(COMPONENTS, N)
         v = np.arange(self.stresses, self.unknowns).reshape(COMPONENTS, N + 1)[:, :N]
         matrix = np.zeros((self.unknowns, self.unknowns))
         # At the tip nothing is left of it: s = 0 there, and E only enters an equation that is not asked.
-        matrix[s[:, None], v[None]] = W * ad(E, each)[..., None]
-        matrix[v[:, None], s[None]] = W * (coad(E, each) + coad(C, Sigma))[..., None]
+        matrix[s[:, None], v[None]] = W * ad(E, each)
+        own = each * np.swapaxes(T, 0, 1)
+        strained = each * np.swapaxes(C, 0, 1)
+        matrix[v[:, None], s[None]] = W * (coad(E, own) + coad(strained, Sigma))
         return matrix
 
 
-def mixed_form(rod: Rod, elements: int, order: int) -> MixedForm:
-    """The mixed form on `elements` equal elements of order `order`."""
-    return MixedForm(rod, mesh(elements, order))
+def first_field(values: Array) -> Array:
+    """A field of which only the first component is not 0, (3, nodes + 1), from its values, (nodes + 1,)."""
+    field = np.zeros((COMPONENTS, len(values)))
+    field[0] = values
+    return field
+
+
+def remaining(grid: Mesh, values: Array) -> Array:
+    """Integrals from each node to the tip of a field given at all nodes, both (nodes + 1,)."""
+    ends = reconstruction(grid.order)[3]
+    total = np.zeros(grid.nodes + 1)
+    for e, length in enumerate(grid.lengths):
+        here = slice(e * grid.order, (e + 1) * grid.order + 1)
+        total[here] = total[here.start] + length * (values[here] @ ends)
+    return total[-1] - total

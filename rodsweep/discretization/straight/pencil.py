@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
-from ..elements.equal_elements import EqualElements
+from ..elements.elements import Elements, equal_edges
 from ..elements.quadrature import gauss, gauss_lobatto
 
 SHEAR_WEIGHT = 1e-9
@@ -38,8 +38,8 @@ NO_TIP = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class Pencil(EqualElements):
-    """Constant pieces for `elements` equal elements of order `order`.
+class Pencil(Elements):
+    """Constant pieces for equal elements.
 
     The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i], in coordinate form: pieces
     has shape (6, nnz), rows and columns shape (nnz,), sorted by row, then column, diagonal included.
@@ -174,4 +174,4 @@ def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array)
         np.add.at(pieces[piece], where[at : at + block.size], block.ravel())
         at += block.size
     pieces *= scale[rows] * scale[columns]
-    return Pencil(elements, order, rows.astype(np.int32), columns.astype(np.int32), pieces, mass)
+    return Pencil(equal_edges(elements), order, rows.astype(np.int32), columns.astype(np.int32), pieces, mass)

@@ -2,12 +2,15 @@
 
 Sec. III, second formulation, in the plane and in space: only the structure constants of `model.algebra`, the
 first argument `g`, tell the one from the other. The unknowns S are the stresses beyond those of the straight
-rod, at every node but the tip, where they vanish. With the compliances C and the drags Gamma of each node,
-the assembled differentiation matrix D, the nodes' weights W and E0, the strain of the straight rod under its
-force,
+rod that a linear rod has, at every node but the tip, where they vanish. With the compliances C and the drags
+Gamma of each node, the assembled differentiation matrix D, the nodes' weights W and E0, the strain of the
+straight rod under its force,
 
-    E = E0 + C S,    Sigma = Sigma(1) + S,    Gamma V = D*_E Sigma = D S + ad*_E Sigma,
+    E = E0 + C S,    Sigma = Sigma(1) + s(S),    Gamma V = D*_E Sigma = D s(S) + ad*_E Sigma,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
+
+The constitutive law is s(S), local at each node (`rodsweep.model.material.response`), and s(S) = S of a
+linear rod. The strain is affine in S for every law, so that the left side is constant and diagonal.
 
 Nothing is divided by a stiffness, so that a compliance of 0 is one like others: its stress is then without a
 derivative. At the tip G is the reaction r, and -r is the tip's velocity: it converges twice as fast as V
@@ -26,43 +29,62 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.algebra import Algebra
+from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import OverAlgebra
+from ...model.material.response import LINEAR_LAW, LocalSection, stress, stress_change
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalChange, NodalRod
 from ..state_layout import stress_place, velocity_place
 
 
 @OverAlgebra
-def forces(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """D*_E Sigma at all nodes of a state x into out, (d, nodes + 1)."""
+def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
+    """E and s(S) at all nodes of a state x, into E and S, (d, nodes + 1) both."""
+    size = E.shape[1]
+    for i in range(size):
+        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
+        for a in g.components:
+            E[a, i] = c.rest[a, i] + c.compliance[a, i] * s[a]
+            S[a, i] = s[a]
+    if c.law != LINEAR_LAW:
+        apply_law(S, c)
+
+
+@compiled
+def apply_law(S: Array, c: NodalRod) -> None:
+    """Replaces S at all nodes of a rod in the plane, (3, nodes + 1), by s(S)."""
+    for i in range(S.shape[1]):
+        at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
+        S[0, i], S[2, i] = stress(c.law, at, S[0, i], S[2, i])
+
+
+@OverAlgebra
+def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """D*_E Sigma at all nodes into out, (d, nodes + 1), from the `fields` E and S."""
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
-        s = [x[stress_place(a, j, size - 1)] for a in g.components]
+        s = [S[a, j] for a in g.components]
         for i in range(size):
             slope = m.D_transposed[j, i]
             for a in g.components:
                 out[a, i] += slope * s[a]
     for i in range(size):
-        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
-        E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
         force = [out[a, i] for a in g.components]
         for a, b, o, sign in g.terms:
-            force[o] -= sign * E[b] * (c.tip_stress[a] + s[a])
+            force[o] -= sign * E[b, i] * (c.tip_stress[a] + S[a, i])
         for a in g.components:
             out[a, i] = force[a]
 
 
 @OverAlgebra
-def strain_rates(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """W D_E V, weakly, at all nodes of a state x that moves with V, into G; both (d, nodes + 1)."""
+def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
+    """W D_E V, weakly, at all nodes, into G, from E and V; all (d, nodes + 1)."""
     size = len(m.weights)
     for i in range(size):
-        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
-        E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
         rate = [0.0 for _ in g.components]
         for a, b, o, sign in g.terms:
-            rate[a] += sign * E[b] * V[o, i]
+            rate[a] += sign * E[b, i] * V[o, i]
         for a in g.components:
             G[a, i] = m.weights[i] * rate[a]
     add_weak_slope(g, V, G, m)
@@ -84,27 +106,42 @@ def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
 def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """V and G at all nodes of a state x, (d, nodes + 1) both; what is known of V is taken from x."""
     size = len(m.weights)
-    forces(g, x, V, c, m)
+    E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
+    fields(g, x, E, S, c)
+    forces(g, E, S, V, c, m)
     for i in range(size):
         for a in g.components:
             V[a, i] *= c.mobility[a, i]
     for k in range(len(c.kept)):
         for i in range(size):
             V[c.kept[k], i] = x[velocity_place(k, i, g.dimension, size - 1)]
-    strain_rates(g, x, V, G, c, m)
+    strain_rates(g, E, V, G, m)
 
 
 @OverAlgebra
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """W (D*_E Sigma - Gamma V) at all nodes, for each unknown V, into its places in out, (unknowns,)."""
     size = len(m.weights)
+    E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
-    forces(g, x, force, c, m)
+    fields(g, x, E, S, c)
+    forces(g, E, S, force, c, m)
     for k in range(len(c.kept)):
         a = c.kept[k]
         for i in range(size):
             place = velocity_place(k, i, g.dimension, size - 1)
             out[place] = m.weights[i] * (force[a, i] - c.drag[a, i] * x[place])
+
+
+@compiled
+def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
+    """Derivative of s(S) along a change of the rod, at a state x in the plane, into dS, (3, nodes + 1)."""
+    n = dS.shape[1] - 1
+    for i in range(n + 1):
+        q1, q3 = (x[stress_place(0, i, n)], x[stress_place(2, i, n)]) if i < n else (0.0, 0.0)
+        at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
+        moved = LocalSection(change.rest[0, i], change.compliance[0, i], change.compliance[2, i])
+        dS[0, i], dS[2, i] = stress_change(c.law, at, moved, q1, q3)
 
 
 @OverAlgebra
@@ -117,17 +154,25 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     not change.
     """
     size = len(m.weights)
+    E, S, dS = np.empty((g.dimension, size)), np.empty((g.dimension, size)), np.zeros((g.dimension, size))
+    fields(g, x, E, S, c)
+    if c.law != LINEAR_LAW:
+        law_change(x, dS, change, c)
     for i in range(size):
         s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
-        E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
         dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
         force = [-change.drag[a, i] * V[a, i] for a in g.components]
+        if c.law != LINEAR_LAW:
+            for j in range(size):
+                for a in g.components:
+                    force[a] += m.D[i, j] * dS[a, j]
         for a, b, o, sign in g.terms:
-            force[o] -= sign * (dE[b] * (c.tip_stress[a] + s[a]) + E[b] * change.tip_stress[a])
+            along = change.tip_stress[a] + dS[a, i]
+            force[o] -= sign * (dE[b] * (c.tip_stress[a] + S[a, i]) + E[b, i] * along)
         dV = [c.mobility[a, i] * force[a] for a in g.components]
         rate = [0.0 for _ in g.components]
         for a, b, o, sign in g.terms:
-            rate[a] += sign * (dE[b] * V[o, i] + E[b] * dV[o])
+            rate[a] += sign * (dE[b] * V[o, i] + E[b, i] * dV[o])
         for a in g.components:
             out[0, a, i], out[1, a, i], out[2, a, i] = force[a], dV[a], m.weights[i] * rate[a]
     add_weak_slope(g, out[1], out[2], m)

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array
+from ..arm_on_mesh import material_change_on
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
 
@@ -23,14 +24,15 @@ OMEGA = (2,)
 class StressForm(RodOnMesh):
     """One rod on one mesh.
 
-    A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L at every node but the tip, where
-    they vanish, and Omega in 1/tau2 at all nodes where gamma3 is small.
+    A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L of a linear rod with the same
+    strain, at every node but the tip, where they vanish, and Omega in 1/tau2 at all nodes where gamma3 is
+    small.
     """
 
     @property
     def omega_unknown(self) -> bool:
         """Whether Omega is among the unknowns."""
-        return self.rod.rotational_drag < LEAST_ELIMINATED_DRAG
+        return self.rod.least_rotational_drag < LEAST_ELIMINATED_DRAG
 
     @property
     def kept(self) -> tuple[int, ...]:
@@ -41,7 +43,7 @@ class StressForm(RodOnMesh):
 
     def change(self, name: str) -> NodalChange:
         """Derivative of `nodal` by the parameter `name`; for a stiffness k, by 1/k."""
-        return nodal_change(self.rod.material_change(name), self.mesh)
+        return nodal_change(material_change_on(self.rod, name, self.mesh), self.mesh)
 
     @cached_property
     def mass(self) -> Array:

@@ -1,22 +1,28 @@
 """The exact Jacobian of the rod on a mesh with its stresses as unknowns, compiled.
 
-With A_ac = sum_b s_abc E_b and B_cb = d(ad*_E Sigma)_c/dS_b at each node the derivative of G,
-see `stress_balance`, consists of
+With A_ac = sum_b s_abc E_b and B_cb = d(ad*_E Sigma)_c/dS_b at each node the derivative of G for a linear
+law, see `stress_balance`, consists of
 
     J_ab(i, j) = [a = b] (-D^T W Gamma_a^-1 D)_ij + (-D^T W)_ij (B_ab/Gamma_a)_j + w_i (A_ab/Gamma_b)_i D_ij
                  + [i = j] w_i (sum_c A_ac B_cb/Gamma_c + d(ad_E V)_a/dS_b at fixed V).
 
 Blocks that vanish for every E are known from the algebra, the first argument `g`.
+
+Another law has s(S) in place of S in Sigma alone. The derivative above has a part P by the stresses and a
+part by the strains; with the law's tangent T = ds/dS, local at each node, J becomes J - P + P T.
 """
 
 import numpy as np
 
 from ...arrays import Array
 from ...model.algebra import Algebra
+from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import OverAlgebra
+from ...model.material.response import LINEAR_LAW, LocalSection, tangent
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
 from ..state_layout import stress_place, velocity_place
+from .balance import fields
 
 
 @OverAlgebra
@@ -28,24 +34,65 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     Rows are equations, in the order of the unknowns: G at all nodes but the tip, then the balance of each V
     that is unknown. tip, (d, unknowns): the derivative of the reaction.
     """
-    slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
-    _velocity_slopes(g, x, slopes, c)
-    _rows(g, x, V, slopes, J, tip, c, m)
-    for k in range(len(c.kept)):
-        _kept_columns(g, k, x, J, tip, c, m)
-        _kept_rows(g, k, x, J, c, m)
+    size = len(m.weights)
+    E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
+    fields(g, x, E, S, c)
+    _derivative(g, (E, S, V), J, tip, c.compliance, c, m)
+    if c.law != LINEAR_LAW:
+        P, tip_P = np.empty(J.shape), np.empty(tip.shape)
+        _derivative(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
+        # Velocities that are unknown do not follow from the stresses: P has their columns as J has.
+        _by_law(x, J, P, c)
+        _by_law(x, tip, tip_P, c)
+
+
+@compiled
+def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
+    """Adds P (T - 1) to J, both (rows, unknowns), with the tangent T of the law of a rod in the plane."""
+    n = c.compliance.shape[1] - 1
+    for i in range(n):
+        p1, p3 = stress_place(0, i, n), stress_place(2, i, n)
+        at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
+        T = tangent(c.law, at, x[p1], x[p3])
+        for r in range(len(J)):
+            by_pull, by_moment = P[r, p1], P[r, p3]
+            J[r, p1] += by_pull * (T.N1 - 1) + by_moment * T.M1
+            J[r, p3] += by_pull * T.N3 + by_moment * (T.M3 - 1)
 
 
 @OverAlgebra
-def _velocity_slopes(g: Algebra, x: Array, slopes: Array, c: NodalRod) -> None:
+def _derivative(  # noqa: PLR0913, PLR0917 - as above
+    g: Algebra,
+    at: tuple[Array, Array, Array],
+    J: Array,
+    tip: Array,
+    compliance: Array,
+    c: NodalRod,
+    m: NodeMatrices,
+) -> None:
+    """Write the derivative by S of the equations of a linear law into J and tip.
+
+    at: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: derivative of E by S, (d, nodes + 1).
+    """
+    slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
+    _velocity_slopes(g, at, slopes, compliance, c)
+    _rows(g, at, slopes, J, tip, compliance, c, m)
+    for k in range(len(c.kept)):
+        _kept_columns(g, k, at[0], J, tip, c, m)
+        _kept_rows(g, k, at, J, compliance, c, m)
+
+
+@OverAlgebra
+def _velocity_slopes(
+    g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
+) -> None:
     """Write mobility B at all nodes into slopes, (d, d, nodes + 1), where B does not vanish."""
-    n = slopes.shape[2] - 1
-    for i in range(n + 1):
-        s = [x[stress_place(a, i, n)] if i < n else 0.0 for a in g.components]
+    E, S, _ = at
+    for i in range(slopes.shape[2]):
         B = [[0.0 for _ in g.components] for _ in g.components]
         for a, b, o, sign in g.terms:
-            B[o][a] -= sign * (c.rest[b, i] + c.compliance[b, i] * s[b])
-            B[o][b] -= sign * c.compliance[b, i] * (c.tip_stress[a] + s[a])
+            B[o][a] -= sign * E[b, i]
+            B[o][b] -= sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])
         for o in g.components:
             for b in g.components:
                 if g.backward[o][b]:
@@ -54,15 +101,22 @@ def _velocity_slopes(g: Algebra, x: Array, slopes: Array, c: NodalRod) -> None:
 
 @OverAlgebra
 def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
-    g: Algebra, x: Array, V: Array, slopes: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
+    g: Algebra,
+    at: tuple[Array, Array, Array],
+    slopes: Array,
+    J: Array,
+    tip: Array,
+    compliance: Array,
+    c: NodalRod,
+    m: NodeMatrices,
 ) -> None:
     """Write the derivative of G by S into J and tip; slopes as in `_velocity_slopes`."""
     n = len(m.weights) - 1
+    E, _, V = at
     for i in range(n + 1):
-        s = [x[stress_place(a, i, n)] if i < n else 0.0 for a in g.components]
         A = [[0.0 for _ in g.components] for _ in g.components]  # weighted
         for a, b, o, sign in g.terms:
-            A[a][o] += sign * m.weights[i] * (c.rest[b, i] + c.compliance[b, i] * s[b])
+            A[a][o] += sign * m.weights[i] * E[b, i]
         ahead = [[A[a][o] * c.mobility[o, i] for o in g.components] for a in g.components]
         rows = [J[stress_place(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
@@ -76,7 +130,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
         if i < n:
             same = [[0.0 for _ in g.components] for _ in g.components]
             for a, b, o, sign in g.terms:
-                same[a][b] += sign * m.weights[i] * c.compliance[b, i] * V[o, i]
+                same[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
             for a, o in g.pairs:
                 for b in g.components:
                     if g.forward[a][o] and g.backward[o][b]:
@@ -88,9 +142,9 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 
 @OverAlgebra
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
-    g: Algebra, k: int, x: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
+    g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Write the derivative of G by the k-th unknown velocity into J and tip."""
+    """Write the derivative of G by the k-th unknown velocity into J and tip; E: (d, nodes + 1)."""
     size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):
@@ -100,14 +154,22 @@ def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
                 rows[a][first + j] = m.weak[i, j] if of == a else 0.0
         for a, b, o, sign in g.terms:
             if o == of:
-                stress = x[stress_place(b, i, n)] if i < n else 0.0
-                rows[a][first + i] += sign * m.weights[i] * (c.rest[b, i] + c.compliance[b, i] * stress)
+                rows[a][first + i] += sign * m.weights[i] * E[b, i]
 
 
 @OverAlgebra
-def _kept_rows(g: Algebra, k: int, x: Array, J: Array, c: NodalRod, m: NodeMatrices) -> None:
+def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
+    g: Algebra,
+    k: int,
+    at: tuple[Array, Array, Array],
+    J: Array,
+    compliance: Array,
+    c: NodalRod,
+    m: NodeMatrices,
+) -> None:
     """Write the rows of the balance of the k-th unknown velocity into J."""
     size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
+    E, S, _ = at
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):
         row, w = J[first + i], m.weights[i]
@@ -116,9 +178,7 @@ def _kept_rows(g: Algebra, k: int, x: Array, J: Array, c: NodalRod, m: NodeMatri
             row[stress_place(of, j, n)] = w * m.D[i, j]
         row[first + i] = -w * c.drag[of, i]
         if i < n:
-            s = [x[stress_place(a, i, n)] for a in g.components]
             for a, b, o, sign in g.terms:
                 if o == of:
-                    bend = c.compliance[b, i]
-                    row[stress_place(a, i, n)] -= w * sign * (c.rest[b, i] + bend * s[b])
-                    row[stress_place(b, i, n)] -= w * sign * bend * (c.tip_stress[a] + s[a])
+                    row[stress_place(a, i, n)] -= w * sign * E[b, i]
+                    row[stress_place(b, i, n)] -= w * sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])

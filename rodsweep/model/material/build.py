@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from .laws import LINEAR, Law, law_of
+from .laws import LAWS, LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
 
 AREA_SAMPLES = 256
-"""Points between two rows of a profile at which the smallest area is looked up, beside the rows."""
+"""Points between two rows of a profile at which the smallest factor is looked up, beside the rows."""
 
 
 class LocalCoefficients(NamedTuple):
@@ -27,6 +27,17 @@ class LocalCoefficients(NamedTuple):
     gamma2: Array
     gamma3: Array
     g: Array
+
+
+class Sections(NamedTuple):
+    """Cross-sections at points of an arm: compliance and drag, (3, points); nu, stretch at rest, (points,).
+
+    The same names hold the derivatives of these by a parameter.
+    """
+
+    compliance: Array
+    drag: Array
+    nu: Array
 
 
 @dataclass(frozen=True)
@@ -54,6 +65,11 @@ class Build:
         """The law that `law` and `section` name."""
         return law_of(self.law, self.section)
 
+    @property
+    def law_number(self) -> int:
+        """Number of the law in compiled code, see `response`."""
+        return list(LAWS).index((self.law, self.section))
+
     @cached_property
     def continuous(self) -> bool:
         """Whether no coefficient jumps along the arm."""
@@ -66,7 +82,11 @@ class Build:
 
     def crushing_share(self, taper: float) -> float:
         """The force that crushes the weakest section, in units of k1 at the base; inf if no force does."""
-        return self.constitutive_law.largest_load * _smallest_area(self.profile, taper)
+        return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
+
+    def least_drag_share(self, taper: float) -> float:
+        """The smallest rotational drag along the arm, in units of that at the base."""
+        return _smallest_factor(self.profile, taper, "gamma3")
 
     def crushing_shares(self, tapers: Array) -> Array:
         """`crushing_share` of each taper, of the shape of `tapers`, (...,)."""
@@ -78,11 +98,7 @@ class Build:
 
         No point may be a break of the profile.
         """
-        ones: Array = np.ones((len(FACTORS), *u.shape))
-        factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))
-        radius = 1 - (1 - at_base["taper"]) * u
-        for name, power in RADIUS_POWERS.items():
-            factors[name] = factors[name] * radius**power
+        factors = self._factors(at_base["taper"], u)
         law = self.constitutive_law
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
         c2 = 1 / (at_base["k2"] * factors["k2"])
@@ -90,18 +106,58 @@ class Build:
         gamma3 = at_base["gamma3"] * factors["gamma3"]
         return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
 
+    def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
+        """Cross-sections at points u, (points,), as of `local`; compliances those of the undeformed arm."""
+        factors = self._factors(at_base["taper"], u)
+        stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
+        drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
+        nu = 1 - self.constitutive_law.shortening(F / stiffness["k1"])
+        return Sections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
+
+    def section_changes(
+        self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
+    ) -> Sections:
+        """Derivatives of the sections `at` at points u, (points,), by a parameter.
+
+        slopes: derivatives at the base of F, compliances and drags by the parameter, by name, and that of the
+        taper itself; a name that is missing does not change.
+        """
+        factors = self._factors(taper, u)
+        growth = slopes.get("taper", 0.0) * u / (1 - (1 - taper) * u)
+        compliance, drag = (np.zeros((3, *u.shape)) for _ in range(2))
+        for i, name in enumerate(("k1", "k2", "k3")):
+            own = slopes.get(name, 0.0) / factors[name]
+            compliance[i] = own - at.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
+        for i, name in enumerate(("gamma1", "gamma2", "gamma3")):
+            own = slopes.get(name, 0.0) * factors[name]
+            drag[i] = own + at.drag[i] * RADIUS_POWERS.get(name, 0) * growth
+        load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
+        return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
+
+    def _factors(self, taper: float, u: Array) -> dict[str, Array]:
+        """Factors of stiffnesses and drags at points u, (...,), by name, (...,) each."""
+        ones: Array = np.ones((len(FACTORS), *u.shape))
+        factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))
+        radius = 1 - (1 - taper) * u
+        for name, power in RADIUS_POWERS.items():
+            factors[name] = factors[name] * radius**power
+        return factors
+
 
 @lru_cache(maxsize=1024)
-def _smallest_area(profile: Profile | None, taper: float) -> float:
-    """The smallest k1 along the arm, in units of that at the base."""
-    ends = min(1.0, taper**2)
+def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
+    """The smallest k1 or gamma3 along the arm, in units of that at the base."""
+    power = RADIUS_POWERS[name]
+    ends = min(1.0, taper**power)
     if profile is None:
         return ends
-    k1 = FACTORS.index("k1")
-    rows = [(1 - (1 - taper) * u) ** 2 * row[k1] for u, row in zip(profile.u, profile.rows, strict=True)]
+    column = FACTORS.index(name)
+    rows = [
+        (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
+    ]
     inside = (np.arange(AREA_SAMPLES) + 0.5) / AREA_SAMPLES
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
-    between = (1 - (1 - taper) * points) ** 2 * profile.factors(points)[k1]
+    between = (1 - (1 - taper) * points) ** power * profile.factors(points)[column]
     return min(*rows, float(between.min()))
 
 

@@ -26,7 +26,9 @@ MAX_STEPS = 60
 class Law:
     """One constitutive law. All functions take and return floats or arrays.
 
-    energy: W(h1). stress: W'(h1). stiffness: W''(h1). bending: B(h1). bending_slope: B'(h1).
+    energy: W(h1). energy_over_square: W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1).
+    stiffness_slope, stiffness_curvature: its derivatives. bending: B(h1). bending_slope, bending_curvature:
+    its derivatives.
     shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
     largest_load: the x at which the rod is crushed, inf where no force crushes it.
     """
@@ -34,10 +36,14 @@ class Law:
     law: str
     section: str
     energy: Callable[[Values], Values]
+    energy_over_square: Callable[[Values], Values]
     stress: Callable[[Values], Values]
     stiffness: Callable[[Values], Values]
+    stiffness_slope: Callable[[Values], Values]
+    stiffness_curvature: Callable[[Values], Values]
     bending: Callable[[Values], Values]
     bending_slope: Callable[[Values], Values]
+    bending_curvature: Callable[[Values], Values]
     shortening: Callable[[Values], Values]
     largest_load: float = np.inf
 
@@ -71,10 +77,14 @@ LINEAR = Law(
     law="linear",
     section="fixed",
     energy=lambda h: (h - 1) ** 2 / 2,
+    energy_over_square=lambda h: 0.5 * _ones(h),
     stress=lambda h: h - 1,
     stiffness=_ones,
+    stiffness_slope=_zeros,
+    stiffness_curvature=_zeros,
     bending=_ones,
     bending_slope=_zeros,
+    bending_curvature=_zeros,
     shortening=lambda x: x,
     largest_load=1.0,
 )
@@ -82,20 +92,28 @@ NEO_HOOKEAN = Law(
     law="neo_hookean",
     section="fixed",
     energy=lambda h: (h**2 + 2 / h - 3) / 6,
+    energy_over_square=lambda h: (h + 2) / (6 * h),
     stress=lambda h: (h - 1 / h**2) / 3,
     stiffness=lambda h: (1 + 2 / h**3) / 3,
+    stiffness_slope=lambda h: -2 / h**4,
+    stiffness_curvature=lambda h: 8 / h**5,
     bending=_ones,
     bending_slope=_zeros,
+    bending_curvature=_zeros,
     shortening=_neo_hookean_shortening,
 )
 SWELLING = Law(
     law="neo_hookean",
     section="swelling",
     energy=NEO_HOOKEAN.energy,
+    energy_over_square=NEO_HOOKEAN.energy_over_square,
     stress=NEO_HOOKEAN.stress,
     stiffness=NEO_HOOKEAN.stiffness,
+    stiffness_slope=NEO_HOOKEAN.stiffness_slope,
+    stiffness_curvature=NEO_HOOKEAN.stiffness_curvature,
     bending=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
+    bending_curvature=lambda h: (2 / h**3 + 40 / h**6) / 3,
     shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}

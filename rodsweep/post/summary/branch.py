@@ -20,7 +20,7 @@ from ..branch_curves import (
 )
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
-from .summary_lines import SummaryLines, at_point
+from .summary_lines import SummaryLines, at_point, completeness
 
 NAMED_RODS = 8
 """Largest number of rods listed individually."""
@@ -222,6 +222,6 @@ def _searched(view: View, done: np.ndarray) -> str:
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
-        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points is proved complete at "
+        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {completeness(view)} at "
         f"{proved}; cycles that lie on no branch from a Hopf point are not found"
     )

@@ -9,7 +9,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import rounded, span, to_error
-from .summary_lines import SummaryLines, in_brackets, region
+from .summary_lines import SummaryLines, completeness, in_brackets, region
 from .thresholds import not_stored
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
@@ -141,7 +141,7 @@ def _searched(view: View, done: np.ndarray) -> str:
     rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
-        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points is proved complete at "
+        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points {completeness(view)} at "
         f"{some_of(certified, rods, 'rod')}{not_stored(hidden)}"
     )
 

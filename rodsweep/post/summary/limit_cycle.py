@@ -13,7 +13,7 @@ from .arm.arm import region_of_arms
 from .errors import span_of
 from .ranges import error_text, span, to_error
 from .stability import stability_lines
-from .summary_lines import SummaryLines, in_brackets, region, varied
+from .summary_lines import SummaryLines, completeness, in_brackets, region, varied
 
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 """Words for outcomes; unlisted statuses are words already."""
@@ -29,7 +29,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     answer = [outcome_line(view, done, region), *stability, *_second_state_lines(v, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
         of_arm.insert(0, outcome_line(view, done, region_of_arms))
-    trust = _proof_lines(v)
+    trust = _proof_lines(view)
     details = [_straight_line(v, done)]
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
@@ -75,13 +75,14 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
     return lines, of_arm
 
 
-def _proof_lines(v: Mapping[str, np.ndarray]) -> list[str]:
-    """Line on the proved completeness of the Hopf points; empty if no line was searched."""
+def _proof_lines(view: View) -> list[str]:
+    """Line on the completeness of the Hopf points; empty if no line was searched."""
+    v = view.variables
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
         return []
     proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"the list of Hopf points between the points is proved complete on {proved}"]
+    return [f"the list of Hopf points between the points {completeness(view)} on {proved}"]
 
 
 def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...results.file.view import View
+from ...results.layouts.variables import has_covering
 from .ranges import span
 
 
@@ -50,3 +51,8 @@ def at_point(view: View, index: int) -> str:
 def in_brackets(text: str) -> str:
     """A text in brackets, to follow another text; an empty text stays empty."""
     return f" ({text})" if text else ""
+
+
+def completeness(view: View) -> str:
+    """How far the list of crossings in a file is known to be complete."""
+    return "is proved complete" if has_covering(view.config) else "is confirmed by counts of unstable modes"

@@ -10,7 +10,7 @@ from ...results.layouts.variables import ANGULAR, has_covering
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, rounded, span, to_error
-from .summary_lines import SummaryLines, at_point, in_brackets
+from .summary_lines import SummaryLines, at_point, completeness, in_brackets
 
 EVENTS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR),
@@ -141,11 +141,10 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
     proved = some_of(int(v["certified"][done].sum()), searches, noun)
-    complete = "is proved complete" if _is_covered(view) else "is confirmed by counts of unstable modes"
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"the list of crossings {complete} on {proved}{window}",
+        f"the list of crossings {completeness(view)} on {proved}{window}",
         f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
         f"{not_stored(hidden)}",
     ]

@@ -31,7 +31,7 @@ BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]]
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
     "phase_diagram": phase_diagram.beside_points,
-    "limit_cycle": lambda config, is_grid: limit_cycle.HOPF_POINTS,
+    "limit_cycle": limit_cycle.beside_points,
 }
 """Variables of each task that all points share or together give, as a function of (resolved config,
 is_grid)."""

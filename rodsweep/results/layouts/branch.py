@@ -11,6 +11,7 @@ from .variables import (
     Layout,
     Variable,
     boolean,
+    confirmed,
     integer,
     real,
     word,
@@ -147,4 +148,5 @@ def layout(config: dict[str, Any]) -> Layout:
         STATUS,
     )
     parameters = all_but(along, NONLINEAR_PARAMETERS)
+    variables = confirmed(variables, config, "Hopf points")
     return Layout(variables, {ALONG: options["cycles"], SPECIAL: options["special"]}, parameters)

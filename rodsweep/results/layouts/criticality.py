@@ -5,7 +5,7 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, integer, real
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, confirmed, integer, real
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"
@@ -76,6 +76,6 @@ def layout(config: dict[str, Any]) -> Layout:
         real("F_end", FORCE, "largest F of the search"),
         integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
-    variables = (*search[:after], *NORMAL_FORM, *ends, *search[after:])
+    variables = confirmed((*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points")
     parameters = all_but("F", NONLINEAR_PARAMETERS)
     return Layout(variables, {ALONG: config["criticality"]["crossings"]}, parameters)

@@ -1,10 +1,11 @@
 """Layout of the task limit_cycle: the cycle at each point, and Hopf points between the points."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR,
@@ -15,8 +16,10 @@ from .variables import (
     Increase,
     Layout,
     Variable,
+    has_covering,
     integer,
     real,
+    with_meaning,
     word,
 )
 
@@ -94,11 +97,26 @@ TRANSIENT = (
 
 HOPF = "hopf"
 """Dimension of the Hopf points on the lines between the points of a file."""
-HOPF_ALONG = LINEAR_PARAMETERS
+HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which Hopf points are searched; gamma1 has no influence on Hopf points."""
 PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 """Kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
-HOPF_POINTS = (
+
+
+def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
+    """Hopf points of the straight rods between the points of a file with these parameters.
+
+    They are known before any point is solved.
+    """
+    places = (
+        real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF)
+        for name in HOPF_ALONG
+        if name in names
+    )
+    return (*HOPF_KIND, *places, *HOPF_NUMBERS)
+
+
+HOPF_KIND = (
     word(
         "hopf_along",
         "parameter along which the Hopf point was found, between points of a line",
@@ -111,7 +129,9 @@ HOPF_POINTS = (
         ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS),
         HOPF,
     ),
-    *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
+)
+"""Kind of a Hopf point."""
+HOPF_NUMBERS = (
     real(
         "hopf_error",
         "1",
@@ -125,10 +145,12 @@ HOPF_POINTS = (
         "number of modes with positive growth rate beyond the Hopf point; -1: not known",
         HOPF,
     ),
-    integer("hopf_lines", "number of searched lines of points, which differ in one of F, k1, k2 and gamma3"),
+    integer(
+        "hopf_lines", "number of searched lines of points, which differ in one parameter of the straight rod"
+    ),
     integer("hopf_lines_proved", "number of searched lines whose list of Hopf points is proved complete"),
 )
-"""Hopf points of the straight rods between the points of a file; known before any point is solved."""
+"""Errors and frequency of a Hopf point, and how many lines were searched."""
 
 NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
 """Increase of the data of a cycle; a point without a cycle is complete already."""
@@ -140,6 +162,16 @@ INCREASES = {
     "transient": NEEDS_NEW_SOLVE,
     "time": Increase(NO_CYCLE.has, ("tau2", "tau1")),
 }
+
+
+def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+    """Hopf points of the lines through the points of a resolved config."""
+    optional = tuple(name for name in OPTIONAL_PARAMETERS if name in config["parameters"])
+    found = hopf_points_of((*LINEAR_PARAMETERS, *optional))
+    if has_covering(config):
+        return found
+    meaning = "number of searched lines whose list of Hopf points is confirmed by counts of unstable modes"
+    return with_meaning(found, "hopf_lines_proved", meaning)
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -12,10 +12,9 @@ from .variables import (
     Layout,
     Variable,
     boolean,
-    has_covering,
+    confirmed,
     integer,
     real,
-    with_meaning,
     word,
 )
 
@@ -81,11 +80,6 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
-CONFIRMED = (
-    "whether counts of unstable modes confirm the list of crossings; between the counts it rests on slopes "
-    "of the eigenvalues"
-)
-"""Meaning of `certified` in a file of arms that are not uniform or not of linear material."""
 CROSSINGS = Increase(lambda records, before: records["crossing_count"] <= before)
 """Increase of the length of the list of crossings; a list with room left is complete already."""
 INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
@@ -93,7 +87,5 @@ INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
-    variables = THRESHOLDS + search_variables("F", "crossing_F")
-    if not has_covering(config):
-        variables = with_meaning(variables, "certified", CONFIRMED)
+    variables = confirmed(THRESHOLDS + search_variables("F", "crossing_F"), config, "crossings")
     return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, all_but("F"))

@@ -209,12 +209,30 @@ class Layout:
 def estimates_counts(config: Mapping[str, Any]) -> bool:
     """Whether a resolved config has rods that vary along their length, so that counts are estimated."""
     taper = config["parameters"].get("taper")
-    return "profile" in config.get("material", {}) or (taper is not None and taper.get("values") != [1.0])
+    tapered = taper is not None and taper.get("values") != [1.0]
+    followed = config.get("branch", {}).get("along") == "taper"
+    return tapered or followed or "profile" in config.get("material", {})
 
 
 def has_covering(config: Mapping[str, Any]) -> bool:
     """Whether a covering proves the crossings of all rods: those that are uniform and of linear material."""
     return config.get("material", {}).get("law", "linear") == "linear" and not estimates_counts(config)
+
+
+def confirmed(
+    variables: tuple[Variable, ...], config: Mapping[str, Any], listed: str
+) -> tuple[Variable, ...]:
+    """The variables, of which `certified` says what it means of a list where no covering proves it.
+
+    listed: what the list has, such as "crossings".
+    """
+    if has_covering(config):
+        return variables
+    meaning = (
+        f"whether counts of unstable modes confirm the list of {listed}; between the counts it rests on "
+        "slopes of the eigenvalues"
+    )
+    return with_meaning(variables, "certified", meaning)
 
 
 def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...determinant.newton import eigenvalue_newton
 from ...determinant.parameter_path import Path
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
+from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
@@ -94,7 +94,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
     """The Hopf point at a crossing along the parameter of a path; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
-    _, slope, _ = eigenvalue_newton(w, at.coefficients, path.direction)
+    _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
     normal = accurate_normal_form(at, w, NORMAL_FORM_ACCURACY)
     return HopfBirth(
         crossing=crossing,

@@ -7,16 +7,16 @@ A coarse mesh shifts the Hopf point, perhaps beyond a very close force, and is n
 """
 
 from dataclasses import dataclass, replace
-from math import isnan
+from math import isfinite, isnan
 
 import numpy as np
 
-from ...determinant.certificate.winding_number import count_right_of
-from ...determinant.newton import crossing_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path
-from ...discretization.elements.mesh import mesh
+from ...discretization.elements.mesh import Mesh, mesh, mesh_on
+from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
+from ..changes.path_problem import PathProblem, path_problem
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import at_orbit, newton
@@ -24,9 +24,11 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import BEHIND
+from ..spectrum.problem import problem_of
 from ..spectrum.spectrum import SpectrumRequest
 from .along_parameter import in_steps, predictor_from
 from .straight_rod import straight_rod
+from .transient.motion_mesh import WAVES_PER_ROOT_FORCE
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 """Spectrum request for the leading eigenvalue, without a proof."""
@@ -36,6 +38,11 @@ LEAST_FORCE = 1e-2
 """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
 HOPF_TOLERANCE = 1e-6
 """Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
+MOST_NEWTON_STEPS = 15
+LAST_STEP = 4.0
+"""Growth rate, in units of its error, at which Newton's method for the Hopf point ends."""
+ROUNDING = 1e-15
+"""Relative step of the force at which Newton's method for the Hopf point ends."""
 NORMAL_FORM_ACCURACY = 1e-3
 """Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
 START_DISTANCES = (0.3, 0.12, 0.03, 0.006)
@@ -45,7 +52,9 @@ DIRECT_DISTANCE = 1e-2
 """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
 rod itself: the amplitude is off by 1 percent there in most rods."""
 ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
-"""Order of the coarse mesh in units of 2.5 sqrt(F), a cycle's largest wave number; and the smallest order."""
+"""Order of the coarse mesh in units of a cycle's largest wave number; and the smallest order."""
+COARSE_ACCURACY = 1e-4
+"""Accuracy of the linear problem on the coarse mesh of an arm."""
 INTERVALS, STAGES = 8, 3
 """Time intervals over half a period, and collocation stages, of the coarse mesh."""
 TOLERANCE = 3e-3
@@ -91,18 +100,16 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     Newton's method on D, from a secant start, proposes the Hopf point. Bisection continues where the proposal
     belongs to another eigenvalue.
     """
-    path = Path(rod, "F")
+    problem = path_problem(Path(rod, "F"))
     (a, below), (b, above) = low, high
     while b - a > HOPF_TOLERANCE * b:
         share = below.real / (below.real - above.real)
-        eta = below.imag + share * (above.imag - below.imag)
-        F = a + share * (b - a)
-        zero = crossing_newton(eta, F, path.origin, path.direction, (eta, F))
-        if a <= zero.p <= b:
-            w = leading_eigenvalue(replace(rod, F=zero.p))
+        found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
+        if found is not None:
+            w = leading_eigenvalue(replace(rod, F=found.F))
             tolerance = HOPF_TOLERANCE * abs(w)
-            if abs(w.real) <= tolerance and abs(w.imag - zero.eta_or_x) <= tolerance:
-                return Onset(zero.p, zero.eta_or_x)
+            if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
+                return found
         middle = (a + b) / 2
         w = leading_eigenvalue(replace(rod, F=middle))
         if w.real < 0:
@@ -112,6 +119,22 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
             b = middle
             above = w
     raise Unsolvable(f"the mode that grows above F = {a:g} does not oscillate there")
+
+
+def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]) -> Onset | None:
+    """The force between `ends`, near F, at which the eigenvalue near a guess is imaginary; None if none."""
+    for _ in range(MOST_NEWTON_STEPS):
+        w, slope, error = problem.eigenvalue(guess, F)
+        if not (slope.real and isfinite(slope.real)):
+            return None
+        step = -w.real / slope.real
+        if abs(w.real) <= LAST_STEP * error or abs(step) <= ROUNDING * abs(F):
+            return Onset(F, w.imag) if w.imag > 0 else None
+        F += step
+        guess = w + step * slope
+        if not ends[0] <= F <= ends[1]:
+            return None
+    return None
 
 
 def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -> Orbit:
@@ -127,14 +150,22 @@ def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} leads to smaller forces")
     if rod.F <= hopf.F * (1 + DIRECT_DISTANCE):
         return orbit_of(normal, replace(form, mesh=normal.form.mesh))
-    order = max(LEAST_ORDER, int(ORDER_PER_WAVE * 2.5 * abs(rod.F) ** 0.5))
-    coarse = replace(form, mesh=mesh(1, order))
+    coarse = replace(form, mesh=_coarse_mesh(rod))
     for distance in START_DISTANCES:
         try:
             return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why
+
+
+def _coarse_mesh(rod: Rod) -> Mesh:
+    """Mesh of the intermediate orbits on the branch."""
+    wave_number = WAVES_PER_ROOT_FORCE * abs(rod.F) ** 0.5
+    if rod.standard:
+        return mesh(1, max(LEAST_ORDER, int(ORDER_PER_WAVE * wave_number)))
+    elements = arm_elements(rod, wave_number, COARSE_ACCURACY)
+    return mesh_on(elements.edges, elements.order)
 
 
 def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
@@ -146,7 +177,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """
     if not (w.real > 0 and w.imag > 0):
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
-    slope = eigenvalue_newton(w, form.rod.coefficients, form.rod.direction("F"))[1]
+    slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
     if not w.real <= DIRECT_DISTANCE * rate:
         raise Unsolvable("no Hopf point is near")
@@ -155,7 +186,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= DIRECT_DISTANCE * rate / -normal.c.real:
         raise Unsolvable("the start is too large for the normal form")
-    if count_right_of(-BEHIND * abs(w), form.rod).number != 2:
+    if problem_of(form.rod).count(-BEHIND * abs(w)).number != 2:
         raise Unsolvable("another mode may grow")
     return orbit_of(normal, replace(form, mesh=normal.form.mesh))
 

@@ -14,7 +14,6 @@ from math import nan
 
 import numpy as np
 
-from ...discretization.elements.mesh import mesh
 from ...discretization.stress.form import StressForm
 from ...errors import EnvironmentIncomplete
 from ...model.rod import Rod
@@ -31,7 +30,7 @@ from .second_state import second_state
 from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
-from .transient.stepped_rod import motion_resolution
+from .transient.motion_mesh import motion_mesh
 from .transient.torus import classify_quasiperiodic
 from .transient.transient import Transient, TransientOutcome
 
@@ -107,8 +106,7 @@ def _solve(
 ) -> Cycle:
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
-    resolution = motion_resolution(rod, MOTION_ACCURACY)
-    form = StressForm(rod, mesh(resolution.elements, resolution.order))
+    form = StressForm(rod, motion_mesh(rod, MOTION_ACCURACY))
     if request.start == "hopf":
         return _from_hopf(form, request, straight, stability, workspace)
     found = None

@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.elements.mesh import mesh
+from ...discretization.elements.mesh import mesh_on
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
@@ -31,6 +31,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .cycle import Cycle, CycleRequest, measured
 from .status import MarchedStatus
 from .transient.from_motion import stressed
+from .transient.motion_mesh import motion_mesh, near_rod
 from .transient.returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
@@ -40,7 +41,6 @@ from .transient.returns import (
     section_crossings,
     until_returns,
 )
-from .transient.stepped_rod import motion_resolution, near_rod
 
 TOLERANCE = 0.01
 """Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as much."""
@@ -96,7 +96,7 @@ class _Marching:
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request, self.limit = request, rod
         self.rod = near_rod(rod)
-        self.resolution = motion_resolution(rod, request.accuracy)
+        self.mesh = motion_mesh(rod, request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=TOLERANCE * request.accuracy)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
@@ -126,12 +126,12 @@ class _Marching:
         return self._measured(straight, path, errors)
 
     def _beam(self) -> Beam:
-        return Beam(self.rod, mesh(self.resolution.elements, self.resolution.order))
+        return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _Settled) -> _Settled:
         """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
         before = self.beam
-        self.resolution = replace(self.resolution, order=self.resolution.order + MORE_ORDERS)
+        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MORE_ORDERS)
         self.scheme = replace(self.scheme, tolerance=TOLERANCE_RATIO * self.scheme.tolerance)
         self.beam = self._beam()
         stresses = before.stresses(settled.z) @ before.mesh.evaluation(self.beam.mesh.positions).T

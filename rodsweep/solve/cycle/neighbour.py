@@ -14,6 +14,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.stress.form import StressForm
+from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -75,22 +76,22 @@ class Neighbour:
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
             "symmetric": np.array(orbit.symmetric),
-            "mesh": np.array(mesh_of(orbit).numbers),
+            "mesh": mesh_of(orbit).numbers,
             "orbit": orbit.values,
             "places": branch.places,
             "orders": branch.orders,
             "data": branch.data,
-            "next_mesh": np.array(self.next_mesh.numbers),
+            "next_mesh": self.next_mesh.numbers,
             "leading": np.array(self.leading),
         } | self.calibration.arrays()
 
     @classmethod
-    def from_arrays(cls, arrays: Arrays) -> "Neighbour":
-        """The neighbour from stored `arrays`, with the shapes given there."""
-        mesh = OrbitMesh(*map(int, arrays["mesh"]))
-        next_mesh = OrbitMesh(*map(int, arrays["next_mesh"]))
+    def from_arrays(cls, arrays: Arrays, build: Build = STANDARD) -> "Neighbour":
+        """The neighbour from stored `arrays`, with the shapes given there, of a rod of this build."""
+        mesh = OrbitMesh.from_numbers(arrays["mesh"])
+        next_mesh = OrbitMesh.from_numbers(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
-        rod = Rod(**parameters)
+        rod = Rod(**parameters, build=build)
         symmetry = REFLECTION if arrays["symmetric"] else NONE
         form = StressForm(rod, mesh.grid)
         orbit = Orbit(form, symmetry, mesh.intervals, mesh.stages, arrays["orbit"])

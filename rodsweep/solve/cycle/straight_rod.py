@@ -62,7 +62,9 @@ def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest
 
     near: leading eigenvalue of a similar rod, followed to this rod where possible.
     """
-    followed = None if near is None else followed_leader(rod, near, request.accuracy)
+    followed = None
+    if near is not None and rod.standard:
+        followed = followed_leader(rod, near, request.accuracy)
     if followed is not None:
         return StraightRod(followed, root_error(followed, rod.coefficients)[0])
     found = solve_spectrum(rod, request)

@@ -3,20 +3,20 @@
 The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
 from the coarser mesh is the error estimate, which overestimates the error by some decades. Rounding and the
 error of the Hopf point itself are added. The slope dw/dF is the slope of the root of D, free of mesh error;
-its difference from the slope on the finer mesh is the error estimate.
+its difference from the slope on the finer mesh is the error estimate. Arms have the slope of the finer mesh.
 """
 
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.newton import eigenvalue_newton
 from ...determinant.parameter_path import Path
-from ...discretization.elements.resolution import Resolution
-from ...discretization.elements.resolution import finer as a_third_finer
-from ...discretization.straight.elements import TRANSVERSE, StraightElements
+from ...discretization.elements.elements import Elements
+from ...discretization.straight.elements import TRANSVERSE
+from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
+from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
-from .normal_form import SAFETY, NormalForm, normal_form_on, of_odd_order, resolution_of
+from .normal_form import SAFETY, NormalForm, a_third_finer, elements_for, normal_form_on
 
 MORE_ORDERS = 4
 """Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""
@@ -83,23 +83,25 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = resolution_of(rod, w, min(accuracy / SAFETY, COARSEST))
+    start = elements_for(rod, w, min(accuracy / SAFETY, COARSEST))
     fine, change, rounding = normal_form_on(start, rod, w, COARSEST), math.inf, 0.0
     for number in range(MOST_REFINED):
-        here = Resolution(fine.form.mesh.elements, fine.form.mesh.order)
-        more = of_odd_order(a_third_finer(here)) if number else replace(here, order=here.order + MORE_ORDERS)
+        here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
+        more = a_third_finer(here) if number else Elements(here.edges, here.order + MORE_ORDERS)
         coarse, fine = fine, normal_form_on(more, rod, w, accuracy)
         change, rounding = abs(fine.c - coarse.c) / abs(fine.c), _rounding(fine)
         if change <= max(accuracy, rounding):
             break
     slope, bend = _slope(rod, w)
+    if rod.standard:
+        off = abs(fine.slope - slope) / abs(slope)
+    else:  # the slope of the root is a difference there, less accurate than that of a mesh
+        slope = fine.slope
+        off = abs(fine.slope - coarse.slope) / abs(slope)
     moved = (
-        SENSITIVITY
-        * hopf.error
-        * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.stretch_stiffness - rod.F))
+        SENSITIVITY * hopf.error * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F))
     )
     landau_error = max(change, rounding) + moved
-    off = abs(fine.slope - slope) / abs(slope)
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
     return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
 
@@ -130,14 +132,13 @@ def _with_errors(
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root of D at w."""
     step = BESIDE * abs(rod.F)
-    direction = Path(rod, "F").direction
-    _, slope, _ = eigenvalue_newton(w, rod.coefficients, direction)
-    beside = replace(rod, F=rod.F - step)
-    _, before, _ = eigenvalue_newton(w - slope * step, beside.coefficients, direction)
+    problem = path_problem(Path(rod, "F"))
+    _, slope, _ = problem.eigenvalue(w, rod.F)
+    _, before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
     return complex(slope), abs(slope - before) / step
 
 
 def _rounding(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue."""
-    sizes = StraightElements(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
+    sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
     return ROUNDING * sizes / abs(normal.w)

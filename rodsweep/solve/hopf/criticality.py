@@ -86,7 +86,7 @@ class Criticality:
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     """All Hopf points of one rod with coefficients; the rod's force is ignored, failures become a status."""
-    end = min(request.F_max, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
+    end = min(request.F_max, rod.crushing_force * (1 - SHORT_OF_CRUSHED))
 
     def search() -> Criticality:
         found = _hopf_points(Path(replace(rod.linear, F=0.0), "F"), end, request.certify)

@@ -41,7 +41,7 @@ def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     Hopf points or a coefficient fails.
     """
     low = rod.F / FARTHEST_FORCE
-    high = min(rod.F * FARTHEST_FORCE, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
+    high = min(rod.F * FARTHEST_FORCE, rod.crushing_force * (1 - SHORT_OF_CRUSHED))
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings

@@ -1,29 +1,36 @@
 """Normal form of a Hopf point: amplitude, frequency and motion of the cycles born there.
 
 About the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
-M dX/dt = A X + B(X, X)/2. With a simple pair of eigenvalues w, conj w of (A, M),
+M dX/dt = A X + B(X, X)/2 + C(X, X, X)/6. With a simple pair of eigenvalues w, conj w of (A, M),
 A q = w M q and p^H A = w p^H M, its small motions at a force F' near F are, to second order,
 
     X = z q + conj(z q) + Re(z^2 h20) + |z|^2 h11,      dz/dt = [w + lambda_F (F' - F)] z + c |z|^2 z,
     h20 = (2 i Im w M - A)^-1 B(q, q),                  h11 = -A^-1 B(q, conj q),
-    c = p^H [B(conj q, h20) + 2 B(q, h11)]/2,           lambda_F = dw/dF = p^H A_F q.
+    c = p^H [B(conj q, h20) + 2 B(q, h11) + C(q, q, conj q)]/2,           lambda_F = dw/dF = p^H A_F q.
 
-There is no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with z = Z exp(i phase) the
-tip's y is Re z to second order, and |Z| its largest value in L.
+A linear constitutive law has no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with
+z = Z exp(i phase) the tip's y is Re z to second order, and |Z| its largest value in L.
 
 The mirror image of a motion is a motion too: q and p are transverse, h20 and h11 longitudinal. Where w has a
 real part, away from a Hopf point, h20 and h11 are those of a cycle, on which |z| stands still.
 """
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...determinant.arm.determinant import arm_determinant
 from ...determinant.value import newton_correction
-from ...discretization.elements.resolution import Resolution, resolution_for
+from ...discretization.elements.elements import Elements, equal_edges, halved
+from ...discretization.elements.mesh import mesh_on
+from ...discretization.elements.resolution import LARGEST_ORDER as LARGEST_ELEMENT_ORDER
+from ...discretization.elements.resolution import resolution_for
+from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
-from ...discretization.straight.mixed_form import MixedForm, mixed_form
+from ...discretization.straight.mixed_form import MixedForm
+from ...discretization.straight.whole_matrices import WholeMatrices, straight_matrices
 from ...model.rod import Rod
 from ..point import Unsolvable
 
@@ -43,6 +50,8 @@ LARGEST_ORDER = 20
 """Largest order of an element: beyond it a further element is cheaper, as all are eliminated at once."""
 MOST_NODES = 2000
 """Maximum number of nodes; Unsolvable for rods that need more."""
+MOST_NODES_OF_ARMS = 400
+"""The same for arms, whose matrices are factorised whole."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -109,11 +118,13 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 
     Raises Unsolvable where the eigenvalue is real or the iteration finds none.
     """
-    transverse, longitudinal = (StraightElements(form, part) for part in (TRANSVERSE, LONGITUDINAL))
+    transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _modes(transverse, guess)
     h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
     h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
+    if form.law.nonlinear:
+        c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
     slope = np.vdot(p, form.times_A_F(q))
     return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
 
@@ -123,35 +134,47 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 
     Raises Unsolvable where w is no eigenvalue to this accuracy, or no reasonable mesh is fine enough.
     """
-    return normal_form_on(resolution_of(rod, w, accuracy), rod, w, accuracy)
+    return normal_form_on(elements_for(rod, w, accuracy), rod, w, accuracy)
 
 
-def resolution_of(rod: Rod, w: complex, accuracy: float) -> Resolution:
-    """A mesh of odd order that gives c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
+def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
+    """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
+    if not rod.standard:
+        wave_number = arm_determinant(rod).wave_number(w)
+        return arm_elements(rod, HARMONIC * wave_number, SAFETY * accuracy, LARGEST_ORDER)
     wave_number = newton_correction(w, rod.coefficients)[2]
-    return of_odd_order(resolution_for(HARMONIC * wave_number, SAFETY * accuracy, LARGEST_ORDER))
+    resolution = resolution_for(HARMONIC * wave_number, SAFETY * accuracy, LARGEST_ORDER)
+    return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
-def of_odd_order(resolution: Resolution) -> Resolution:
-    """A mesh of odd order at least as fine: only elements of odd order can be eliminated one by one."""
-    return Resolution(resolution.elements, resolution.order | 1)
+def of_odd_order(elements: Elements) -> Elements:
+    """Elements of odd order at least as fine: only those can be eliminated one by one."""
+    return Elements(elements.edges, elements.order | 1)
 
 
-def normal_form_on(resolution: Resolution, rod: Rod, w: complex, accuracy: float) -> NormalForm:
-    """The normal form of the eigenvalue w on a mesh.
+def a_third_finer(elements: Elements) -> Elements:
+    """Elements with a third more unknowns, of odd order."""
+    order = ceil(elements.order * 4 / 3)
+    if order <= LARGEST_ELEMENT_ORDER:
+        return of_odd_order(Elements(elements.edges, order))
+    return of_odd_order(Elements(halved(elements.edges), ceil(2 / 3 * elements.order)))
+
+
+def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:
+    """The normal form of the eigenvalue w on some elements.
 
     Raises Unsolvable where w is no eigenvalue to a relative accuracy, or the mesh is too fine to be solved.
     """
-    nodes = resolution.elements * resolution.order
-    if nodes > MOST_NODES:
-        raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {MOST_NODES}")
-    normal = normal_form(mixed_form(rod, resolution.elements, resolution.order), w)
+    nodes, most = elements.nodes, MOST_NODES if rod.standard else MOST_NODES_OF_ARMS
+    if nodes > most:
+        raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {most}")
+    normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, FOUND) * abs(w):
         raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
     return normal
 
 
-def _modes(elements: StraightElements, guess: complex) -> tuple[complex, Complex, Complex]:
+def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
     """(w, q, p) of the eigenvalue nearest to a guess, of the transverse unknowns alone, scaled.
 
     Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.

@@ -144,15 +144,11 @@ class Workspace:
         """Sets the rod, and the rms errors of a stage at which Newton's method stops and may stagnate."""
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set({"components": len(self._rod["tip_stress"])})
-        rest = np.zeros(beam.layout.unknowns)
+        self._set({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
         root = beam.layout.unknowns**0.5
-        straight = beam.least_stretch(rest)
-        pressed = beam.least_stretch(rest - 1)
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
         self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
         self._set({"small_error": error * root, "rounding": floor * root})
-        self.context["crushed"] = straight / (pressed - straight)  # h1 is affine in z1
         take_steps(self.context)
 
     def predict_as(self, variant: str) -> None:

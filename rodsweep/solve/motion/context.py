@@ -16,8 +16,9 @@ MOST_STAGES, MOST_POINTS = 16, 8
 """Maximum number of stored stages of a step, and of points through which a stage is extrapolated."""
 
 REAL, WHOLE = "<f8", "<i8"
-ROD = (*(name for name in NodalRod._fields if name != "kept"), "roots")
-"""Fields with addresses of the integrated rod's arrays, and of the square roots of its compliances."""
+ROD = (*(name for name in NodalRod._fields if name not in ("kept", "law")), "roots", "crushed")
+"""Fields with addresses of the integrated rod's arrays, of the square roots of its compliances, and of z1 at
+each node but the tip at which h1 = 0, (nodes,)."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
 """Fields with addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns); the state at
 which a step's matrix is made, (unknowns,); times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of
@@ -53,7 +54,7 @@ CONTEXT = np.dtype(
         ("rows", WHOLE),  # address of the stored steps, a row (time, state) each, allocated by compiled code
         ("stored", WHOLE),  # number of stored steps
         ("capacity", WHOLE),  # number of steps for which memory is allocated
-        ("crushed", REAL),  # z1 at which h1 = 0
+        ("law", WHOLE),  # number of the constitutive law
         ("left", WHOLE),  # whether the rod has left the model
         ("error", WHOLE),  # PETSc's error code inside a stage
         ("outputs", WHOLE, (3,)),  # output arguments of PETSc's functions
@@ -70,7 +71,7 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
     """Arrays of a rod for the fields `ROD`, of any shapes."""
-    own = beam.nodal._asdict() | {"roots": beam.roots}
+    own = beam.nodal._asdict() | {"roots": beam.roots, "crushed": beam.crushed}
     return {name: own[name] for name in ROD}
 
 
@@ -80,7 +81,7 @@ def rod_of(c: Any) -> NodalRod:
     rest, compliance = floats_in(c.rest, (d, m)), floats_in(c.compliance, (d, m))
     drag, mobility = floats_in(c.drag, (d, m)), floats_in(c.mobility, (d, m))
     second, none = floats_in(c.second, (d, m, m)), integers(c.rest, 0)
-    return NodalRod(floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none)
+    return NodalRod(floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none, c.law)
 
 
 @compiled

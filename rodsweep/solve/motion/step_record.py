@@ -45,9 +45,12 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     row[1:] = z
     release_read(outputs[1], at + 16)
     c.stored += 1
-    if row[1 : 1 + n // 3].min() <= c.crushed:
-        c.left = 1
-        set_ts_reason(ts, STOPPED)
+    nodes = n // 3
+    crushed = floats(c.crushed, nodes)
+    for i in range(nodes):
+        if row[1 + i] <= crushed[i] and not c.left:
+            c.left = 1
+            set_ts_reason(ts, STOPPED)
     return 0
 
 

@@ -57,7 +57,7 @@ class CyclePath:
         self.orbit = orbit
         grid = orbit.form.mesh
         self._ends = np.ascontiguousarray(orbit.regular_states)
-        matrices = tip_matrices(grid.elements, grid.order)
+        matrices = tip_matrices(grid)
         self._path = tip_path(self._ends, orbit.period, orbit.semidiscrete, matrices)
         self.tip_coefficients, self.tip_samples = self._path.coefficients, self._path.samples
 

@@ -6,7 +6,11 @@ The required mesh follows from the tails of a nearby orbit (`tails`).
 from dataclasses import dataclass, replace
 from math import ceil, log
 
-from ...discretization.elements.mesh import Mesh, mesh
+import numpy as np
+
+from ...arrays import Array
+from ...discretization.elements.elements import halved
+from ...discretization.elements.mesh import Mesh, mesh_on
 from ...discretization.elements.resolution import LARGEST_ORDER
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
@@ -28,16 +32,24 @@ MOST_STATE_UNKNOWNS = 400
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Mesh of an orbit: equal elements of one order in space, intervals with Radau stages in time."""
+    """Mesh of an orbit: elements of one order in space, intervals with Radau stages in time.
 
-    elements: int
+    edges: ends of the elements.
+    """
+
+    edges: tuple[float, ...]
     order: int
     intervals: int
     stages: int
 
     @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.edges) - 1
+
+    @property
     def grid(self) -> Mesh:
-        return mesh(self.elements, self.order)
+        return mesh_on(self.edges, self.order)
 
     @property
     def unknowns(self) -> int:
@@ -45,9 +57,15 @@ class OrbitMesh:
         return plane_layout(self.elements * self.order).unknowns
 
     @property
-    def numbers(self) -> tuple[int, int, int, int]:
-        """Numbers from which a stored mesh is made again."""
-        return self.elements, self.order, self.intervals, self.stages
+    def numbers(self) -> Array:
+        """Numbers from which `from_numbers` makes the mesh again, (elements + 4,)."""
+        return np.array([self.order, self.intervals, self.stages, *self.edges])
+
+    @classmethod
+    def from_numbers(cls, numbers: Array) -> "OrbitMesh":
+        """The mesh of stored `numbers`, (elements + 4,)."""
+        order, intervals, stages = map(int, numbers[:3])
+        return cls(tuple(numbers[3:].tolist()), order, intervals, stages)
 
     @property
     def coarser(self) -> "OrbitMesh":
@@ -79,7 +97,7 @@ class OrbitMesh:
 def mesh_of(orbit: Orbit) -> OrbitMesh:
     """The mesh of an orbit."""
     grid = orbit.form.mesh
-    return OrbitMesh(grid.elements, grid.order, orbit.intervals, orbit.stages)
+    return OrbitMesh(grid.edges, grid.order, orbit.intervals, orbit.stages)
 
 
 def stages_for(accuracy: float) -> int:
@@ -94,21 +112,21 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     aim_space = (EXPECTED_SHARE * accuracy / SPACE_FACTOR) ** 0.5
     aim_time = (EXPECTED_SHARE * accuracy / TIME_FACTOR) ** 0.5
     order = present.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / present.elements)
-    elements = present.elements
+    edges = present.edges
     while order > LARGEST_ORDER:
         order = ceil(0.6 * order)
-        elements = 2 * elements
+        edges = halved(edges)
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
     tail = max(tails.time, 1e-15) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
     order = min(max(order, LEAST_ORDER), present.order + 12)
     intervals = min(max(intervals, LEAST_INTERVALS), 4 * present.intervals)
-    return OrbitMesh(elements, order, intervals, stages)
+    return OrbitMesh(edges, order, intervals, stages)
 
 
 def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
     """A mesh at least as fine as the wanted mesh, and finer than the present mesh."""
-    order = max(wanted.order, mesh.order) if wanted.elements == mesh.elements else wanted.order
+    order = max(wanted.order, mesh.order) if wanted.edges == mesh.edges else wanted.order
     intervals = max(wanted.intervals, mesh.intervals)
     stages = max(wanted.stages, mesh.stages)
     finer = replace(wanted, order=order, intervals=intervals, stages=stages)

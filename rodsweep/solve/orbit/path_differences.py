@@ -3,6 +3,8 @@
 import numpy as np
 
 from ...arrays import Array
+from ...model.parameters import PARAMETERS
+from ...model.rod import Rod
 from .measures import CyclePath
 from .orbit import Orbit
 
@@ -26,5 +28,12 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 def rods_apart(one: Orbit, other: Orbit) -> float:
     """Largest relative difference of two rods' parameters."""
-    a, b = (np.array([*orbit.form.rod.coefficients, orbit.form.rod.axial_drag]) for orbit in (one, other))
+    a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
+
+
+def _numbers(rod: Rod) -> Array:
+    """What the equations contain of a uniform rod, or the coordinates of all parameters of an arm, (n,)."""
+    if rod.standard:
+        return np.array([*rod.coefficients, rod.axial_drag])
+    return np.array([rod.coordinate(name) for name in PARAMETERS])

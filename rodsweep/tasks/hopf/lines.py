@@ -4,16 +4,16 @@ Hopf points depend on the config alone and are stored before any point is solved
 of the file after a run, an extension or a merge.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS, all_but
+from ...model.material.build import STANDARD, Build
 from ...model.rod import Rod
-from ...results.layouts.limit_cycle import HOPF_ALONG, HOPF_POINTS
+from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_points_of
 from ...results.layouts.variables import Filled
 from ...sweep.points.points import Points
 
@@ -32,6 +32,7 @@ class HopfLine:
     """The fixed parameters of the straight rod."""
     start: float
     stop: float
+    build: Build = STANDARD
 
     def search(self) -> "Transitions | None":
         """Hopf points on the line; None if the range is empty or the search fails. Needs no PETSc."""
@@ -42,30 +43,36 @@ class HopfLine:
 
         start, stop = self.start, self.stop
         if self.name == "F":
-            stop = min(stop, self.fixed["k1"] * (1 - SHORT_OF_CRUSHED))
+            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - SHORT_OF_CRUSHED))
         if self.name == "k1":
-            start = max(start, self.fixed["F"] / (1 - SHORT_OF_CRUSHED))
+            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - SHORT_OF_CRUSHED)))
         if not start < stop:
             return None
         at_start: dict[str, Any] = self.fixed | {self.name: start}
         try:
-            return pair_crossings(Path(Rod(**at_start), self.name), start, stop)
+            return pair_crossings(Path(Rod(**at_start, build=self.build), self.name), start, stop)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
+
+    @property
+    def _crushing_share(self) -> float:
+        """The force that crushes the rods, in units of k1."""
+        return self.build.crushing_share(self.fixed.get("taper", 1.0))
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
     """Lines through the points, each line once; rods that differ in gamma1 alone share a line."""
-    return [line for name in HOPF_ALONG for line in _lines_over(points, name)]
+    names = [name for name in HOPF_ALONG if name in points.of_rods]
+    return [line for name in names for line in _lines_over(points, name, names)]
 
 
-def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
+def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
     """Lines over a parameter of points with at least two finite values of it; lines over F begin at 0.
 
     Below the first force of the points the rod may already oscillate; such a Hopf point is stored too.
     """
-    columns = {n: points.of_rods[n] for n in LINEAR_PARAMETERS}
-    others = all_but(name)
+    columns = {n: points.of_rods[n] for n in names}
+    others = [n for n in names if n != name]
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
         ends = [_ends(columns[name])] * len(rods)
@@ -78,7 +85,7 @@ def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
     for rod, (start, stop) in zip(rods.tolist(), ends, strict=True):
         if start < stop:
             first = min(start, 0.0) if name == "F" else start
-            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop)
+            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop, points.build)
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
@@ -87,8 +94,10 @@ def _ends(values: np.ndarray) -> tuple[float, float]:
     return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
 
 
-def hopf_variables(lines: Sequence[HopfLine], found: "Sequence[Transitions | None]") -> tuple[Filled, ...]:
-    """Hopf points of all lines, line after line, as variables of the file."""
+def hopf_variables(
+    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
+) -> tuple[Filled, ...]:
+    """Hopf points of all lines, line after line, as variables of a file with these parameters."""
     rows = [
         _row(line, crossing)
         for line, transitions in zip(lines, found, strict=True)
@@ -100,14 +109,14 @@ def hopf_variables(lines: Sequence[HopfLine], found: "Sequence[Transitions | Non
     }
     return tuple(
         (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))
-        for v in HOPF_POINTS
+        for v in hopf_points_of(names)
     )
 
 
 def _row(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
     """A Hopf point as variables of the file."""
     rod = line.fixed | {line.name: crossing.at}
-    return {f"hopf_{name}": rod[name] for name in HOPF_ALONG} | {
+    return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
         "hopf_along": HOPF_ALONG.index(line.name),
         "hopf_kind": int(crossing.kind),
         "hopf_error": crossing.error / abs(crossing.at),

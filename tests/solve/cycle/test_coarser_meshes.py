@@ -20,7 +20,7 @@ from rodsweep.solve.orbit.path_differences import APART, HEIGHT, PERIOD, path_di
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
-FINE = OrbitMesh(1, 19, 16, 4)
+FINE = OrbitMesh((0.0, 1.0), 19, 16, 4)
 MEMORY = NewtonWorkspace()
 RODS = {
     "soft": (Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), 1.0),

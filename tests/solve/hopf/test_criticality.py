@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mixed_motion import mixed_form
 from scipy.interpolate import BarycentricInterpolator
 from second_normal_form import coefficients
 from shown import shown
@@ -15,7 +16,6 @@ from test_paper import run, stated
 import rodsweep as rs
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.mesh import mesh
-from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view

@@ -8,11 +8,11 @@ from pathlib import Path
 import mixed_motion as mixed
 import numpy as np
 import pytest
+from mixed_motion import mixed_form
 from rods import rod_of
 
 from rodsweep.determinant.newton import eigenvalue_newton
 from rodsweep.determinant.value import newton_correction
-from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form

@@ -9,7 +9,6 @@ from rods import rod_of
 from scipy.integrate import solve_ivp
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.portrait import draw_portrait
@@ -18,7 +17,7 @@ from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle.limit_cycle import MOTION_ACCURACY, CycleRequest, solve_cycle
 from rodsweep.solve.cycle.transient import transient
-from rodsweep.solve.cycle.transient.stepped_rod import motion_resolution
+from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.motion.integrator import RELAXATION_SHARE
 from rodsweep.solve.motion.leading_mode import leading_mode
 
@@ -50,8 +49,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
     rod = rod_of(60.0, *STRETCHABLE[:3])
-    resolution = motion_resolution(rod, MOTION_ACCURACY)
-    beam = Beam(rod, mesh(resolution.elements, resolution.order))
+    beam = Beam(rod, motion_mesh(rod, MOTION_ACCURACY))
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(

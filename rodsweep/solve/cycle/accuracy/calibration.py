@@ -84,13 +84,13 @@ class Calibration:
     def arrays(self) -> dict[str, Array]:
         """Named arrays: errors and rates (5,), tails (3,), reach and mesh; growth belongs to one orbit."""
         errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
-        numbers = {"reach": np.array(self.reach), "calibrated_mesh": np.array(self.mesh.numbers)}
+        numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.numbers}
         return errors | numbers
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
         """The calibration from stored `arrays`, with the shapes given there."""
-        mesh = OrbitMesh(*map(int, arrays["calibrated_mesh"]))
+        mesh = OrbitMesh.from_numbers(arrays["calibrated_mesh"])
         errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
@@ -215,7 +215,7 @@ def calibration_of(
         power = np.full(PARTS, POWER_BY_STAGES * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous, fall, power = before.mesh, before.fall, before.power
-    if previous.order != mesh.order and previous.elements == mesh.elements:
+    if previous.order != mesh.order and previous.edges == mesh.edges:
         fall = _fall(before.space, space, mesh.order - previous.order)
     if previous.intervals != mesh.intervals:
         power = _power(before.time, time, previous, mesh)

@@ -46,12 +46,12 @@ class CoarserMeshes:
         few = (
             mesh.order - self.mesh.order <= SERVED_ORDERS and self._refined_in_time(mesh) <= SERVED_INTERVALS
         )
-        return few and (mesh.elements, mesh.stages) == (self.mesh.elements, self.mesh.stages)
+        return few and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """The predicted orbit on a fine mesh, and the calibration of this mesh; raises Unsolvable."""
-        space = self._on(order=mesh.order)
-        time = self._on(intervals=mesh.intervals)
+        space = self._on(replace(self.mesh, order=mesh.order))
+        time = self._on(replace(self.mesh, intervals=mesh.intervals))
         fine, in_intervals, coarse = (mesh.carry(each.orbit) for each in (space, time, self._both))
         orbit = replace(fine, values=fine.values + in_intervals.values - coarse.values)
         fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, LEAST_FALL), LARGEST_FALL)
@@ -64,8 +64,7 @@ class CoarserMeshes:
         in_time = np.append(self._errors(time, by_intervals), apart)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
-    def _on(self, **finer: int) -> ComparedCycle:
-        mesh = replace(self.mesh, **finer)
+    def _on(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._finer:
             self._finer[mesh] = self._solved(mesh, self._both.orbit)
         return self._finer[mesh]

@@ -28,6 +28,7 @@ from ..status import CycleStatus
 from ..straight_rod import StraightRod, straight_rod
 from .amplitude_equation import SLOW_GROWTH, AmplitudeEquation
 from .from_motion import orbit_from_motion
+from .motion_mesh import near_rod
 from .returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
@@ -37,7 +38,6 @@ from .returns import (
     section_crossings,
     until_returns,
 )
-from .stepped_rod import near_rod
 from .trace import TipTrace
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)

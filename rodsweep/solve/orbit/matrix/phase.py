@@ -19,7 +19,10 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
     V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((3, *c.drag.shape))
     balance(start, V, G, c, m)
     balance_change(start, V, changes, change, c, m)
-    return -lateral_velocity(changes[2], tip_angle(start, m))
+    theta = tip_angle(start, c.compliance, m)
+    turned = tip_angle(start, change.compliance, m)
+    by_angle = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]
+    return by_angle * turned - lateral_velocity(changes[2], theta)
 
 
 @compiled_for_vectors
@@ -27,7 +30,7 @@ def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
     """dy/dt of the tip at the start, (n,), by the reaction at the tip."""
     V, G = np.empty(c.drag.shape), np.empty(c.drag.shape)
     balance(start, V, G, c, m)
-    return float(lateral_velocity(G, tip_angle(start, m)))
+    return float(lateral_velocity(G, tip_angle(start, c.compliance, m)))
 
 
 @compiled_for_vectors
@@ -37,11 +40,11 @@ def lateral_velocity(G: Array, theta: float) -> float:
 
 
 @compiled_for_vectors
-def tip_angle(x: Array, m: NodeMatrices) -> float:
-    """Angle theta of the tip for a state, (n,)."""
+def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
+    """Angle theta of the tip for a state, (n,), and compliances, (3, nodes + 1)."""
     theta, nodes = 0.0, len(m.weights) - 1
     for i in range(nodes):
-        theta += m.weights[i] * x[stress_place(BENDING, i, nodes)]
+        theta += m.weights[i] * compliance[BENDING, i] * x[stress_place(BENDING, i, nodes)]
     return theta
 
 
@@ -52,9 +55,10 @@ def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     V, G, J, tip = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((n, n)), np.empty((COMPONENTS, n))
     balance(start, V, G, c, m)
     jacobian(start, V, J, tip, c, m)
-    theta, nodes = tip_angle(start, m), len(m.weights) - 1
+    theta, nodes = tip_angle(start, c.compliance, m), len(m.weights) - 1
     sin, cos = np.sin(theta), np.cos(theta)
     for i in range(n):
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
     for i in range(nodes):
-        row[stress_place(BENDING, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * m.weights[i]
+        turn = m.weights[i] * c.compliance[BENDING, i]
+        row[stress_place(BENDING, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * turn

@@ -2,7 +2,9 @@
 
 from dataclasses import replace
 
-from ....discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
+from ....discretization.elements.mesh import Mesh, mesh, mesh_on
+from ....discretization.elements.resolution import expected_wave_number, resolution_for
+from ....discretization.straight.arm_resolution import arm_elements, arm_mesh
 from ....model.dispersion import most_amplified_wave
 from ....model.rod import Rod
 
@@ -14,13 +16,16 @@ STIFFEST, LEAST_DRAG = 1e8, 1e-6
 """Largest stiffness and smallest gamma3 of an integrated rod. Rods beyond move alike, to 1e-6 or better."""
 
 
-def motion_resolution(rod: Rod, accuracy: float) -> Resolution:
-    """Resolution of the first mesh of a motion, for a relative accuracy."""
-    wave = max(
-        expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]),
-        WAVES_PER_ROOT_FORCE * abs(rod.F) ** 0.5,
-    )
-    return resolution_for(wave, accuracy)
+def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
+    """The first mesh of a motion, for a relative accuracy."""
+    by_force = WAVES_PER_ROOT_FORCE * abs(rod.F) ** 0.5
+    if not rod.standard:
+        modal, bent = arm_mesh(rod, EXPECTED_MODES, accuracy), arm_elements(rod, by_force, accuracy)
+        finest = max(modal, bent, key=lambda each: each.nodes)
+        return mesh_on(finest.edges, finest.order)
+    wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), by_force)
+    resolution = resolution_for(wave, accuracy)
+    return mesh(resolution.elements, resolution.order)
 
 
 def near_rod(rod: Rod) -> Rod:

@@ -1,0 +1,73 @@
+"""Compliances, drags and rest of an arm at the nodes of a mesh, and their derivatives by a parameter.
+
+At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
+contain the mean of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if elements
+end at the jumps, for a linear law; with another law s(S) differs on the two sides, and jumps are refused.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..model.balance import Material
+from ..model.material.build import Sections
+from ..model.material.laws import LINEAR
+from ..model.rod import Rod
+from .elements.mesh import Mesh
+from .elements.quadrature import gauss_lobatto
+
+INSIDE = 1e-9
+"""Distance of the outer nodes of an element from its ends, in units of its length, where coefficients are
+taken: at a jump an element has those of its own side."""
+
+
+def material_on(rod: Rod, grid: Mesh) -> Material:
+    """The material of a rod on a mesh; an arm has arrays over the nodes, (3, nodes + 1).
+
+    The elements of an arm must end at the breaks of its profile. ValueError for a law that is not linear and
+    a profile that jumps.
+    """
+    if not (rod.build.continuous or rod.build.constitutive_law is LINEAR):
+        raise ValueError("the nonlinear motion of an arm with jumps is known for the linear law only")
+    if rod.standard:
+        return rod.material
+    compliance, drag, rest = _at_nodes(rod.sections(_points_of(grid)), grid)
+    return Material(compliance, drag, rod.F, rest)
+
+
+def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
+    """The derivative of `material_on` by the coordinate of a parameter."""
+    if rod.standard and name != "taper":
+        return rod.material_change(name)
+    compliance, drag, rest = _at_nodes(rod.section_changes(name, _points_of(grid)), grid)
+    return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
+
+
+def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
+    """Compliance, drag and rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
+    place, weights = _places_of(grid)
+
+    def mean(values: Array) -> Array:
+        return np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
+
+    rest = np.zeros_like(sections.drag)
+    rest[0] = sections.nu
+    return mean(sections.compliance), mean(sections.drag), mean(rest)
+
+
+@lru_cache(maxsize=64)
+def _points_of(grid: Mesh) -> Array:
+    """Points at the nodes of every element, just inside it, (elements (order + 1),)."""
+    inner: Array = np.clip((gauss_lobatto(grid.order)[0] + 1) / 2, INSIDE, 1 - INSIDE)
+    starts: Array = np.array(grid.edges[:-1])
+    return np.ravel(starts[:, None] + grid.lengths[:, None] * inner)
+
+
+@lru_cache(maxsize=64)
+def _places_of(grid: Mesh) -> tuple[NDArray[np.int64], Array]:
+    """(node, weight in the quadrature) of each of the `_points_of` a mesh, (elements (order + 1),) each."""
+    nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
+    weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
+    return nodes.ravel(), weights.ravel()

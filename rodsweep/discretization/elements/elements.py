@@ -1,0 +1,71 @@
+"""Elements on the rod, and the values of fields on their Lobatto nodes at other points."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from .basis import interpolation
+from .quadrature import gauss_lobatto
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Elements between `edges`, which increase from 0 to 1, all of one order."""
+
+    edges: tuple[float, ...]
+    order: int
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.edges) - 1
+
+    @property
+    def nodes(self) -> int:
+        """Nodes but for one end, the clamp or the tip."""
+        return self.elements * self.order
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Lengths of the elements, (elements,)."""
+        return np.diff(self.edges)
+
+    @cached_property
+    def positions(self) -> Array:
+        """u of all nodes, both ends included, shape (nodes + 1,)."""
+        inner = (gauss_lobatto(self.order)[0][1:] + 1) / 2
+        starts: Array = np.array(self.edges[:-1])
+        positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
+        positions[self.order :: self.order] = self.edges[1:]
+        return positions
+
+    def evaluation(self, points: Array) -> Array:
+        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
+        nodes = gauss_lobatto(self.order)[0]
+        matrix = np.zeros((len(points), self.nodes + 1))
+        for first, here, local in self.by_element(points):
+            matrix[here, first : first + self.order + 1] = interpolation(nodes, local)
+        return matrix
+
+    def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
+        """(first node, numbers of the points in it, these in [-1, 1]) of each element with points, (n,)."""
+        element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.elements - 1)
+        for e in np.unique(element):
+            here = np.nonzero(element == e)[0]
+            yield int(e) * self.order, here, 2 * (points[here] - self.edges[e]) / self.lengths[e] - 1
+
+
+@lru_cache(maxsize=256)
+def equal_edges(elements: int) -> tuple[float, ...]:
+    """Ends of equal elements."""
+    return tuple(k / elements for k in range(elements + 1))
+
+
+def halved(edges: tuple[float, ...]) -> tuple[float, ...]:
+    """Ends of twice as many elements."""
+    middles = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    return tuple(sorted([*edges, *middles]))

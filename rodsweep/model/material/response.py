@@ -1,0 +1,95 @@
+"""Stress of a rod by its strain, compiled, for every law: n1 and m3 from unknowns that stay regular.
+
+The unknowns q1, q2, q3 are the stresses, beyond those at rest, that a linear rod would need for the same
+strain: h1 = nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses beyond those at rest are
+
+    N(q1, q3) = q1 [W'(h1) - W'(nu)]/(h1 - nu) + B'(h1) c3 q3^2/2,     q2,     M(q1, q3) = B(h1) q3
+
+with the stretch energy W and the bending factor B of `laws`. Nothing is divided by a compliance, so that
+c1 = 0 is a value like others. A linear rod has N = q1 and M = q3.
+"""
+
+from typing import NamedTuple
+
+from ..compiled.compilation import compiled
+from .laws import LAWS
+
+LINEAR_LAW, FIXED_SECTION, SWELLING_SECTION = range(len(LAWS))
+"""Numbers of the laws in compiled code, in the order of `LAWS`."""
+
+
+class LocalSection(NamedTuple):
+    """Stretch at rest, and compliances of stretching and bending, at one point of a rod."""
+
+    nu: float
+    c1: float
+    c3: float
+
+
+class Stress(NamedTuple):
+    """N and M."""
+
+    N: float
+    M: float
+
+
+class Tangent(NamedTuple):
+    """Derivatives of N and M by q1 and q3."""
+
+    N1: float
+    N3: float
+    M1: float
+    M3: float
+
+
+@compiled
+def _bending(law: int, h: float) -> tuple[float, float, float]:
+    """B, B' and B'' at h."""
+    if law == SWELLING_SECTION:
+        a, b = 1 / h, 1 / h**4
+        return (a + 2 * b) / 3, -(a + 8 * b) / (3 * h), (2 * a + 40 * b) / (3 * h * h)
+    return 1.0, 0.0, 0.0
+
+
+@compiled
+def _secant(nu: float, h: float) -> float:
+    """[W'(h) - W'(nu)]/(h - nu) of the neo-Hookean law, without cancellation where h is close to nu."""
+    a, b = 1 / nu, 1 / h
+    return (1 + a * b * (a + b)) / 3
+
+
+@compiled
+def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
+    """The stresses beyond those at rest."""
+    if law == LINEAR_LAW:
+        return Stress(q1, q3)
+    h = at.nu + at.c1 * q1
+    B, B1, _ = _bending(law, h)
+    return Stress(q1 * _secant(at.nu, h) + B1 * at.c3 * q3 * q3 / 2, B * q3)
+
+
+@compiled
+def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
+    """Derivatives of the stresses by the unknowns."""
+    if law == LINEAR_LAW:
+        return Tangent(1.0, 0.0, 0.0, 1.0)
+    h = at.nu + at.c1 * q1
+    B, B1, B2 = _bending(law, h)
+    stiffness = (1 + 2 / h**3) / 3
+    coupling = B1 * q3
+    return Tangent(stiffness + at.c1 * B2 * at.c3 * q3 * q3 / 2, coupling * at.c3, coupling * at.c1, B)
+
+
+@compiled
+def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
+    """Derivatives of the stresses along a change of the section, at fixed unknowns."""
+    if law == LINEAR_LAW:
+        return Stress(0.0, 0.0)
+    h = at.nu + at.c1 * q1
+    moved = change.nu + change.c1 * q1
+    a, b = 1 / at.nu, 1 / h
+    secant_nu = -a * a * b * (2 * a + b) / 3
+    secant_h = -a * b * b * (a + 2 * b) / 3
+    _, B1, B2 = _bending(law, h)
+    by_bending = q3 * q3 / 2 * (B2 * moved * at.c3 + B1 * change.c3)
+    return Stress(q1 * (secant_nu * change.nu + secant_h * moved) + by_bending, B1 * moved * q3)

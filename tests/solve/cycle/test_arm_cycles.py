@@ -1,0 +1,210 @@
+"""Nonlinear arms: tapered, in segments, of rubber. Equations, cycles, normal forms."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mixed_motion import rate as mixed_rate
+from reference.strain_collocation import Arm, Law
+
+from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.elements.mesh import mesh_on
+from rodsweep.discretization.plane import balance, balance_change
+from rodsweep.discretization.straight.mixed_form import MixedForm
+from rodsweep.discretization.stress.form import StressForm
+from rodsweep.model.material.build import STANDARD, Build
+from rodsweep.model.material.laws import LAWS
+from rodsweep.model.material.profile import FACTORS, Profile
+from rodsweep.model.parameters import PARAMETERS
+from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.cycle.cycle import CycleRequest
+from rodsweep.solve.cycle.limit_cycle import solve_cycle
+from rodsweep.solve.cycle.marched import solve_by_integration
+from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
+
+STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
+ONES = Profile((0.0, 0.3, 1.0), ((1.0,) * len(FACTORS),) * 3)
+RUBBER = [Build(*names) for names in LAWS]
+NAMES = ["-".join(names) for names in LAWS]
+ARMS = {
+    "cone": (Build(), 0.5, (0.0, 1.0)),
+    "segments": (Build(profile=STEP), 0.6, (0.0, 0.4, 1.0)),
+    "rubber": (Build("neo_hookean", "fixed"), 0.7, (0.0, 1.0)),
+    "swelling": (Build("neo_hookean", "swelling"), 0.7, (0.0, 0.3, 1.0)),
+    "uniform swelling": (Build("neo_hookean", "swelling"), 1.0, (0.0, 1.0)),
+}
+
+
+def request(accuracy, start="mode"):
+    return CycleRequest(accuracy, 0.01, 4, 0, 0, 9, 400, start)
+
+
+def on_mesh(name, **changed):
+    """An arm of `ARMS` in its stresses on a coarse mesh."""
+    build, taper, edges = ARMS[name]
+    values = {"F": 20.0, "k1": 200.0, "k2": 150.0, "gamma3": 0.02, "gamma1": 0.7, "taper": taper} | changed
+    return StressForm(Rod(**values, build=build), mesh_on(edges, 7))
+
+
+def moving(form, size, seed=0):
+    """(state, V, G) of a random state."""
+    x = size * np.random.default_rng(seed).standard_normal(form.unknowns)
+    V, G = np.empty((2, 3, form.mesh.nodes + 1))
+    balance(x, V, G, form.nodal, form.mesh.matrices)
+    return x, V, G
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_jacobian_is_the_derivative_of_the_rate(name):
+    form = on_mesh(name)
+    beam = Beam(form.rod, form.mesh)
+    z = 0.3 * np.random.default_rng(1).standard_normal(beam.unknowns)
+    h = 1e-6
+    differences = [(beam.rate(z + h * e) - beam.rate(z - h * e)) / (2 * h) for e in np.eye(beam.unknowns)]
+    J = beam.jacobian(z)
+    assert np.abs(J - np.array(differences).T).max() < 1e-8 * np.abs(J).max()
+
+
+@pytest.mark.parametrize("parameter", PARAMETERS)
+@pytest.mark.parametrize("name", ARMS)
+def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, parameter):
+    form = on_mesh(name)
+    x, V, _ = moving(form, 1.0)
+    change = np.empty((3, *V.shape))
+    balance_change(x, V, change, form.change(parameter), form.nodal, form.mesh.matrices)
+    at = form.rod.coordinate(parameter)
+    h = 1e-6 * max(abs(at), 1e-3)
+    ends = []
+    for side in (1, -1):
+        beside = replace(form, rod=form.rod.with_coordinate(parameter, at + side * h))
+        ends.append(moving(beside, 1.0)[2])
+    difference = (ends[0] - ends[1]) / (2 * h)
+    assert np.abs(change[2] - difference).max() < 1e-6 * np.abs(difference).max()
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_energy_grows_by_what_the_force_gives_and_the_fluid_takes(name):
+    form = on_mesh(name)
+    x, V, G = moving(form, 0.3)
+    weighted = form.nodal.compliance * form.mesh.quadrature
+    rates = form.layout.state(G / weighted, V)
+    h = 1e-4 / np.abs(rates).max()
+    steps = [form.energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
+    growth = (steps[0] - 8 * steps[1] + 8 * steps[2] - steps[3]) / (12 * h)
+    lost = np.sum(form.mesh.quadrature * form.nodal.drag * V**2)
+    power = -form.nodal.tip_stress @ G[:, -1] - lost
+    assert growth == pytest.approx(power, abs=1e-7 * lost)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_mixed_form_has_the_same_motion_to_third_order(name):
+    """Without V eliminated: its linear, quadratic and cubic terms are those of the balance."""
+    form = on_mesh(name)
+    mixed = MixedForm(form.rod, form.mesh)
+    errors = []
+    for size in (0.02, 0.01):
+        x, V, G = moving(form, size)
+        X = mixed.unknown(form.stresses(x), V)
+        cubic = mixed.trilinear(X, X, X) / 6
+        S, _ = mixed.fields(mixed_rate(mixed, X) + cubic)
+        errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
+        balanced = mixed.fields(mixed_rate(mixed, X) + cubic)[1]
+        errors[-1] = max(errors[-1], np.abs(balanced).max() / np.abs(V).max())
+    if form.rod.build.law == "linear":
+        assert max(errors) < 1e-12
+    else:
+        assert errors[1] < max(errors[0] / 7, 1e-12)  # what is left is of fourth order in all, relative third
+
+
+@pytest.mark.parametrize(
+    "build", [Build(profile=ONES), STANDARD], ids=["profile of ones", "taper of nearly 1"]
+)
+def test_an_arm_that_does_not_vary_beats_as_the_uniform_rod(build):
+    values = {"F": 50.0, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
+    taper = 1.0 if build.profile else 1 + 1e-13
+    uniform, arm = (
+        solve_cycle(Rod(**values), request(1e-8)),
+        solve_cycle(Rod(**values, taper=taper, build=build), request(1e-8)),
+    )
+    assert arm.status == uniform.status
+    allowed = arm.errors.period_error + uniform.errors.period_error
+    assert arm.measures.period == pytest.approx(uniform.measures.period, rel=allowed)
+    assert arm.measures.tip_y_max == pytest.approx(uniform.measures.tip_y_max, rel=2e-8)
+    assert arm.multiplier == pytest.approx(uniform.multiplier, abs=2e-8)
+
+
+CYCLES = [
+    (0, 0.55, {"F": 24.0, "k1": 1e3, "k2": 50.0, "gamma3": 3e-3, "gamma1": 0.7}),
+    (1, 0.67, {"F": 27.0, "k1": 300.0, "k2": 25.0, "gamma3": 2e-2, "gamma1": 1.0}),
+    (2, 1.26, {"F": 51.0, "k1": 500.0, "k2": 400.0, "gamma3": 9e-2, "gamma1": 1.9}),
+]
+
+
+@pytest.mark.parametrize(("law", "taper", "values"), CYCLES, ids=NAMES)
+def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
+    """By code that shares nothing: Chebyshev collocation of the strains, SciPy's Radau."""
+    build = RUBBER[law]
+    rod = Rod(**values, taper=taper, build=build)
+    found = solve_cycle(rod, request(1e-8), None, "F")
+    assert found.status.name == "cycle"
+    orbit = found.neighbour.branch.orbit
+
+    def radius(u):
+        return 1 - (1 - taper) * u
+
+    arm = Arm(
+        rod.F,
+        lambda u: (rod.k1 * radius(u) ** 2, rod.k2 * radius(u) ** 2, radius(u) ** 4),
+        lambda u: (rod.gamma1, 1.0, rod.gamma3 * radius(u) ** 2),
+        Law(build.law, build.section),
+    )
+    strains = orbit.form.mesh.evaluation(arm.u[:-1]) @ orbit.form.strains(orbit.start).T
+    period, y = arm.cycle(strains.T.ravel(), found.measures.period)
+    assert period == pytest.approx(found.measures.period, rel=2e-8)
+    assert y == pytest.approx(found.measures.tip_y_max, rel=2e-7)
+
+
+@pytest.mark.parametrize("build", [Build(profile=STEP), RUBBER[2]], ids=["segments", "swelling"])
+def test_cycles_agree_with_arkimex_alone(build):
+    rod = Rod(F=60.0, k1=500.0, k2=1e2, gamma3=1e-2, build=build)
+    found, marched = solve_cycle(rod, request(1e-8)), solve_by_integration(rod, request(1e-5))
+    assert found.status.name == marched.status.name == "cycle"
+    error = marched.errors.period_error
+    assert marched.measures.period == pytest.approx(found.measures.period, rel=error)
+    assert marched.measures.tip_y_max == pytest.approx(found.measures.tip_y_max, rel=error)
+
+
+@pytest.mark.parametrize("build", RUBBER, ids=NAMES)
+def test_the_normal_form_is_the_limit_of_cycles(build):
+    """Amplitude squared over the distance, by Richardson extrapolation from two forces."""
+    rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, build=build)
+    found = solve_criticality(rod, CriticalityRequest(60.0, 1e-9, True, 2))
+    hopf, born = found.crossings[0], found.coefficients[0]
+    assert found.status.name == "ok"
+    ratios = []
+    for distance in (2e-4, 1e-4):
+        cycle = solve_cycle(replace(rod, F=hopf.at * (1 + distance)), request(1e-10, "hopf"))
+        ratios.append(cycle.measures.tip_y_max**2 / distance)
+    assert math.sqrt(2 * ratios[1] - ratios[0]) == pytest.approx(born.amplitude_coefficient, rel=3e-7)
+
+
+@pytest.mark.parametrize("build", RUBBER, ids=NAMES)
+def test_inextensible_cones_of_every_law_are_one(build):
+    """With k1 = inf no law acts but through the bending factor at h1 = 1, which is 1."""
+    values = {"F": 20.0, "k1": math.inf, "k2": math.inf, "gamma3": 0.0, "taper": 0.6}
+    linear, arm = (solve_cycle(Rod(**values, build=b), request(1e-7)) for b in (STANDARD, build))
+    assert arm.status == linear.status
+    assert arm.measures.period == pytest.approx(linear.measures.period, rel=2e-7)
+    assert arm.measures.tip_y_max == pytest.approx(linear.measures.tip_y_max, rel=2e-7)
+
+
+def test_a_cone_begins_to_beat_where_its_thresholds_say():
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
+    found = solve_thresholds(rod, ThresholdsRequest(40.0, 1e-10, True, 8))
+    hopf = next(c.at for c in found.crossings if c.kind == Kind.hopf)
+    assert hopf == pytest.approx(15.4627583986, rel=1e-11)  # physics: by collocation
+    for distance, status in ((-1e-4, "straight"), (1e-4, "cycle")):
+        assert solve_cycle(replace(rod, F=hopf * (1 + distance)), request(1e-6)).status.name == status
