@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from ...results.file.view import View
+from ...results.layouts.branch import SPECIAL_KINDS
 from ...wording import counted, is_or_are, some_of
 from ..branch_curves import (
     Range,
@@ -21,6 +22,7 @@ from ..branch_curves import (
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
 from .summary_lines import SummaryLines, at_point
+from .thresholds import not_known
 
 NAMED_RODS = 8
 """Largest number of rods listed individually."""
@@ -44,6 +46,8 @@ ENDS = {
     "none": "an end",
 }
 """Words for the end of a branch, by reason."""
+STOPPED = ("no_cycle_found", "list_full")
+"""Reasons for an end beyond which the branch goes on."""
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -78,8 +82,9 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
         cycles = curve.cycles
         sizes = curve.y[cycles]
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
-        extent = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
-        yield f"branch {number}, {_ends(curve, along)}: {counted(int(cycles.sum()), 'cycle')}, {extent}"
+        extent = f", {along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
+        size = counted(int(cycles.sum()), "cycle") + extent if cycles.any() else "no cycle is stored"
+        yield f"branch {number}, {_ends(curve, along)}: {size}"
         for special in curve.special:
             if special.kind in ("hopf", "end"):
                 continue
@@ -95,10 +100,11 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
         if curve.stable_ranges:
             yield f"  stable cycles at {along} = {listed(curve.stable_ranges, errors_of([curve]))}"
         else:
-            yield "  no stable cycle"
+            yield "  no stable cycle" if _is_decided(curve) else "  no cycle is known to be stable"
     if curves and not hidden:
         common = coexistence(view, rod)
-        words = f"{along} = {listed(common, errors_of(curves))}" if common else "nowhere in the range"
+        nowhere = "nowhere in the range" if coexistence_is_decided(view, rod) else "not known"
+        words = f"{along} = {listed(common, errors_of(curves))}" if common else nowhere
         yield f"{BESIDE_STRAIGHT}: {words}"
         if pairs := two_cycles(view, rod):
             yield f"{TWO_CYCLES}: {along} = {listed(pairs, errors_of(curves))}"
@@ -126,6 +132,19 @@ def coexistence(view: View, rod: int) -> list[Range]:
     """Ranges of the parameter with a stable cycle on a branch and a stable straight rod."""
     stable = union(piece for curve in curves_of(view, rod) for piece in curve.stable_ranges)
     return intersection(stable, straight_ranges(view, rod, ends_of(view))[0])
+
+
+def _is_decided(curve: StoredBranch) -> bool:
+    """Whether a branch is followed to its end, and the stability of all its cycles is known."""
+    return curve.special[-1].reason not in STOPPED and bool((curve.stable >= 0).all())
+
+
+def coexistence_is_decided(view: View, rod: int) -> bool:
+    """Whether the stability of all cycles and of the straight rod is known in the whole range."""
+    v = view.of_point(rod)
+    after = v["special_unstable_after"][v["special_kind"] == SPECIAL_KINDS.index("hopf")]
+    straight = int(v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
+    return straight and all(map(_is_decided, curves_of(view, rod)))
 
 
 def two_cycles(view: View, rod: int) -> list[Range]:
@@ -197,6 +216,8 @@ def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
     complete = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
+    if not complete:
+        return
     yield from _rods_with(view, complete, BESIDE_STRAIGHT, coexistence)
     if any(two_cycles(view, rod) for rod in complete):
         yield from _rods_with(view, complete, TWO_CYCLES, two_cycles)
@@ -208,7 +229,9 @@ def _rods_with(
     """Yields the number of rods with a property, and ranges of the parameter for some rods."""
     along = followed_parameter(view)
     having = [(rod, ranges) for rod in rods if (ranges := ranges_of(view, rod))]
-    yield f"{words} at {some_of(len(having), len(rods), 'rod')}"
+    others = set(rods).difference(rod for rod, _ in having)
+    unknown = sum(not coexistence_is_decided(view, rod) for rod in others)
+    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{not_known(unknown)}"
     for rod, ranges in having[:NAMED_RODS]:
         where = f"{along} = {listed(ranges, errors_of(curves_of(view, rod)))}"
         yield f"  {': '.join(filter(None, (at_point(view, rod), where)))}"
