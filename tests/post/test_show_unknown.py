@@ -5,7 +5,6 @@ import io
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from shown import shown
 
 import rodsweep as rs
