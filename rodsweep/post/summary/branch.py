@@ -6,12 +6,13 @@ from itertools import combinations
 
 import numpy as np
 
+from ...arrays import Array
 from ...results.file.view import View
-from ...results.layouts.branch import SPECIAL_KINDS
 from ...wording import counted, is_or_are, some_of
 from ..branch_curves import (
     Range,
     StoredBranch,
+    coexistence_is_decided,
     count_incomplete_branches,
     curves_of,
     followed_parameter,
@@ -46,8 +47,6 @@ ENDS = {
     "none": "an end",
 }
 """Words for the end of a branch, by reason."""
-STOPPED = ("no_cycle_found", "list_full")
-"""Reasons for an end beyond which the branch goes on."""
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -79,28 +78,13 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
     elif not curves:
         yield f"no Hopf point in the range of {along}, so that no branch begins there"
     for number, curve in enumerate(curves, 1):
-        cycles = curve.cycles
-        sizes = curve.y[cycles]
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
-        extent = f", {along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
-        size = counted(int(cycles.sum()), "cycle") + extent if cycles.any() else "no cycle is stored"
-        yield f"branch {number}, {_ends(curve, along)}: {size}"
-        for special in curve.special:
-            if special.kind in ("hopf", "end"):
-                continue
-            if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
-                continue
-            at = to_error(special.at, special.error)
-            kind = special.kind.replace("_", " ")
-            kind += f", where branch {special.meets} meets it," * (special.meets > 0)
-            period = to_error(special.period, special.period * special.period_error)
-            y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
-            size = f"period {period} tau2, largest tip y {y} L"
-            yield f"  {kind} at {along} = {at}, {size}"
+        yield f"branch {number}, {_ends(curve, along)}: {_extent(curve, errors, along)}"
+        yield from _special_of_branch(curve, along)
         if curve.stable_ranges:
             yield f"  stable cycles at {along} = {listed(curve.stable_ranges, errors_of([curve]))}"
         else:
-            yield "  no stable cycle" if _is_decided(curve) else "  no cycle is known to be stable"
+            yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if curves and not hidden:
         common = coexistence(view, rod)
         nowhere = "nowhere in the range" if coexistence_is_decided(view, rod) else "not known"
@@ -108,6 +92,31 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
         yield f"{BESIDE_STRAIGHT}: {words}"
         if pairs := two_cycles(view, rod):
             yield f"{TWO_CYCLES}: {along} = {listed(pairs, errors_of(curves))}"
+
+
+def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
+    """Number of cycles of a branch with their ranges; errors: relative, of the largest tip y, (cycles,)."""
+    cycles = curve.cycles
+    if not cycles.any():
+        return "no cycle is stored"
+    sizes = curve.y[cycles]
+    ranges = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
+    return f"{counted(int(cycles.sum()), 'cycle')}, {ranges}"
+
+
+def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
+    """Yields a line about each special point between the ends of a branch."""
+    for special in curve.special:
+        if special.kind in ("hopf", "end"):
+            continue
+        if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
+            continue
+        at = to_error(special.at, special.error)
+        kind = special.kind.replace("_", " ")
+        kind += f", where branch {special.meets} meets it," * (special.meets > 0)
+        period = to_error(special.period, special.period * special.period_error)
+        y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
+        yield f"  {kind} at {along} = {at}, period {period} tau2, largest tip y {y} L"
 
 
 def _ends(curve: StoredBranch, along: str) -> str:
@@ -132,19 +141,6 @@ def coexistence(view: View, rod: int) -> list[Range]:
     """Ranges of the parameter with a stable cycle on a branch and a stable straight rod."""
     stable = union(piece for curve in curves_of(view, rod) for piece in curve.stable_ranges)
     return intersection(stable, straight_ranges(view, rod, ends_of(view))[0])
-
-
-def _is_decided(curve: StoredBranch) -> bool:
-    """Whether a branch is followed to its end, and the stability of all its cycles is known."""
-    return curve.special[-1].reason not in STOPPED and bool((curve.stable >= 0).all())
-
-
-def coexistence_is_decided(view: View, rod: int) -> bool:
-    """Whether the stability of all cycles and of the straight rod is known in the whole range."""
-    v = view.of_point(rod)
-    after = v["special_unstable_after"][v["special_kind"] == SPECIAL_KINDS.index("hopf")]
-    straight = int(v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
-    return straight and all(map(_is_decided, curves_of(view, rod)))
 
 
 def two_cycles(view: View, rod: int) -> list[Range]:

@@ -42,20 +42,18 @@ def grid_of_arms(
         for name in all_but("F", NONLINEAR_PARAMETERS)
     }
     units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
-    covered = np.broadcast_to(_along(0, statuses), shape).copy()
     forces = [_force_of(section, arm, flutter) if arm else UNCOVERED for arm in arms]
+    scale = np.array([force.F for force in forces])
+    codes = _with_flutter(np.array(statuses), scale) if section.load_axis in RELATIVE else statuses
+    covered = np.broadcast_to(_along(0, codes), shape).copy()
     if section.load:
-        scale = _along(0, [force.F for force in forces])
-        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
+        table["F"] = _along(0, np.where(np.isinf(scale), np.nan, scale)) * _along(1, loads)
         if section.load_axis in RELATIVE:
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
-            covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
-            covered[(covered == SLENDER) & np.isnan(scale)] = FLUTTER_UNKNOWN
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     if "F" in table:
         crushing = table["k1"] * build.crushing_shares(table.get("taper", np.ones(1)))
-        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * crushing, shape)
-        covered[(covered == SLENDER) & crushed] = CRUSHED
+        covered[(covered == SLENDER) & (table["F"] >= CRUSHED_FROM * crushing)] = CRUSHED
     if (covered != SLENDER).all():
         _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()), forces)
     axes = {name: section.given[name].array() for name in section.several}
@@ -64,8 +62,7 @@ def grid_of_arms(
         {name: np.broadcast_to(column, shape).ravel() for name, column in each.items()}
         for each in ({name: table[name] for name in names}, units)
     )
-    codes = covered.astype(np.int8).ravel()
-    failures = _failures(covered, forces)
+    codes, failures = covered.astype(np.int8).ravel(), _failures(covered, forces)
     return Points(names, tuple(columns.values()), False, over, at_points, covered=codes, failures=failures)
 
 
@@ -82,6 +79,12 @@ def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> Flutt
     if section.load_axis in RELATIVE:
         return flutter(arm)
     return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load])) if section.load else UNCOVERED
+
+
+def _with_flutter(statuses: Array, flutter: Array) -> Array:
+    """Statuses of arms, (n,), with those of a load relative to flutter; flutter: its F for each arm, (n,)."""
+    found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
+    return np.where(statuses == SLENDER, found, statuses)
 
 
 def _failures(covered: Array, forces: Sequence[FlutterForce]) -> dict[int, str]:
