@@ -1,6 +1,6 @@
 """Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -44,8 +44,9 @@ def grid_of_arms(
     units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
     forces = [_force_of(section, arm, flutter) if arm else UNCOVERED for arm in arms]
     scale = np.array([force.F for force in forces])
-    codes = _with_flutter(np.array(statuses), scale) if section.load_axis in RELATIVE else statuses
-    covered = np.broadcast_to(_along(0, codes), shape).copy()
+    if section.load_axis in RELATIVE:
+        statuses = _with_flutter(statuses, scale)
+    covered = np.broadcast_to(_along(0, statuses), shape).copy()
     if section.load:
         table["F"] = _along(0, np.where(np.isinf(scale), np.nan, scale)) * _along(1, loads)
         if section.load_axis in RELATIVE:
@@ -81,10 +82,10 @@ def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> Flutt
     return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load])) if section.load else UNCOVERED
 
 
-def _with_flutter(statuses: Array, flutter: Array) -> Array:
-    """Statuses of arms, (n,), with those of a load relative to flutter; flutter: its F for each arm, (n,)."""
+def _with_flutter(statuses: Iterable[int], flutter: Array) -> tuple[int, ...]:
+    """Statuses of arms with those of a load relative to flutter; flutter: its F for each arm, (n,)."""
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    return np.where(statuses == SLENDER, found, statuses)
+    return tuple(own if own != SLENDER else int(new) for own, new in zip(statuses, found, strict=True))
 
 
 def _failures(covered: Array, forces: Sequence[FlutterForce]) -> dict[int, str]:
