@@ -61,6 +61,9 @@ MANY = 30
 """Modes among which that of a curve is, though others grow there."""
 ROUNDING = 1e-11
 """Relative error of an eigenvalue that is solved alone."""
+BETWEEN_NODES = 1e-3
+"""Error of the least stretch, in units of its distance from 1, beside that of the tip's extrema: it is taken at
+nodes."""
 FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
 """Relative distances from a fold of a curve at which, and within which, changes are counted."""
 
@@ -635,7 +638,7 @@ def _sizes(page, v, own):
     found += ranges(page, rest, v["multiplier"], own["periods"], v["least_stretch"])
     extrema = max(
         float(np.nanmax(np.abs(own[n] - v[n]) / v["tip_y_max"]))
-        for n in ("tip_x_min", "tip_x_max", "tip_theta_max", "least_stretch")
+        for n in ("tip_x_min", "tip_x_max", "tip_theta_max")
     )
     worst = (
         relative(own["period"], v["period"]),
@@ -647,6 +650,9 @@ def _sizes(page, v, own):
     pattern = "^worst errors: period NUMBER, amplitude NUMBER, other extrema NUMBER, energy balance NUMBER, "
     pattern += "multiplier NUMBER"
     found += at_most(page, pattern, *worst)
+    stretch, error = own["least_stretch"], own["extrema_error"] * own["tip_y_max"]
+    beyond = np.abs(stretch - v["least_stretch"]) > error + BETWEEN_NODES * np.abs(1 - stretch)
+    found += [(page[0], "the least stretch is off by more than its error")] * bool(beyond.any())
     balance = float(np.nanmax(np.abs(own["injection_mean"] / own["dissipation_mean"] - 1)))
     return found + at_most(page, "energy balance NUMBER", balance)
 
