@@ -91,6 +91,16 @@ def job_from(tree: Tree) -> Job:
     return job
 
 
+def refuse_unfit(tree: Tree) -> None:
+    """Raises InputError for a config tree that `job_from` refuses, before the ranks of a run start.
+
+    Points with a load relative to flutter are left to the run, whose ranks share the search for flutter.
+    """
+    arm = validated(with_profile_read(tree, Path())).parameters.arm
+    if arm is None or arm.load_axis not in RELATIVE:
+        job_from(tree)
+
+
 def _sections(task: str) -> dict[str, Collection[str]]:
     """Known keys of each section of a task by the section's name; "" is the top level."""
     fields = CONFIGS[task].model_fields

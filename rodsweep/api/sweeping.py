@@ -18,7 +18,7 @@ from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import described, log_file
 from .answers.showing import Display, display
-from .asking import Tree, job_from, tree_of
+from .asking import Tree, job_from, refuse_unfit, tree_of
 from .dataset import open_result
 from .solving import solve_here
 
@@ -58,10 +58,10 @@ def sweep(
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = tree_of(task, keywords)
-    job = job_from(tree)
     if ranks is not None:
+        refuse_unfit(tree)
         return _on_ranks(task, tree, ranks, strict, display(progress, None, task))
-    return solve_here(job, None if strict else _warn, progress)[0]
+    return solve_here(job_from(tree), None if strict else _warn, progress)[0]
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:

@@ -1,23 +1,62 @@
-"""Variables computed by all ranks before the result file is created, because they depend on no point."""
+"""Work of all ranks before the result file is created: what no point is needed for, and what points need."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+import click
+
+from ..config.schema import Config
 from ..results.file.creation import Plan
+from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod, rods_of_flutter
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
 from ..tasks.protocol import Task
 
 
+@dataclass(slots=True)
+class _SharedWork:
+    """Work that the ranks divide, until a stop signal comes to one of them."""
+
+    team: Team
+    stop: StopRequest
+    skipped: bool = False
+    """Whether this rank has left out an item."""
+
+    def in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
+        """Results for all items, in order, on every rank; None for an item that is left out."""
+        return self.team.in_order(items, lambda item: self._unless_stopped(work, item))
+
+    def _unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
+        self.skipped = self.skipped or bool(self.stop)
+        return None if self.skipped else work(item)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether any rank has left out an item; all ranks ask together."""
+        return any(self.team.exchange(self.skipped))
+
+
 def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
     """The plan with its constants, computed by all ranks together; None if a stop signal came first."""
-    skipped = False
+    shared = _SharedWork(team, stop)
+    found = task.constants(shared.in_order)
+    return None if shared.stopped else replace(plan, constants=lambda: found)
 
-    def unless_stopped(work: Callable[[Any], Any], item: Any) -> Any:
-        nonlocal skipped
-        skipped = skipped or bool(stop)
-        return None if skipped else work(item)
 
-    found = task.constants(lambda items, work: team.in_order(items, lambda item: unless_stopped(work, item)))
-    return None if any(team.exchange(skipped)) else replace(plan, constants=lambda: found)
+def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
+    """Flutter of the rods whose load is relative to it, searched for by all ranks together.
+
+    Empty without such loads. None if a stop signal came first.
+    """
+    rods = team.on_first(lambda: rods_of_flutter(config.parameters.arm))
+    shared = _SharedWork(team, stop)
+    found = shared.in_order(rods, flutter_of_rod)
+    return None if shared.stopped else dict(zip(rods, found, strict=True))
+
+
+def say_stopped(team: Team, stop: StopRequest) -> None:
+    """Prints, on the first rank, that a stop came before the file was created; all ranks call together."""
+    signal = max(team.exchange(stop.name))
+    if team.first:
+        click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")

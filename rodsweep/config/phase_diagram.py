@@ -10,7 +10,7 @@ from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .arm.axes import AXIS_OF, FLUID
 from .axes import DEFAULTS, DiagramParameters, LinearAxes, words
 from .schema import Crossings, LinearConfig
-from .values import Axis, Strict
+from .values import Axis, Number, Strict
 
 
 class BautinAlong(LinearAxes):
@@ -30,6 +30,9 @@ class PhaseDiagramOptions(Strict):
     """Compute the criticality along Hopf curves, and where it changes; needs `curves`."""
     cycles: bool = False
     """Follow the cycles of each row, for the stable states and, with `curves`, the curves of their folds."""
+    cycle_accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-6
+    """Relative error of the period and of the largest y of each cycle; needs `cycles`. Special points are
+    located to the smaller of `cycle_accuracy` and 1e-9. A smaller number decides more states."""
     bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
         None
     )
@@ -94,6 +97,10 @@ class PhaseDiagramConfig(LinearConfig):
         return DEFAULTS["gamma1"]
 
     @property
+    def unused(self) -> dict[str, str]:
+        return {} if self.phase_diagram.cycles else {"cycle_accuracy": "cycles: true"}
+
+    @property
     def meaning(self) -> dict[str, Any]:
         """Adds the values along every row and, if curves are drawn, which axes are logarithmic."""
         meant, axes, line = super().meaning, self.parameters.axes, self.plane[0]
@@ -116,6 +123,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _only_what_the_curves_use(self) -> "PhaseDiagramConfig":
+        self.refuse_unused()
         options = self.phase_diagram
         if options.criticality and not options.curves:
             raise ValueError(

@@ -19,6 +19,8 @@ from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
+STOPPED = ("no_cycle_found", "list_full")
+"""Reasons for an end beyond which a branch goes on."""
 SAME_PLACE = 1e-9
 """Largest relative distance between two ranges that are joined."""
 
@@ -64,6 +66,11 @@ class StoredBranch:
         """Ranges of the parameter in which a cycle of the branch is stable."""
         pieces = np.flatnonzero(self.stable == 1)
         return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether the branch is followed to its end, and the stability of all its cycles is known."""
+        return self.special[-1].reason not in STOPPED and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
         """The branch from each Hopf point with known a to its first fold: (|at/at_H - 1|, y/|a|, stability).
@@ -186,6 +193,14 @@ def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], lis
         if count >= 0:
             (unstable if count else stable).append((low, high))
     return union(stable), union(unstable)
+
+
+def coexistence_is_decided(view: View, rod: int) -> bool:
+    """Whether the stability of all cycles and of the straight rod is known in the whole range."""
+    v = view.of_point(rod)
+    after = v["special_unstable_after"][v["special_kind"] == HOPF]
+    straight = int(v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
+    return straight and all(curve.is_decided for curve in curves_of(view, rod))
 
 
 def union(ranges: Iterable[Range]) -> list[Range]:

@@ -52,7 +52,10 @@ class PhaseDiagramTask(ProvedTask):
             )
         cycles = "phase_diagram.cycles adds it"
         if options.cycles:
-            cycles = f"gamma1 = {self.config.gamma1:g}; cycles on branches from the Hopf points of each row"
+            cycles = (
+                f"gamma1 = {self.config.gamma1:g}, accuracy {options.cycle_accuracy:g}; cycles on branches "
+                "from the Hopf points of each row"
+            )
         return [
             ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
             ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),
@@ -79,10 +82,8 @@ class PhaseDiagramTask(ProvedTask):
         lines = estimate_lines(rows, options.certify)
         if not options.cycles:
             return lines
-        from ..solve.branch.work import DIAGRAM_ACCURACY
-
         reach = (float(self.line[0]), float(self.line[-1]))
-        branches = estimate_branches(self.points, self.config.plane[0], reach, DIAGRAM_ACCURACY)
+        branches = estimate_branches(self.points, self.config.plane[0], reach, options.cycle_accuracy)
         return replace(lines, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
@@ -113,7 +114,12 @@ class PhaseDiagramTask(ProvedTask):
 
         options = self.config.phase_diagram
         return RowRequest(
-            self.config.plane[0], self.line, self.config.accuracy, options.certify, options.crossings
+            name=self.config.plane[0],
+            values=self.line,
+            accuracy=self.config.accuracy,
+            certify=options.certify,
+            crossings=options.crossings,
+            cycle_accuracy=options.cycle_accuracy,
         )
 
     def _with_cycles(self, request: "RowRequest") -> Solver:

@@ -8,6 +8,8 @@ from functools import cache
 from math import inf
 from typing import TypeVar
 
+import numpy as np
+
 from ..determinant.certificate.covering import cover, first_boxes
 from ..determinant.newton import Zero
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
@@ -17,6 +19,8 @@ from ..model.rod import Rod
 from ..solve.changes.unstable_modes import SHORT_OF_CRUSHED
 
 A = TypeVar("A", bound=SlenderArm)
+PlaneRod = tuple[float, float, float]
+"""(k1, k2, gamma3) of an arm that moves in one of its planes."""
 FARTHEST = 1000.0
 """Largest force of the search, in k3/L^2, unless crushed before: 25 times flutter of a filament."""
 NEAR = 200.0
@@ -26,43 +30,66 @@ DIGITS = 10
 all machines. Hence a run resumed on a different machine has the same points."""
 
 
+class FlutterUnknown(InputError):
+    """The search for the flutter that a load is relative to fails; says why."""
+
+
 def turned(arm: A) -> A:
     """The same arm, turned by 90 degrees: width and height of the rectangle exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 
+def plane_rods(arm: SlenderArm) -> list[tuple[PlaneRod, float]]:
+    """(rod in a plane with the likeliest drag, its k3/L^2 in units of the arm's) for each plane of an arm."""
+    planes = [(_in_its_plane(arm), 1.0)]
+    if arm.radius is None and arm.si.width != arm.si.height:
+        other = turned(arm)
+        scale = other.section.second_moment / arm.section.second_moment
+        planes.append((_in_its_plane(other), scale))
+    return planes
+
+
+def _in_its_plane(arm: SlenderArm) -> PlaneRod:
+    """The rod in the plane of the arm's height."""
+    return arm.k1, arm.k2, arm.gamma3_with(arm.drags[0])
+
+
 def first_flutter(arm: SlenderArm) -> float:
-    """Smallest flutter force over the planes of an arm, in its k3/L^2; inf without flutter."""
-    own = _in_its_plane(arm)
-    if arm.radius is not None or arm.si.width == arm.si.height:
-        return own
-    other = turned(arm)
-    return min(own, _in_its_plane(other) * (other.section.second_moment / arm.section.second_moment))
+    """Smallest flutter force over the planes of an arm, in its k3/L^2; inf without flutter.
 
-
-def _in_its_plane(arm: SlenderArm) -> float:
-    """Flutter force in the plane of the arm's height, in k3/L^2; inf without flutter."""
-    return first_hopf_force(arm.k1, arm.k2, arm.gamma3_with(arm.drags[0]))
+    Raises FlutterUnknown.
+    """
+    return min(first_hopf_force(*rod) * scale for rod, scale in plane_rods(arm))
 
 
 @cache
 def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
     """Smallest F at which a pair of modes becomes unstable, to DIGITS digits; inf if none up to FARTHEST.
 
-    InputError if the covering cannot exclude a smaller F.
+    FlutterUnknown if the covering cannot exclude a smaller F, or a number overflows.
     """
     path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
-    for end in (NEAR, FARTHEST):
-        boxes = first_boxes(path, 0.0, min(end, k1 * (1 - SHORT_OF_CRUSHED)))
-        if boxes is None:
-            raise InputError("the flutter that a load is relative to has no bound, so it is not found")
-        zeros, left, _ = cover(boxes, path.origin, path.direction)
-        first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
-        if any(min(box.p_from, box.p_to) < first for box in left):
-            raise InputError("the flutter that a load is relative to is not decided")
-        if first < inf:
-            return float(f"{first:.{DIGITS}g}")
+    try:
+        for end in (NEAR, FARTHEST):
+            first = _first_up_to(path, min(end, k1 * (1 - SHORT_OF_CRUSHED)))
+            if first < inf:
+                return float(f"{first:.{DIGITS}g}")
+    except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
+        why = str(error) or type(error).__name__
+        raise FlutterUnknown(f"the search for the flutter that a load is relative to fails: {why}") from error
     return inf
+
+
+def _first_up_to(path: Path, end: float) -> float:
+    """Smallest F, at most `end`, at which a pair of modes becomes unstable; inf for none."""
+    boxes = first_boxes(path, 0.0, end)
+    if boxes is None:
+        raise FlutterUnknown("the flutter that a load is relative to has no bound, so it is not found")
+    zeros, left, _ = cover(boxes, path.origin, path.direction)
+    first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
+    if any(min(box.p_from, box.p_to) < first for box in left):
+        raise FlutterUnknown("the flutter that a load is relative to is not decided")
+    return first
 
 
 def _grows(path: Path, zero: Zero) -> bool:

@@ -247,6 +247,22 @@ REFUSED_BY_TASK = [
     (diagram(F="[9, 10]"), "parameters.F starts at 9 and parameters.k1 ends at 9; the rod is crushed where"),
     (diagram(F="{start: 0, stop: 8, num: 40000000}"), "the results of one point take 0.2 GB"),
     (diagram(options="crossings: 2.0"), "phase_diagram.crossings = 2.0 is not allowed"),
+    (
+        diagram(options="cycles: true, cycle_accuracy: 1e-12"),
+        "phase_diagram.cycle_accuracy = 1e-12 is not allowed; it should be a number from 1e-11 to 0.01",
+    ),
+    (
+        diagram(options="cycles: true, cycle_accuracy: 0.1"),
+        "phase_diagram.cycle_accuracy = 0.1 is not allowed; it should be a number from 1e-11 to 0.01",
+    ),
+    (
+        diagram(options="cycles: true, cycle_accuracy: fine"),
+        "phase_diagram.cycle_accuracy: 'fine' is not a number",
+    ),
+    (
+        diagram(options="cycle_accuracy: 1e-8"),
+        "phase_diagram.cycle_accuracy is given but not used; set phase_diagram.cycles: true or remove it",
+    ),
     (diagram(options="curves: no"), "phase_diagram.curves = 'no' is not allowed; it should be true or false"),
     (config("modes", options="modes: 101"), "modes.modes = 101 is not allowed; it should be a whole number"),
     (

@@ -36,6 +36,7 @@ STATUS_COVERS = {
     "shorter than 10 radii": "not_slender",
     "crushed": "crushed",
     "no flutter": "no_flutter",
+    "flutter unknown": "flutter_unknown",
     "no wall": "no_wall",
 }
 

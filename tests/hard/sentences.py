@@ -61,6 +61,9 @@ MANY = 30
 """Modes among which that of a curve is, though others grow there."""
 ROUNDING = 1e-11
 """Relative error of an eigenvalue that is solved alone."""
+BETWEEN_NODES = 1e-3
+"""Error of the least stretch, in units of its distance from 1, beside that of the tip's extrema: it is taken at
+nodes."""
 FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
 """Relative distances from a fold of a curve at which, and within which, changes are counted."""
 
@@ -94,6 +97,7 @@ def random_sweep(index):
         if task == "phase_diagram":
             rows = np.sort(_drawn(random, varied, 3)).tolist()
             keywords |= {varied: rows if len(rows) > 1 else [*rows, 1.0]} | _of_diagrams(random)
+    _rarely_asked(np.random.default_rng([35, index]), task, keywords)
     if "arm" in keywords and task != "phase_diagram":
         _over_drag(np.random.default_rng([34, index]), keywords["arm"])
     if task in ("thresholds", "criticality"):
@@ -158,6 +162,20 @@ def _over_drag(random, arm):
         arm["pressure_over_flutter"] = np.sort(random.uniform(0.5, 2, 2)).round(3).tolist()
 
 
+def _rarely_asked(random, task, keywords):
+    """Add, in some cases, options without which a page lacks sentences or states more."""
+    if random.random() > 0.3:
+        return
+    if task == "limit_cycle":
+        keywords |= {"time": "tau1"} if random.random() < 0.5 else {"method": "integration"}
+    if task in ("thresholds", "criticality"):  # lists that are full
+        keywords["crossings"] = int(random.integers(1, 3))
+    if task == "spectrum" and isinstance(keywords.get("F"), list):  # rods that are pulled
+        keywords["F"] = [-F for F in keywords["F"][::-1]] if random.random() < 0.3 else keywords["F"]
+    if keywords.get("cycles"):
+        keywords["cycle_accuracy"] = float(10 ** random.uniform(-7, -4))
+
+
 def _drawn(random, name, count):
     """Sorted values of a parameter, in and out of its limit."""
     if name == "gamma3":
@@ -177,7 +195,8 @@ def wrong_sentences(task, keywords):
     """(lines with a wrong number or one that nothing reads, with what is wrong; how many were read)."""
     view = solved(task, keywords)
     page = page_of(view)
-    fine = solved(task, keywords | {"accuracy": FINE[task]}) if task in FINE else view
+    better = {name: value for name, value in keywords.items() if (name, value) != ("method", "integration")}
+    fine = solved(task, better | {"accuracy": FINE[task]}) if task in FINE else view
     found = CHECKS[task](view, page, keywords, fine) + table_sentences(view, page, keywords)
     if view.quantities:
         found += arm_sentences(view, page, fine)
@@ -421,6 +440,10 @@ def _crossing_sentences(rod, crossings, page):
     return found
 
 
+HIDDEN = "; NUMBER more (?:is|are) not stored"
+"""What a page says of changes for which a list has no room."""
+
+
 def _search_sentences(view, page, every, noun):
     """How far was searched, how many crossings are stored, how accurate these are; every: the true ones."""
     v, rods = view.variables, len(every)
@@ -436,6 +459,7 @@ def _search_sentences(view, page, every, noun):
             found.append((page[0], f"{there.sum()} crossings are stored of {len(true)}"))
         off = max([off, *(min(abs(c.at - x) for c in true) for x in at[there] if true)])
     numbers = stored.sum(axis=1)
+    found += counts(page, HIDDEN, sum(map(len, every)) - numbers.sum())
     for line, match in read(
         page, rf"^crossings stored: NUMBER, at most NUMBER on a {noun}(?:; absolute error at most NUMBER)?"
     ):
@@ -448,7 +472,9 @@ def _search_sentences(view, page, every, noun):
         found.append((line, "; ".join(why)))
     if "F_end" in v:
         found += ranges(page, "^searched up to F = RANGE$", v["F_end"])
-        found += ranges(page, "^searched up to F = RANGE; the list of crossings is proved", v["F_end"])
+        found += ranges(
+            page, "^searched up to F = RANGE; the list of crossings is (?:not )?proved", v["F_end"]
+        )
         found += ranges(page, "^no threshold up to F = RANGE", v["F_end"])
     return found
 
@@ -462,6 +488,7 @@ def criticality_sentences(view, page, keywords, fine):
     )
     proved = (int(own["certified"].sum()), count)
     found += counts(page, "list of Hopf points is proved complete at NUMBER of NUMBER rod", *proved)
+    found += counts(page, HIDDEN, v["crossing_count"].sum() - (own["crossing_kind"] > 0).sum())
     if count == 1:
         return found + _normal_forms(page, {name: v[name].ravel() for name in v})
     having = (v["crossing_count"] > 0).ravel()
@@ -474,10 +501,10 @@ def criticality_sentences(view, page, keywords, fine):
     first = [v[name][..., 0] for name in ("crossing_F", "amplitude_coefficient")]
     found += ranges(page, "first Hopf point: .*; F = RANGE, a = RANGE L", *first)
     every = [v[name] for name in ("amplitude_coefficient", "frequency_slope")]
-    found += ranges(page, "all Hopf points: .*; a = RANGE L, b = RANGE L", *every)
+    found += ranges(page, "(?:all|stored) Hopf points: .*; a = RANGE L, b = RANGE L", *every)
     for words, sides in (
         ("first Hopf point", v["criticality"][..., 0]),
-        ("all Hopf points", v["criticality"]),
+        ("(?:all|stored) Hopf points", v["criticality"]),
     ):
         for side, word in ((-1, "supercritical"), (1, "subcritical"), (0, "undecided")):
             found += counts(page, rf"^{words}: .*?NUMBER {word}", (sides == side).sum())
@@ -600,6 +627,7 @@ def cycle_sentences(view, page, keywords, fine):
 def _sizes(page, v, own):
     """The periods, sizes and powers of the cycles of several points, and their largest errors."""
     found = ranges(page, "^period: RANGE tau2; largest y of the tip: RANGE L", v["period"], v["tip_y_max"])
+    found += ranges(page, "^period: RANGE tau1", v["period_tau1"]) if "period_tau1" in v else []
     ratio = v["frequency"] / v["linear_frequency"]
     of_mode = "^frequency RANGE rad/tau2, over that of the leading mode RANGE"
     found += ranges(page, of_mode, v["frequency"], ratio)
@@ -610,7 +638,7 @@ def _sizes(page, v, own):
     found += ranges(page, rest, v["multiplier"], own["periods"], v["least_stretch"])
     extrema = max(
         float(np.nanmax(np.abs(own[n] - v[n]) / v["tip_y_max"]))
-        for n in ("tip_x_min", "tip_x_max", "tip_theta_max", "least_stretch")
+        for n in ("tip_x_min", "tip_x_max", "tip_theta_max")
     )
     worst = (
         relative(own["period"], v["period"]),
@@ -622,6 +650,9 @@ def _sizes(page, v, own):
     pattern = "^worst errors: period NUMBER, amplitude NUMBER, other extrema NUMBER, energy balance NUMBER, "
     pattern += "multiplier NUMBER"
     found += at_most(page, pattern, *worst)
+    stretch, error = own["least_stretch"], own["extrema_error"] * own["tip_y_max"]
+    beyond = np.abs(stretch - v["least_stretch"]) > error + BETWEEN_NODES * np.abs(1 - stretch)
+    found += [(page[0], "the least stretch is off by more than its error")] * bool(beyond.any())
     balance = float(np.nanmax(np.abs(own["injection_mean"] / own["dissipation_mean"] - 1)))
     return found + at_most(page, "energy balance NUMBER", balance)
 

@@ -42,7 +42,7 @@ def time_is_known(view):
 
 def is_change(rod, name, at, kind):
     """Whether the straight rod changes in this way where a parameter has a value."""
-    before, after = (leading(replace(rod, **{name: at * (1 + side * BESIDE)})) for side in (-1, 1))
+    before, after = (leading(replace(rod, **{name: at + side * BESIDE * abs(at)})) for side in (-1, 1))
     if kind == "onset":
         return before[0].imag == before[1].imag == 0 and after[0].imag > 0
     signs = {"hopf": (-1, 1), "restabilization": (1, -1)}[kind]

@@ -20,6 +20,7 @@ from rodsweep.model.arm.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effec
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.arm_grid import grid_of_arms
+from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.points import same_rods
 from rodsweep.verdict.flutter import Kind
 from rodsweep.verdict.relative import first_flutter, first_hopf_force
@@ -111,11 +112,13 @@ def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():
 def test_an_arm_without_flutter_is_a_point_with_a_status():
     section = ArmSection(**SILICONE | {"length": ["10 cm", "14 cm"], "pressure": "1.2 of flutter"})
     stiff = SlenderArm(**SILICONE).k1
-    grid = grid_of_arms(section, {}, ("F", "k1"), lambda arm: 36.0 if arm.k1 == stiff else np.inf)
+    grid = grid_of_arms(
+        section, {}, ("F", "k1"), lambda arm: FlutterForce(36.0 if arm.k1 == stiff else np.inf)
+    )
     assert grid.covered is not None and grid.covered.tolist() == [NO_FLUTTER, 0]
     assert np.isnan(grid.by_name["F"][0])
     with pytest.raises(ValueError, match="relative to flutter, which no arm has with the likeliest drag"):
-        grid_of_arms(section, {}, ("F", "k1"), lambda arm: np.inf)
+        grid_of_arms(section, {}, ("F", "k1"), lambda arm: FlutterForce(np.inf))
 
 
 def test_shards_ranks_and_an_extension_give_the_same_file(command):

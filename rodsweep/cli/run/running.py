@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from ...config import load_config
 from ...results.file import provenance
 from ...results.file.store import Store
 from ...results.file.view import read_view
@@ -15,11 +16,11 @@ from ...sweep.loop import Share
 from ...sweep.points.ranges import IndexRange, total
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
-from ...tasks.running.job import Job, make_job
+from ...tasks.running.job import Job, job_of
 from ...tasks.running.plan import plan_of
 from ...tasks.running.unforeseen import Log, guarded
 from ...wording import counted
-from ..beforehand import planned_beforehand
+from ..beforehand import flutter_beforehand, planned_beforehand, say_stopped
 from .closing import RunEnd
 from .contribution import MAX_FAILURES_PRINTED, Contribution, history_of, of_the_last_run
 from .joint import JointDue, JointWork
@@ -35,7 +36,12 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
     require_directory()
     team = Team()
     with team.aborting_together():
-        job = team.on_first(lambda: make_job(path, options.overrides))
+        config, text = team.on_first(lambda: load_config(path, options.overrides))
+        flutter = flutter_beforehand(config, team, stop)
+        if flutter is None:
+            say_stopped(team, stop)
+            return CONTINUE
+        job = team.on_first(lambda: job_of(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
         return _Run(team, job, output, options, stop).run()
 
@@ -78,8 +84,8 @@ class _Run:
         if self.team.on_first(self._creates):
             plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
-                names = self.team.exchange(self.stop.name)
-                return self.team.on_first(lambda: self._stopped_beforehand(max(names)))
+                say_stopped(self.team, self.stop)
+                return CONTINUE
             self.plan = plan
         missing = self.team.on_first(self._open)
         units, count = self.work.units(missing)
@@ -104,12 +110,6 @@ class _Run:
     def _creates(self) -> bool:
         """Whether a file will be created, as far as can be decided before opening it."""
         return self.options.fresh or self.options.extend or not self.output.exists()
-
-    @staticmethod
-    def _stopped_beforehand(signal: str) -> int:
-        """Prints that a stop came before the file was created; returns the exit status."""
-        click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")
-        return CONTINUE
 
     def _lacks_curves(self, missing: int) -> bool:
         """Whether only the variables that all points together determine are missing; on the first rank."""

@@ -26,10 +26,10 @@ FLUID = ("viscosity", "fluid_density", "density_difference")
 whether the model applies."""
 SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID, "drag")
 """All quantities of an arm except the load."""
-SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER = 0, 100, 101, 102, 103
+SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 101, 102, 103, 104
 """Codes for whether a rod covers a point: covered; arm too short for the drag of slender bodies; F reaches
-k1; bore as wide as the arm; load relative to a flutter threshold that does not exist. All but the first are
-statuses, numbered above every task's own statuses."""
+k1; bore as wide as the arm; load relative to a flutter threshold that does not exist, or that the search does
+not find. All but the first are statuses, numbered above every task's own statuses."""
 MOST_POINTS = 1_000_000
 """Maximum number of points of a grid over an arm's quantities, whose parameters are all kept in memory."""
 

@@ -6,11 +6,13 @@ from itertools import combinations
 
 import numpy as np
 
+from ...arrays import Array
 from ...results.file.view import View
 from ...wording import counted, is_or_are, some_of
 from ..branch_curves import (
     Range,
     StoredBranch,
+    coexistence_is_decided,
     count_incomplete_branches,
     curves_of,
     followed_parameter,
@@ -21,6 +23,7 @@ from ..branch_curves import (
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
 from .summary_lines import SummaryLines, at_point, completeness
+from .thresholds import not_known
 
 NAMED_RODS = 8
 """Largest number of rods listed individually."""
@@ -75,33 +78,45 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
     elif not curves:
         yield f"no Hopf point in the range of {along}, so that no branch begins there"
     for number, curve in enumerate(curves, 1):
-        cycles = curve.cycles
-        sizes = curve.y[cycles]
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
-        extent = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
-        yield f"branch {number}, {_ends(curve, along)}: {counted(int(cycles.sum()), 'cycle')}, {extent}"
-        for special in curve.special:
-            if special.kind in ("hopf", "end"):
-                continue
-            if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
-                continue
-            at = to_error(special.at, special.error)
-            kind = special.kind.replace("_", " ")
-            kind += f", where branch {special.meets} meets it," * (special.meets > 0)
-            period = to_error(special.period, special.period * special.period_error)
-            y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
-            size = f"period {period} tau2, largest tip y {y} L"
-            yield f"  {kind} at {along} = {at}, {size}"
+        yield f"branch {number}, {_ends(curve, along)}: {_extent(curve, errors, along)}"
+        yield from _special_of_branch(curve, along)
         if curve.stable_ranges:
             yield f"  stable cycles at {along} = {listed(curve.stable_ranges, errors_of([curve]))}"
         else:
-            yield "  no stable cycle"
+            yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if curves and not hidden:
         common = coexistence(view, rod)
-        words = f"{along} = {listed(common, errors_of(curves))}" if common else "nowhere in the range"
+        nowhere = "nowhere in the range" if coexistence_is_decided(view, rod) else "not known"
+        words = f"{along} = {listed(common, errors_of(curves))}" if common else nowhere
         yield f"{BESIDE_STRAIGHT}: {words}"
         if pairs := two_cycles(view, rod):
             yield f"{TWO_CYCLES}: {along} = {listed(pairs, errors_of(curves))}"
+
+
+def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
+    """Number of cycles of a branch with their ranges; errors: relative, of the largest tip y, (cycles,)."""
+    cycles = curve.cycles
+    if not cycles.any():
+        return "no cycle is stored"
+    sizes = curve.y[cycles]
+    ranges = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
+    return f"{counted(int(cycles.sum()), 'cycle')}, {ranges}"
+
+
+def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
+    """Yields a line about each special point between the ends of a branch."""
+    for special in curve.special:
+        if special.kind in ("hopf", "end"):
+            continue
+        if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
+            continue
+        at = to_error(special.at, special.error)
+        kind = special.kind.replace("_", " ")
+        kind += f", where branch {special.meets} meets it," * (special.meets > 0)
+        period = to_error(special.period, special.period * special.period_error)
+        y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
+        yield f"  {kind} at {along} = {at}, period {period} tau2, largest tip y {y} L"
 
 
 def _ends(curve: StoredBranch, along: str) -> str:
@@ -197,6 +212,8 @@ def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
     complete = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
+    if not complete:
+        return
     yield from _rods_with(view, complete, BESIDE_STRAIGHT, coexistence)
     if any(two_cycles(view, rod) for rod in complete):
         yield from _rods_with(view, complete, TWO_CYCLES, two_cycles)
@@ -208,7 +225,9 @@ def _rods_with(
     """Yields the number of rods with a property, and ranges of the parameter for some rods."""
     along = followed_parameter(view)
     having = [(rod, ranges) for rod in rods if (ranges := ranges_of(view, rod))]
-    yield f"{words} at {some_of(len(having), len(rods), 'rod')}"
+    others = set(rods).difference(rod for rod, _ in having)
+    unknown = sum(not coexistence_is_decided(view, rod) for rod in others)
+    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{not_known(unknown)}"
     for rod, ranges in having[:NAMED_RODS]:
         where = f"{along} = {listed(ranges, errors_of(curves_of(view, rod)))}"
         yield f"  {': '.join(filter(None, (at_point(view, rod), where)))}"

@@ -10,7 +10,7 @@ from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import rounded, span, to_error
 from .summary_lines import SummaryLines, completeness, in_brackets, region
-from .thresholds import not_stored
+from .thresholds import not_known, not_stored
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
@@ -32,7 +32,8 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}"]
+    unknown = int((v["crossing_count"][done] < 0).sum())
+    lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])
     a, b = (_relative(v, name, done) for name in ("amplitude_coefficient", "frequency_slope"))
@@ -47,7 +48,8 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         f"{_worst(v['growth_slope_error'][done])}, a {_worst(v['amplitude_coefficient_error'][done])}, b "
         f"{_worst(v['frequency_slope_error'][done])}",
     ]
-    every = f"all Hopf points: {_counts(side)}; a = {span(*a)} L, b = {span(*b)} L^2/(k3 tau2)"
+    which = "stored" if (v["crossing_count"][done] > known.sum(axis=-1)).any() else "all"
+    every = f"{which} Hopf points: {_counts(side)}; a = {span(*a)} L, b = {span(*b)} L^2/(k3 tau2)"
     return SummaryLines(lines, trust, [every])
 
 

@@ -61,9 +61,10 @@ def agreement_lines(view: View, line: str) -> list[str]:
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
     within = error_text(float(v["curve_agreement"]))
+    near = f"crossings on rows lie within {within} of them, over {line}; " * (hopf + double > 0)
     lines = [
-        f"curves: {hopf} of Hopf points, {double} of double eigenvalues; crossings on rows lie within "
-        f"{within} of them, over {line}; {_on_none(int(v['curves_untraced']))}"
+        f"curves: {hopf} of Hopf points, {double} of double eigenvalues; {near}"
+        f"{_on_none(int(v['curves_untraced']))}"
     ]
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))

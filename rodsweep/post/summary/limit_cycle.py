@@ -100,10 +100,13 @@ def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
     y = float(v["tip_y_max"].max())
     multiplier = to_error(v["multiplier"].max(), v["multiplier_error"].max())
     verdict = "below 1: the cycle is stable in the plane" if stable else "above 1: the cycle is unstable"
+    stability = f"largest nontrivial Floquet multiplier: {multiplier}; {verdict}"
+    if np.isnan(v["multiplier"]).all():
+        stability = "the motion in time settles on the cycle; no Floquet multiplier is computed"
     return [
         f"period: {to_error(period, period * v['period_error'].max())} tau2",
         f"largest y of the tip: {to_error(y, y * v['amplitude_error'].max())} L",
-        f"largest nontrivial Floquet multiplier: {multiplier}; {verdict}",
+        stability,
     ]
 
 

@@ -1,5 +1,7 @@
 """Phase diagrams in `rodsweep show`: shares of the classes in the plane, and changes on the rows."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
@@ -16,6 +18,8 @@ from .thresholds import cost_lines, search_lines
 
 FLUTTER = next(value for value, word in CLASSES if word == "flutter")
 """Number of the class flutter."""
+UNDECIDED = next(value for value, word in CLASSES if word == "undecided")
+"""Number of the class undecided."""
 BOTH = next(value for value, word in STABLE_STATES if word == "both")
 """Number of the stable states where straight rod and cycle are both stable."""
 CHANGES_OF_CYCLES = {
@@ -117,6 +121,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)
+    unknown = done & ~_all_stored(v)
     for number, word in enumerate(CROSSING_KINDS):
         of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
         on_row = of_kind.any(axis=-1)
@@ -124,16 +129,25 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
             first = of_kind & (of_kind.cumsum(axis=-1) == 1)
             again = of_kind & ~first
             at, later = (span(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
-            text = f"{word}: on {some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
+            least = "at least " * bool((unknown & ~on_row).any())
+            text = f"{word}: on {least}{some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
             text += f", {row} = {span(of_row[on_row])}"
             if again.any():
-                text += f"; again on {int(again.any(axis=-1).sum())}, {line} = {later}"
+                least = "at least " * bool(unknown.any())
+                text += f"; again on {least}{int(again.any(axis=-1).sum())}, {line} = {later}"
             lines.append(text)
     flutters = (v["class"] == FLUTTER).any(axis=-1)
-    if (done & ~flutters).any() and (done & flutters).any():
-        with_it, without = (span(of_row[done & mask]) for mask in (flutters, ~flutters))
+    never = ~flutters & (v["class"] != UNDECIDED).all(axis=-1)
+    if (done & never).any() and (done & flutters).any():
+        with_it, without = (span(of_row[done & mask]) for mask in (flutters, never))
         lines.append(f"flutter on the rows {row} = {with_it}; on none of {row} = {without}")
     return lines
+
+
+def _all_stored(v: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Mask of the rows, of their shape, whose list of changes has all changes that there are."""
+    stored = (v["crossing_kind"] > 0).sum(axis=-1)
+    return (v["crossing_count"] == stored) & ~np.isfinite(v["open_from"])
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:

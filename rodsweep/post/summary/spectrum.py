@@ -14,9 +14,9 @@ HOW_FOUND = (
     "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
     "eigenvalue changes so between two forces of the file; `task: thresholds` proves that none is missing"
 )
+"""Explanation of the forces in `threshold_lines`."""
 NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
 """Explanation of the intervals of force for arms that are not uniform or not of linear material."""
-"""Explanation of the forces in `threshold_lines`."""
 PROOFS = {True: "proved by a winding number", False: "not proved"}
 """Words for the proof of the number of unstable modes at a single point."""
 

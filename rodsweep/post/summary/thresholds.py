@@ -38,15 +38,18 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
     found = np.isfinite(F)
     rods = int(done.sum())
+    searched = v["crossing_count"].ravel() >= 0
+    decided = searched & ~np.isfinite(v["open_from"].ravel())
+    unknown = not_known(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
-        return f"{words}: at none of {counted(rods, 'rod')}"
+        return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
     low = int(np.nanargmin(F))
     high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
     places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
     where = f"all {counted(rods, 'rod')}" if found.sum() == rods else some_of(int(found.sum()), rods, "rod")
-    return f"{words}: F = {forces}, at {where}; {noun} {span(v[rate][done])} {unit}"
+    return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
@@ -70,7 +73,8 @@ def crossing_lines(view: View) -> list[str]:
         lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
     if not lines and v["crossing_count"][0] < 0:
         return ["its thresholds are not known"]
-    return lines or [f"no threshold up to F = {v['F_end'][0]:.15g}"]
+    none = "no threshold is located" if np.isfinite(v["open_from"][0]) else "no threshold"
+    return lines or [f"{none} up to F = {v['F_end'][0]:.15g}"]
 
 
 def trust_of_one(view: View) -> list[str]:
@@ -84,6 +88,11 @@ def trust_of_one(view: View) -> list[str]:
     if np.isfinite(open_from):
         lines.append(f"undecided: F = {open_from:.9g} to {open_to:.9g}")
     return lines
+
+
+def not_known(count: int) -> str:
+    """Clause on rods whose search failed or left a range open; empty for none."""
+    return f", not known at {counted(count, 'rod')}" if count else ""
 
 
 def not_stored(hidden: int) -> str:

@@ -107,6 +107,15 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
         real("cycle_special_error", unit, error, CYCLE_SPECIAL),
         real("cycle_special_period", "tau2", f"period of the cycle {at}", CYCLE_SPECIAL),
         real("cycle_special_tip_y_max", "L", amplitude, CYCLE_SPECIAL),
+        *(
+            real(
+                f"cycle_special_{name}_error",
+                "1",
+                f"estimate of the relative error of cycle_special_{name}",
+                CYCLE_SPECIAL,
+            )
+            for name in ("period", "tip_y_max")
+        ),
     )
 
 

@@ -19,7 +19,6 @@ from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
 from .special.point import EndReason, SpecialPoint
-from .work import DIAGRAM_ACCURACY
 
 MOST_CYCLES = 500
 """Of the branches of one row."""
@@ -108,7 +107,7 @@ def row_branches(
         along=request.name,
         start=float(request.values[0]),
         stop=float(request.values[-1]),
-        accuracy=DIAGRAM_ACCURACY,
+        accuracy=request.cycle_accuracy,
         certify=request.certify,
         cycles=MOST_CYCLES,
         special=special,

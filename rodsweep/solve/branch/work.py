@@ -10,9 +10,6 @@ from collections.abc import Sequence
 WITHIN_A_BRANCH, AMONG_BRANCHES = 0.75, 0.5
 """The two exponents."""
 
-DIAGRAM_ACCURACY = 1e-6
-"""Relative, of cycles of a diagram: stability is told as at 1e-7; special points are located to 1e-9."""
-
 Range = tuple[float, float]
 """The lowest and highest coordinate of the parameter."""
 

@@ -44,9 +44,12 @@ class RowRequest:
     name: str
     values: Array
     accuracy: float
+    """Relative error of the changes."""
     certify: bool
     crossings: int
     """Most changes that are kept."""
+    cycle_accuracy: float = 1e-6
+    """Relative error of the period and of the largest y of each cycle, where cycles are asked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

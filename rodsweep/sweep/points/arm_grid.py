@@ -1,21 +1,24 @@
 """Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
-from ...config.arm.axes import CRUSHED, NO_FLUTTER, SLENDER
+from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER
 from ...config.arm.section import ArmSection, UncoveredArm
 from ...model.arm.arm import CRUSHED_FROM, SlenderArm
 from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from .flutter_forces import FlutterForce
 from .points import Points
 
-FlutterOf = Callable[[SlenderArm], float]
-"""Function from an arm to the F of first flutter with the likeliest drag; inf without flutter."""
+FlutterOf = Callable[[SlenderArm], FlutterForce]
+"""Function from an arm to its first flutter with the likeliest drag."""
+UNCOVERED = FlutterForce(np.nan)
+"""Stands for the force of an arm without a rod."""
 
 
 def grid_of_arms(
@@ -39,28 +42,29 @@ def grid_of_arms(
         for name in all_but("F", NONLINEAR_PARAMETERS)
     }
     units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
+    forces = [_force_of(section, arm, flutter) if arm else UNCOVERED for arm in arms]
+    scale = np.array([force.F for force in forces])
+    if section.load_axis in RELATIVE:
+        statuses = _with_flutter(statuses, scale)
     covered = np.broadcast_to(_along(0, statuses), shape).copy()
     if section.load:
-        scale = _along(0, [_force_of(section, arm, flutter) if arm else np.nan for arm in arms])
-        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
+        table["F"] = _along(0, np.where(np.isinf(scale), np.nan, scale)) * _along(1, loads)
         if section.load_axis in RELATIVE:
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
-            covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     if "F" in table:
         crushing = table["k1"] * build.crushing_shares(table.get("taper", np.ones(1)))
-        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * crushing, shape)
-        covered[(covered == SLENDER) & crushed] = CRUSHED
+        covered[(covered == SLENDER) & (table["F"] >= CRUSHED_FROM * crushing)] = CRUSHED
     if (covered != SLENDER).all():
-        _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()))
+        _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()), forces)
     axes = {name: section.given[name].array() for name in section.several}
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
     columns, at_points = (
         {name: np.broadcast_to(column, shape).ravel() for name, column in each.items()}
         for each in ({name: table[name] for name in names}, units)
     )
-    codes = covered.astype(np.int8).ravel()
-    return Points(names, tuple(columns.values()), False, over, at_points, covered=codes)
+    codes, failures = covered.astype(np.int8).ravel(), _failures(covered, forces)
+    return Points(names, tuple(columns.values()), False, over, at_points, covered=codes, failures=failures)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
@@ -71,16 +75,34 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
         return None, error.status
 
 
-def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> float:
-    """F of a load of 1 on an arm; the load is in SI units or relative to flutter."""
+def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> FlutterForce:
+    """F of a load of 1 on an arm; the load is in SI units or relative to flutter, or there is none."""
     if section.load_axis in RELATIVE:
         return flutter(arm)
-    return 1.0 / getattr(arm, SCALE_OF[str(section.load)])
+    return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load])) if section.load else UNCOVERED
 
 
-def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool) -> None:
+def _with_flutter(statuses: Iterable[int], flutter: Array) -> tuple[int, ...]:
+    """Statuses of arms with those of a load relative to flutter; flutter: its F for each arm, (n,)."""
+    found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
+    return tuple(own if own != SLENDER else int(new) for own, new in zip(statuses, found, strict=True))
+
+
+def _failures(covered: Array, forces: Sequence[FlutterForce]) -> dict[int, str]:
+    """Why no flutter is found, by flat index; covered: codes over (arms, loads, replaced parameters)."""
+    unknown = np.flatnonzero(covered == FLUTTER_UNKNOWN)
+    arms = unknown // (covered.size // len(covered))
+    return {int(index): forces[arm].failure for index, arm in zip(unknown, arms, strict=True)}
+
+
+def _refuse_all(
+    section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Sequence[FlutterForce]
+) -> None:
     """Raises ValueError with the cause at the first point; no_flutter: whether some arm does not flutter."""
     section.made(section.firsts, loaded=True)
+    for force in forces:
+        if force.failure:
+            raise ValueError(f"parameters.arm.{section.load}: {force.failure}")
     if no_flutter:
         raise ValueError(
             f"parameters.arm.{section.load} is relative to flutter, which no arm has with the likeliest drag"

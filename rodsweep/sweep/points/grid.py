@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +10,14 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
+from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...errors import InputError
-from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...model.arm.arm import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
-from .arm_grid import grid_of_arms
+from .arm_grid import FlutterOf, grid_of_arms
+from .flutter_forces import FlutterForces, flutter_of_arm, flutter_of_rod, rods_of_flutter
 from .lists import read_points
 from .points import Points
 
@@ -26,8 +29,11 @@ def grid_size(config: Config) -> int:
     return math.prod(config.parameters.axes[name].size for name in config.names)
 
 
-def points_of(config: Config, directory: Path) -> Points:
-    """Points of the sweep of a config; raises InputError for any value outside the model."""
+def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
+    """Points of the sweep of a config; raises InputError for any value outside the model.
+
+    flutter: of all rods of `rods_of_flutter`, where it is known; else it is searched for here.
+    """
     parameters = config.parameters
     for name, value in parameters.numbers.items():
         refuse_outside(PARAMETERS[name].allowed, name, (value,))
@@ -39,7 +45,9 @@ def points_of(config: Config, directory: Path) -> Points:
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:
-            return grid_of_arms(parameters.arm, axes, config.names, _first_flutter, config.build)
+            return grid_of_arms(
+                parameters.arm, axes, config.names, _flutter_in(parameters.arm, flutter), config.build
+            )
         except ValueError as error:
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.names}
@@ -65,11 +73,11 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
-def _first_flutter(arm: SlenderArm) -> float:
-    """F at which an arm first flutters in any plane; inf without flutter. Imports the solver on demand."""
-    from ...verdict.relative import first_flutter
-
-    return first_flutter(arm)
+def _flutter_in(section: ArmSection, known: FlutterForces | None) -> FlutterOf:
+    """Function from an arm of a section to its first flutter, which is searched for where it is not known."""
+    if known is None:
+        known = {rod: flutter_of_rod(rod) for rod in rods_of_flutter(section)}
+    return partial(flutter_of_arm, known=known)
 
 
 def refuse_outside(

@@ -42,6 +42,8 @@ class Points:
     """Law and profile of all rods."""
     covered: NDArray[np.int8] | None = None
     """Codes of `rodsweep.config.arm.axes`: whether a rod covers each point of an arm, (points,)."""
+    failures: dict[int, str] = field(default_factory=dict)
+    """Why the flutter of a relative load is not found, by the flat index of the point."""
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -1,14 +1,14 @@
 """Points of an arm: a status where no rod covers a point, and one solve for all points with equal rods."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm.axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
+from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
 from ...model.arm.drag import LEAST_SLENDERNESS
 from ...model.arm.neglected import Validity
 from ...results.layouts.arm import VALIDITY
@@ -41,6 +41,10 @@ class NoRod(PointStatus):
         "the load is relative to flutter, and with the likeliest drag the arm does not flutter, so nothing "
         "is computed",
         True,
+    )
+    flutter_unknown = (
+        FLUTTER_UNKNOWN,
+        "the load is relative to flutter, which the search does not find, so nothing is computed",
     )
     no_wall = NO_WALL, "the bore is as wide as the arm, so nothing is computed", True
 
@@ -128,17 +132,18 @@ def around(solver: Solver, points: Points, layout: Layout) -> Solver:
     """A solver that skips points without a rod; their variables get fill values."""
     if points.covered is None or not points.covered.any():
         return solver
-    return _Around(solver, points.covered, layout).solver()
+    return _Around(solver, points.covered, points.failures, layout).solver()
 
 
 @dataclass(frozen=True, slots=True)
 class _Around:
     """A solver for points with and without rods; `covered`, (points,), has the status of points without a
-    rod.
+    rod. failures: why, where a status does not say all.
     """
 
     inner: Solver
     covered: NDArray[np.int8]
+    failures: Mapping[int, str]
     layout: Layout
 
     def solver(self) -> Solver:
@@ -149,7 +154,11 @@ class _Around:
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.covered[index] == SLENDER:
             return solve()
-        return Uncovered(next(status for status in NoRod if status == self.covered[index])), None
+        return Uncovered(self._status(index), self.failures.get(index, "")), None
+
+    def _status(self, index: int) -> NoRod:
+        """Status of a point without a rod."""
+        return next(status for status in NoRod if status == self.covered[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, Uncovered):
@@ -171,9 +180,14 @@ class _Around:
         found = self.inner.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column
-        succeeded = np.ones(len(indices), bool)
+        succeeded = covered != FLUTTER_UNKNOWN
         if found:
             succeeded[places] = found.succeeded
-        return StretchResult(
-            values, succeeded, lambda i: found.message(int(np.searchsorted(places, i))) if found else ""
-        )
+
+        def message(i: int) -> str:
+            if covered[i] != SLENDER:
+                index = int(indices[i])
+                return f"{self._status(index).name} {self.failures.get(index, '')}"
+            return found.message(int(np.searchsorted(places, i))) if found else ""
+
+        return StretchResult(values, succeeded, message)

@@ -24,8 +24,8 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     parameter.
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
-    at = {f"cycle_special_{line}": "at"}
-    rows = [recorded(variables, point, prefix="cycle_special_", names=at) for point in result.special]
+    own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
+    rows = [recorded(variables, point, prefix="cycle_special_", names=own) for point in result.special]
     values: dict[str, Any] = listed(variables, rows, MAX_CYCLE_SPECIAL)
     values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}

@@ -14,6 +14,7 @@ from ...errors import InputError
 from ...results.layouts import LAYOUTS, layout_of
 from ...results.layouts.arm import at_points, in_si, quantities_of
 from ...results.layouts.variables import Filled, Layout
+from ...sweep.points.flutter_forces import FlutterForces
 from ...sweep.points.grid import grid_size, points_of
 from ...sweep.points.points import Points
 from ...sweep.points.stretches import StretchResult
@@ -101,9 +102,11 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
     return job_of(path, *load_config(path, overrides))
 
 
-def job_of(path: Path, config: Config, text: str) -> Job:
+def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None = None) -> Job:
     """The job of a config with its YAML text. A file of points is searched relative to the folder of
     `path`.
+
+    flutter: what `points_of` takes.
     """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_A_VALUE > memory():
@@ -124,5 +127,5 @@ def job_of(path: Path, config: Config, text: str) -> Job:
             f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
             f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
         )
-    points = replace(points_of(config, path.parent), build=config.build)
+    points = replace(points_of(config, path.parent, flutter), build=config.build)
     return Job(path, config, text, points, TASKS[config.task](config, points))

@@ -11,6 +11,7 @@ from contents import content, same
 from surveyed import survey_only
 from test_paper import stated
 
+import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
@@ -201,6 +202,39 @@ def test_check_says_that_cycles_are_nonlinear(command):
     told = " ".join(command("check", "c.yaml").stdout.split())
     assert "nonlinear motion yes of the cycles" in told
     assert "gravity, inertia no" in told
+
+
+def test_cycles_of_a_diagram_are_as_accurate_as_asked_for():
+    """At the last force of a row its branch ends on a cycle that `limit_cycle` solves more accurately."""
+    rows, beside = [1e3, 1e4], {"k2": 1e2, "gamma3": 1e-2}
+    cycles = [rs.Rod(F=40, k1=k1, **beside).cycle(accuracy=1e-11) for k1 in rows]
+    truths = {name: np.array([getattr(cycle, name) for cycle in cycles]) for name in ("period", "tip_y_max")}
+    options, errors = {"cycles": True, "curves": False, "progress": False}, []
+    for accuracy in (1e-3, 1e-6, 1e-9):
+        asked = {"F": [20.0, 40.0], "k1": rows, "cycle_accuracy": accuracy}
+        data = rs.sweep("phase_diagram", **asked, **beside, **options)
+        ends = data.cycle_special_kind.values == SpecialKind.end
+        for name, true in truths.items():
+            stored, error = (data[f"cycle_special_{name}{of}"].values[ends] for of in ("", "_error"))
+            assert (np.abs(stored / true - 1) <= error).all()
+            assert (error <= accuracy).all()
+            errors.append(error.max())
+    assert (np.array(errors[2:]) < np.array(errors[:-2])).all()
+
+
+def test_accuracy_of_cycles_makes_another_config_only_with_cycles(tmp_path):
+    path = tmp_path / "c.yaml"
+    meanings = []
+    for options in (
+        "cycles: true",
+        "cycles: true, cycle_accuracy: 1e-6",
+        "cycles: true, cycle_accuracy: 1e-7",
+    ):
+        path.write_text(DIAGRAM.replace("cycles: true", options))
+        meanings.append(make_job(path, ()).config.meaning)
+    assert meanings[0] == meanings[1] != meanings[2]
+    path.write_text(DIAGRAM.replace("cycles: true", "cycles: false"))
+    assert "cycle_accuracy" not in make_job(path, ()).config.meaning["phase_diagram"]
 
 
 def test_axial_drag_without_cycles_is_refused(tmp_path):

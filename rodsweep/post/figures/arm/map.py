@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ....arrays import Array
-from ....config.arm.axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER
+from ....config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
 from ....model.arm.drag import DRAGS
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import ARM_UNITS
@@ -37,6 +37,7 @@ HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
     ("status", CRUSHED, "crushed", {"fc": "0.65", "hatch": ""}),
     ("status", NO_FLUTTER, "no flutter", {"fc": "0.75", "hatch": ""}),
+    ("status", FLUTTER_UNKNOWN, "flutter unknown", {"fc": "0.95", "hatch": "xx"}),
     ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
 )
 """Covered cells: (variable, value, legend entry, look); later entries lie above earlier ones."""

@@ -1,0 +1,80 @@
+"""First flutter of arms whose load is relative to it: known before the points are made, once for each rod.
+
+The search takes most of the time in which points are made, so the ranks of a run may share it. A search that
+fails gives its points a status. The solver is imported on demand.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf, nan
+from typing import TYPE_CHECKING, TypeAlias
+
+from ...config.arm.section import ArmSection, UncoveredArm
+from ...errors import InputError
+from ...model.arm.arm import SlenderArm
+from ...model.arm.quantities import RELATIVE
+
+if TYPE_CHECKING:
+    from ...verdict.relative import PlaneRod
+
+
+@dataclass(frozen=True, slots=True)
+class FlutterForce:
+    """F of first flutter, with the likeliest drag: inf without flutter, NaN if the search fails.
+
+    failure: why the search fails, else empty.
+    """
+
+    F: float
+    failure: str = ""
+
+
+FlutterForces: TypeAlias = Mapping["PlaneRod", FlutterForce]
+"""Flutter of rods that move in one plane."""
+
+
+def rods_of_flutter(section: ArmSection | None) -> "list[PlaneRod]":
+    """The different rods whose flutter the points of a section need; none unless its load is relative.
+
+    Raises InputError for an arm that is refused.
+    """
+    if section is None or section.load_axis not in RELATIVE:
+        return []
+    from ...verdict.relative import plane_rods
+
+    rods = (rod for arm in _arms(section) for rod, _ in plane_rods(arm))
+    return list(dict.fromkeys(rods))
+
+
+def _arms(section: ArmSection) -> Iterable[SlenderArm]:
+    """Arms of a section that a rod covers, without load."""
+    for values in section.sections():
+        try:
+            yield section.made(values)
+        except UncoveredArm:
+            continue
+        except ValueError as error:
+            raise InputError(str(error)) from None
+
+
+def flutter_of_rod(rod: "PlaneRod") -> FlutterForce:
+    """Flutter of one rod; a failure is an outcome, not an exception."""
+    from ...verdict.relative import FlutterUnknown, first_hopf_force
+
+    try:
+        return FlutterForce(first_hopf_force(*rod))
+    except FlutterUnknown as error:
+        return FlutterForce(nan, str(error))
+
+
+def flutter_of_arm(arm: SlenderArm, known: FlutterForces) -> FlutterForce:
+    """Flutter of an arm, in its k3/L^2: the smallest over its planes, a failure if one of them fails."""
+    from ...verdict.relative import plane_rods
+
+    first = inf
+    for rod, scale in plane_rods(arm):
+        found = known[rod]
+        if found.failure:
+            return found
+        first = min(first, found.F * scale)
+    return FlutterForce(first)

@@ -1,0 +1,119 @@
+"""`rodsweep show` claims nothing that a file does not hold: full lists, cut branches, failed searches."""
+
+import contextlib
+import io
+from dataclasses import replace
+
+import numpy as np
+from shown import shown
+
+import rodsweep as rs
+from rodsweep.api.dataset import view_of
+from rodsweep.post.summary import show_summary
+from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.thresholds import CROSSING_KINDS
+
+ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
+ROWS = {"F": rs.linspace(0.0, 190.0, 20), "k1": 200.0, "k2": [1e3, 1e4], "gamma3": 1e-4}
+BESIDE = "stable cycles beside a stable straight rod"
+
+
+def told(view):
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        show_summary(view)
+    return " ".join(out.getvalue().split())
+
+
+def view_of_sweep(tmp_path, task, **keywords):
+    return view_of(rs.sweep(task, progress=False, **keywords), tmp_path / "c.h5")
+
+
+def changed(view, **variables):
+    """The view with some variables in place of its own."""
+    own = {name: np.asarray(view.variables[name]) for name in view.variables}
+    return replace(view, variables=own | variables)
+
+
+def test_a_cycle_of_time_integration_has_no_verdict_of_multipliers(command):
+    task = "task: limit_cycle\naccuracy: 1.0e-3\n"
+    lines = shown(command, f"{task}parameters: {{F: 60, {ROD}}}\nlimit_cycle: {{method: integration}}\n")
+    assert "the rod beats" in lines
+    assert "no Floquet multiplier is computed" in lines
+    assert "below 1" not in lines
+
+
+BRANCHES = {"k1": 200.0, "gamma3": 1e-4, "stop": 190.0}
+"""The rod of k2 = 1e4 has stable cycles beside a stable straight rod from F = 155.6 on."""
+
+
+def test_a_branch_that_is_cut_short_leaves_open_where_cycles_are_stable(tmp_path):
+    whole = told(view_of_sweep(tmp_path, "branch", k2=1e4, **BRANCHES))
+    assert f"{BESIDE}: F = 155.6" in whole
+    cut = told(view_of_sweep(tmp_path, "branch", k2=1e4, cycles=4, **BRANCHES))
+    assert f"{BESIDE}: not known" in cut
+    assert "no cycle is stored" in cut
+    assert "no stable cycle" not in cut
+
+
+def test_branches_that_are_cut_short_leave_rods_open(tmp_path):
+    whole = told(view_of_sweep(tmp_path, "branch", k2=[1e3, 1e4], **BRANCHES))
+    assert f"{BESIDE} at 1 of 2 rods k2" in whole
+    cut = told(view_of_sweep(tmp_path, "branch", k2=[1e3, 1e4], cycles=4, **BRANCHES))
+    assert f"{BESIDE} at 0 of 2 rods, not known at 2 rods" in cut
+
+
+def test_a_list_of_special_points_that_is_full_for_all_rods_states_no_rods(tmp_path):
+    lines = told(view_of_sweep(tmp_path, "branch", k2=[1e3, 1e4], special=1, **BRANCHES))
+    assert "not known for 2 rods" in lines
+    assert BESIDE not in lines
+
+
+def test_hopf_points_that_are_not_stored_are_not_among_all(tmp_path):
+    rods = {"k1": 200.0, "k2": [1e3, 1e4], "gamma3": 1e-4, "F_max": 190.0}
+    assert "stored Hopf points: 2 super" in told(view_of_sweep(tmp_path, "criticality", crossings=1, **rods))
+    assert "all Hopf points: 2 super" in told(view_of_sweep(tmp_path, "criticality", **rods))
+
+
+def test_rods_whose_search_failed_are_not_rods_without_thresholds(tmp_path):
+    rods = {"k1": 200.0, "k2": [1e3, 1e4], "gamma3": 1e-4, "F_max": 190.0}
+    view = view_of_sweep(tmp_path, "thresholds", **rods)
+    assert "stable again: F = 155.6 (k2 = 10000), at 1 of 2 rods; frequency" in told(view)
+    count = np.asarray(view.variables["crossing_count"]).copy()
+    count[..., 0, 0] = -1
+    failed = changed(view, crossing_count=count)
+    assert "stable again: F = 155.6 (k2 = 10000), at 1 of 2 rods, not known at 1 rod; frequency" in told(
+        failed
+    )
+    forms = view_of_sweep(tmp_path, "criticality", **rods)
+    count = np.asarray(forms.variables["crossing_count"]).copy()
+    count[..., 0, 0, 0] = -1
+    failed = changed(forms, crossing_count=count)
+    assert "Hopf points at 1 of 2 rods (k2 = 10000), not known at 1 rod" in told(failed)
+
+
+def test_a_rod_with_an_open_range_has_no_threshold_located(tmp_path):
+    view = view_of_sweep(tmp_path, "thresholds", k1=200.0, k2=1e4, gamma3=1e-4, F_max=10.0)
+    assert "no threshold up to F = 10" in told(view)
+    shape = view.variables["open_from"].shape
+    opened = changed(view, open_from=np.full(shape, 3.0), open_to=np.full(shape, 4.0))
+    assert "no threshold is located up to F = 10" in told(opened)
+
+
+def test_changes_of_rows_that_are_not_stored_may_be_more(tmp_path):
+    """The second row of a diagram loses its restabilization, as from a list that is full."""
+    view = view_of_sweep(tmp_path, "phase_diagram", **ROWS)
+    assert "restabilization: on 1 of 2 rows" in told(view)
+    kinds = np.asarray(view.variables["crossing_kind"]).copy()
+    kinds[kinds == CROSSING_KINDS.index("hopf")] = 0
+    assert "restabilization: on at least 1 of 2 rows" in told(changed(view, crossing_kind=kinds))
+
+
+def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
+    view = view_of_sweep(
+        tmp_path, "phase_diagram", **ROWS | {"k1": [100.0, 200.0], "k2": 1e4, "F": [0.0, 60.0]}
+    )
+    assert "flutter on the rows k1 = 200; on none of k1 = 100" in told(view)
+    classes = np.asarray(view.variables["class"]).copy()
+    classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
+    assert "on none of" not in told(changed(view, **{"class": classes}))

@@ -1,0 +1,139 @@
+"""Flutter of relative loads: searched for by all ranks together, once a rod, before the points are made."""
+
+import os
+import signal
+
+import h5py
+import pytest
+from contents import content, same
+from ranks import PATIENCE, pause_until
+
+from rodsweep.config import load_config
+from rodsweep.config.arm.axes import FLUTTER_UNKNOWN
+from rodsweep.errors import BUG_STATUS, InputError
+from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_of_flutter
+from rodsweep.tasks.running.job import job_of
+from rodsweep.verdict import relative
+
+RODS = 8
+"""Four lengths, each with a rod in either plane of the rectangle."""
+ARMS = """
+task: {task}
+parameters:
+  arm:
+    length: [8 cm, 10 cm, 12 cm, 14 cm]
+    width: 6 mm
+    height: 8 mm
+    young: 100 kPa
+    viscosity: 20 Pa s
+    drag: [likeliest, most]
+    pressure: [0.9 of flutter, 1.2 of flutter]
+"""
+SEARCH = """
+import os, pathlib, time
+import rodsweep.verdict.relative as relative
+
+search, rank = relative.first_hopf_force, os.environ.get("OMPI_COMM_WORLD_RANK", "0")
+
+def first_hopf_force(k1, k2, gamma3):
+    with open(f"searches-{{rank}}", "a") as file:
+        file.write(f"{{k1!r}} {{k2!r}} {{gamma3!r}}\\n")
+    {first}
+    return search(k1, k2, gamma3)
+
+relative.first_hopf_force = first_hopf_force
+"""
+"""What every rank executes first: a search is noted, and begins with one more statement."""
+
+
+def searching(first="pass"):
+    return SEARCH.format(first=first)
+
+
+def searches(command, rank):
+    path = command.directory / f"searches-{rank}"
+    found = path.read_text().splitlines()
+    path.unlink()
+    return found
+
+
+@pytest.fixture
+def rods(command):
+    """The rods of the config `a.yaml`, in the order in which the ranks share them."""
+    config, _ = load_config(command.write("a.yaml", ARMS.format(task="spectrum")))
+    return rods_of_flutter(config.parameters.arm)
+
+
+def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
+    assert len(rods) == RODS
+    files = {}
+    for ranks in (1, 2, 3):
+        run = command("run", "a.yaml", "-o", f"{ranks}.h5", ranks=ranks, patch=searching())
+        assert run.returncode == 0, run.stderr
+        files[ranks] = content(command.directory / f"{ranks}.h5")
+        parts = [searches(command, rank) for rank in range(ranks)]
+        assert sorted(sum(parts, [])) == sorted(" ".join(map(repr, rod)) for rod in rods)
+        assert max(map(len, parts)) - min(map(len, parts)) <= 1
+    assert same(files[1], files[2])
+    assert same(files[1], files[3])
+
+
+@pytest.mark.parametrize(("task", "ranks"), [("spectrum", 0), ("spectrum", 2), ("modes", 2)])
+def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task, ranks):
+    """Of the second length in its second plane; all other points are as they are without the failure."""
+    command.write("a.yaml", ARMS.format(task=task))
+    k1 = rods[3][0]
+    failure = f"if k1 == {k1!r}: raise relative.FlutterUnknown('no box is left')"
+    assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
+    run = command("run", "a.yaml", "-o", "part.h5", ranks=ranks, patch=searching(failure))
+    assert run.returncode == 1
+    assert "flutter_unknown no box is left" in run.stdout
+    whole, part = (h5py.File(command.directory / f"{name}.h5") for name in ("whole", "part"))
+    with whole, part:
+        assert (part["status"][1] == FLUTTER_UNKNOWN).all()
+        for name in ("status", "growth_rate", "F"):
+            for length in (0, 2, 3):
+                assert (whole[name][length] == part[name][length]).all()
+    assert (
+        "the load is relative to flutter, which the search does not find" in command("show", "part.h5").stdout
+    )
+
+
+def test_an_exception_in_the_search_on_one_rank_ends_all_ranks(command, rods):
+    bug = f"if k1 == {rods[3][0]!r}: raise RuntimeError('a bug')"
+    run = command("run", "a.yaml", ranks=2, patch=searching(bug))
+    assert run.returncode == BUG_STATUS
+    assert "rank 1 failed" in run.stderr
+    assert "RuntimeError: a bug" in run.stderr
+    assert not (command.directory / "a.h5").exists()
+
+
+def test_a_stop_during_the_search_ends_the_run_before_its_file(command, rods):
+    """Within the first search; no other one begins."""
+    wait = "while not pathlib.Path('go').exists(): time.sleep(0.01)"
+    process = command.started("run", "a.yaml", patch=searching(wait))
+    pause_until((command.directory / "searches-0").exists, "the search never begins")
+    os.kill(process.pid, signal.SIGTERM)
+    (command.directory / "go").touch()
+    out, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 75, err
+    assert "stopped by SIGTERM; no point is computed yet" in out
+    assert len(searches(command, 0)) < RODS
+    assert not (command.directory / "a.h5").exists()
+
+
+def test_arms_of_which_none_has_a_known_flutter_are_refused(command, rods):
+    path = command.directory / "a.yaml"
+    unknown = dict.fromkeys(rods, FlutterForce(float("nan"), "no box is left"))
+    with pytest.raises(InputError, match=r"parameters\.arm\.pressure: no box is left"):
+        job_of(path, *load_config(path), unknown)
+
+
+@pytest.mark.parametrize("error", [OverflowError("too large"), ZeroDivisionError()])
+def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
+    def overflowing(*_):
+        raise error
+
+    monkeypatch.setattr(relative, "cover", overflowing)
+    with pytest.raises(relative.FlutterUnknown, match="relative to fails: (too large|ZeroDivisionError)"):
+        relative.first_hopf_force(1234.5, 1e3, 1e-4)
