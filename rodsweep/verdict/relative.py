@@ -34,10 +34,11 @@ def turned(arm: A) -> A:
 def first_flutter(arm: SlenderArm) -> float:
     """Smallest flutter force over the planes of an arm, in its k3/L^2; inf without flutter."""
     own = _in_its_plane(arm)
-    if arm.radius is not None or arm.si.width == arm.si.height:
+    if arm.isotropic:
         return own
     other = turned(arm)
-    return min(own, _in_its_plane(other) * (other.section.second_moment / arm.section.second_moment))
+    stiffer = other.cross_section.second_moment / arm.cross_section.second_moment
+    return min(own, _in_its_plane(other) * stiffer)
 
 
 def _in_its_plane(arm: SlenderArm) -> float:

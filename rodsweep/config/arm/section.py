@@ -9,8 +9,9 @@ from pydantic import Field, model_validator
 
 from ...arrays import Array
 from ...errors import InputError
-from ...model.arm.arm import NotSlender, SlenderArm
+from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
+from ...model.arm.refusals import NotSlender
 from ...model.arm.section import NoWall
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..values import Axis, Strict, Values

@@ -8,8 +8,9 @@ import numpy as np
 from ...arrays import Array
 from ...config.arm.axes import CRUSHED, NO_FLUTTER, SLENDER
 from ...config.arm.section import ArmSection, UncoveredArm
-from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
+from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from .points import Points

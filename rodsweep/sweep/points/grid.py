@@ -11,7 +11,8 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
 from ...config.schema import Config
 from ...errors import InputError
-from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...model.arm.arm import SlenderArm
+from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
 from .arm_grid import grid_of_arms
