@@ -7,7 +7,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...config.arm.axes import CRUSHED, NO_FLUTTER, SLENDER
-from ...config.arm.section import ArmSection, UncoveredArm
+from ...config.arm.section import ArmSection
+from ...config.arm.uncovered import UncoveredArm
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
 from ...model.arm.refusals import CRUSHED_FROM
@@ -37,7 +38,7 @@ def grid_of_arms(
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
     table = {
         name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms])
-        for name in all_but("F", NONLINEAR_PARAMETERS)
+        for name in (*all_but("F", NONLINEAR_PARAMETERS), *section.tapering)
     }
     units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
     covered = np.broadcast_to(_along(0, statuses), shape).copy()
