@@ -34,12 +34,11 @@ EXCLUSIVE = (
 class Arm(SlenderArm):
     """An arm in a viscous fluid, clamped at one end and pushed at its tip.
 
-    A quantity is text with a unit, a pint quantity, or a number in SI units. Required are length, young,
-    viscosity, and either radius (with inner_radius for a tube, with tip_radius for a cone) or width and height,
-    or viscosity and segments, from the base to the tip: ["4 cm: radius 6 mm, young 80 kPa", {"length": "6 cm",
-    "radius": "4 mm", "young": "1 MPa"}]. law: "linear" or "neo_hookean"; section: "fixed" or "swelling". The
-    load is pressure or force. `flutter` needs no load; "1.2 of flutter" is a load relative to the flutter threshold at the
-    likeliest drag.
+    A quantity is text with a unit, a pint quantity, or a number in SI units. Required are viscosity, length,
+    young and radius (with inner_radius for a tube, tip_radius for a cone) or width and height; or viscosity
+    and segments, from the base to the tip, each as "4 cm: radius 6 mm, young 80 kPa" or a mapping. law:
+    "linear" or "neo_hookean". section: "fixed" or "swelling". The load is pressure or force. `flutter` needs
+    no load; "1.2 of flutter" is a load relative to the flutter threshold at the likeliest drag.
 
     Every task of a rod is a method with the task's name and the options of the config as keywords. Its Answer
     has SI units beside dimensionless ones. Calling a task starts PETSc; creating an arm does not. Raises

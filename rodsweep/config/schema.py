@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from ..model.material.build import STANDARD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
-from .arm.shape import refuse_compressible, refuse_misused_shape
+from .arm.shape import OF_MATERIAL, SHAPES, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
 from .material import MaterialSection
 from .values import Number, Strict, Text
@@ -116,9 +116,10 @@ class Config(Strict):
         arm = self.parameters.arm
         if arm is None:
             return self
-        if self.material is not None and arm.material:
+        own = next((name for name in (*OF_MATERIAL, *SHAPES) if getattr(arm, name) is not None), "")
+        if self.material is not None and own:
             raise ValueError(
-                f"material and parameters.arm.{next(iter(arm.material))} are both given; give one of them"
+                f"material and parameters.arm.{own} are both given; give law and section in parameters.arm"
             )
         refuse_misused_shape(arm, self.parameters.given_axes)
         refuse_compressible(arm, self.build.section)
@@ -129,8 +130,10 @@ class Config(Strict):
         if self.takes_arms:
             return self
         arm = self.parameters.arm
-        asked = f"parameters.arm.{arm.varied}" if arm is not None and arm.varied else ""
-        asked = "material" if not asked and not self.build.standard else asked
+        asked = "material" if self.material is not None and not self.build.standard else ""
+        if arm is not None and not arm.standard:
+            given = (name for name in (*SHAPES, "law") if getattr(arm, name) is not None)
+            asked = f"parameters.arm.{next(given)}"
         for name in OPTIONAL_PARAMETERS:
             asked = f"parameters.{name}" if name in self.parameters.given_axes else asked
         if asked:

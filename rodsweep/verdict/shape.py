@@ -1,4 +1,4 @@
-"""An arm that is not uniform or not of linear material, in words: its shape, its law, what is not computed."""
+"""An arm that varies along its length or is of rubber, in words: shape, law, and what is not computed."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
@@ -18,8 +18,8 @@ def no_cycles(arm: SlenderArm) -> list[str]:
     if arm.standard:
         return []
     return [
-        f"How far {shape_words(arm)} then beats is not computed: cycles are known for uniform arms of linear "
-        "material only."
+        f"How far and how fast {shape_words(arm)} beats beyond flutter is not computed: cycles are known for "
+        "uniform arms of linear material only."
     ]
 
 

@@ -77,7 +77,8 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     """Row of the tip force; empty without load."""
     if arm.load is None:
         return []
-    formula = arm.shape.tip.section.face_formula if arm.load == "pressure" else "as given"
+    of_tip = " of the tip" if arm.shape.varies else ""
+    formula = f"{arm.shape.tip.section.face_formula}{of_tip}" if arm.load == "pressure" else "as given"
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 

@@ -17,7 +17,7 @@ from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..values import Axis, Strict, Values
 from .axes import AXIS_OF, LOAD_AXES, SECTION
 from .quantities import Drags, Quantities, drags_written, with_shares
-from .shape import SEGMENTS_ALLOWED, Segments, build_of, material_of, tapers_of, with_length
+from .shape import SEGMENTS_ALLOWED, Segments, build_of, is_standard, material_of, with_length
 from .uncovered import UNCOVERED, UncoveredArm
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
@@ -97,16 +97,14 @@ class ArmSection(Strict):
         return material_of(self)
 
     @property
-    def varied(self) -> str:
-        """The key that makes an arm other than uniform and of linear material; empty without."""
-        if not self.build.standard:
-            return next(iter(self.material))
-        return "tip_radius" if self.tip_radius is not None else ""
+    def varies(self) -> bool:
+        """Whether the arms are cones or have segments."""
+        return self.tip_radius is not None or self.segments is not None
 
     @property
     def standard(self) -> bool:
         """Whether all arms are uniform and of linear material."""
-        return self.build.standard and tapers_of(self) == {1.0}
+        return is_standard(self)
 
     @property
     def load_axis(self) -> str | None:
@@ -240,12 +238,13 @@ class ArmSection(Strict):
 
         UncoveredArm if no rod covers the arm. A load relative to flutter is left out.
         """
-        section = {name: value for name, value in values.items() if name in SECTION}
-        load = {self.load_axis: values[self.load_axis]} if loaded and self.load_axis in LOADS else NO_LOAD
+        section: dict[str, Any] = {name: value for name, value in values.items() if name in SECTION}
+        has_load = loaded and self.load_axis in LOADS
+        section |= {str(self.load_axis): values[str(self.load_axis)]} if has_load else NO_LOAD
         (drag,) = drags_written([section.pop("drag", 0.0)])
         try:
-            return SlenderArm(**section, **self.material, **load, drag=drag)
-        except tuple(UNCOVERED) as error:
-            raise UncoveredArm(error) from None
+            return SlenderArm(**section, **self.material, drag=drag)
         except InputError as error:
+            if type(error) in UNCOVERED:
+                raise UncoveredArm(error) from None
             raise ValueError(f"parameters.arm.{error}") from None

@@ -1,5 +1,7 @@
 """Shape and material of an arm in a config: segments, taper, law, and the build that all its points share."""
 
+from collections.abc import Iterator
+from contextlib import suppress
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -8,12 +10,15 @@ from pydantic import BeforeValidator, WithJsonSchema
 from ...errors import InputError
 from ...model.arm.segments import EXAMPLE, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import STANDARD, Build
+from .uncovered import UncoveredArm
 
 if TYPE_CHECKING:
     from .section import ArmSection
 
 OF_MATERIAL = ("segments", "law", "section")
 """Keys of an arm that state what `material` states for a rod without dimension."""
+SHAPES = ("tip_radius", "segments")
+"""Keys of an arm that varies along its length."""
 RUBBER_POISSON = 0.5
 """Poisson's ratio of rubber, which a section needs in order to swell."""
 
@@ -32,8 +37,8 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
     """Keys of an arm, with the sum of its segments where no length is given."""
     if given.get("segments") is None or given.get("length") is not None:
         return given
-    texts = as_segments(given["segments"]) or ()
-    return given | {"length": sum(segment.length for segment in segments_of(texts))}
+    segments = segments_of(as_segments(given["segments"]) or ())
+    return given | {"length": f"{sum(segment.length for segment in segments):.15g} m"}
 
 
 def material_of(arm: "ArmSection") -> dict[str, Any]:
@@ -42,17 +47,33 @@ def material_of(arm: "ArmSection") -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Law and profile of all arms; ValueError where segments have several profiles."""
-    if arm.segments is None:
-        return Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
-    builds = {arm.made(values).build for values in arm.sections()}
-    if len(builds) > 1:
-        names = [name for name in arm.several if name in ("young", "poisson", "drag")]
+    """Law of all arms, and profile of the first that a rod covers.
+
+    ValueError where a grid of parameters has arms with several profiles.
+    """
+    alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
+    if all(getattr(arm, name) is None for name in SHAPES):
+        return alike
+    if arm.is_grid and len(set(_builds_of(arm))) > 1:
         raise ValueError(
-            f"parameters.arm.{names[0] if names else arm.several[0]} has several values, and the segments "
-            "differ from each other by other factors at each; give one value"
+            f"parameters.arm.{arm.several[0]} has several values, with which the segments differ by other "
+            "factors; give one value"
         )
-    return builds.pop()
+    return next(_builds_of(arm), alike)
+
+
+def is_standard(arm: "ArmSection") -> bool:
+    """Whether all arms are uniform and of linear material."""
+    if arm.segments is None:
+        return arm.build.standard and tapers_of(arm) == {1.0}
+    return all(build.standard for build in _builds_of(arm))
+
+
+def _builds_of(arm: "ArmSection") -> Iterator[Build]:
+    """Law and profile of every arm that a rod covers."""
+    for values in arm.sections():
+        with suppress(UncoveredArm):
+            yield arm.made(values).build
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
@@ -70,7 +91,7 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
     """
     if arm.segments is not None and "length" in arm.several:
         raise ValueError("parameters.arm.length has several values, but the segments make one; leave it out")
-    for name in ("tip_radius", "segments"):
+    for name in SHAPES:
         if getattr(arm, name) is not None and "taper" in beside:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
 

@@ -19,7 +19,7 @@ from .drag import DRAGS, Drag
 from .quantities import LOADS, UNITS, number_in_si, told
 from .refusals import refuse_crushed, refuse_misfits, refuse_other_sets, refuse_words
 from .section import Circle, Rectangle, Section, Tube
-from .segments import Segment, segment_texts, segments_of
+from .segments import ArmSegment, segment_texts, segments_of
 from .shape import Shape, Station, cone, in_segments
 
 
@@ -56,7 +56,7 @@ class SlenderArm:
     drag: str = DRAGS[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Each quantity of UNITS as a number in SI; nan where it is not given."""
-    pieces: tuple[Segment, ...] = field(init=False, repr=False, compare=False)
+    pieces: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
     """The segments in SI units; empty without."""
 
     def __post_init__(self) -> None:

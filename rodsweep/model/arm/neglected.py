@@ -101,8 +101,7 @@ def effects_of(
     rate: of the motion, in rad/s; nan where nothing moves. F: follower force, in k3/L^2; nan without load.
     drag: with which the arm moves so fast; by default the least of its range, with which effects of inertia
     are largest. amplitude: of the tip, over the length. The effect of weight is left out where no density
-    difference is given, that of the wall where the arm has no bore. F compresses the base: `weakest_load`
-    gives the force that compresses it as another does the weakest section.
+    difference is given, that of the wall where the arm has no bore. F is that of `weakest_load`.
     """
     drag = least_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
@@ -195,9 +194,9 @@ def compression(arm: SlenderArm, F: Array) -> Effect:
 
 
 def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
-    """The force that would compress the base as F does the weakest section, of the shape of F; nan for rubber.
+    """The force that would compress the base as F does the weakest section, of the shape of F.
 
-    Rubber is compressed by its own law, which neglects nothing of it.
+    nan for rubber: its own law says how it is compressed.
     """
     share = arm.crushing_force / arm.k1
     return np.asarray(F, float) / share if share < inf else np.full(np.shape(F), np.nan)
@@ -206,11 +205,9 @@ def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
 def weight(arm: SlenderArm, F: Array) -> Effect:
     """Weight less buoyancy over that under which an upright arm buckles, of the shape of F."""
     heaviness = abs(arm.si.density_difference) * GRAVITY
-    if arm.shape.varies:
-        value = arm.shape.buckling_share(heaviness)
-    else:
-        load = heaviness * arm.cross_section.area * arm.si.length
-        value = load / (SELF_BUCKLING * arm.force_scale)
+    load = heaviness * arm.cross_section.area * arm.si.length
+    uniform = load / (SELF_BUCKLING * arm.force_scale)
+    value = arm.shape.buckling_share(heaviness) if arm.shape.varies else uniform
     return _whatever_the_fluid("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 

@@ -110,10 +110,8 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     total = sum(piece.length for piece in pieces)
     if arm.length is not None and not abs(arm.si.length - total) <= SAME_LENGTH * total:
         unit = unit_of(arm.length, "m")
-        raise InputError(
-            f"{arm.told('length')} is not the sum of the segments, {written_in(total, unit, 'm'):.6g} {unit}; "
-            "leave it out"
-        )
+        summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
+        raise InputError(f"{arm.told('length')} is not the sum of the segments, {summed}; leave it out")
 
 
 def refuse_misfits(arm: "SlenderArm") -> None:

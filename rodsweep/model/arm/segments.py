@@ -20,7 +20,7 @@ MAX_SEGMENTS = 100
 """Largest number of segments of an arm: each ends an element of the mesh."""
 
 
-class Segment(NamedTuple):
+class ArmSegment(NamedTuple):
     """A uniform piece of an arm, in SI units; young is None where the arm's own applies."""
 
     length: float
@@ -55,7 +55,7 @@ def segment_texts(given: Any) -> tuple[str, ...]:
     return tuple(map(str, written))
 
 
-def segments_of(texts: Sequence[str]) -> tuple[Segment, ...]:
+def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
     """The segments of `segment_texts` in SI units."""
     return tuple(_segment(number, written_segment(number, text)) for number, text in enumerate(texts, 1))
 
@@ -94,7 +94,7 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
     return found
 
 
-def _segment(number: int, written: WrittenSegment) -> Segment:
+def _segment(number: int, written: WrittenSegment) -> ArmSegment:
     """The numbers of a segment in SI units; InputError for a quantity out of range, NoWall for a bore."""
     given, where = written.given, f"segments, number {number}"
     try:
@@ -102,11 +102,11 @@ def _segment(number: int, written: WrittenSegment) -> Segment:
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     if "inner_radius" not in given:
-        return Segment(length, Circle(radius), young if "young" in given else None)
+        return ArmSegment(length, Circle(radius), young if "young" in given else None)
     if inner >= radius:
         bore, outer = (told(name, given[name]) for name in ("inner_radius", "radius"))
         raise NoWall(f"{where}: {bore} is not below {outer}")
-    return Segment(length, Tube(radius, inner), young if "young" in given else None)
+    return ArmSegment(length, Tube(radius, inner), young if "young" in given else None)
 
 
 def _text(name: str, given: Given) -> str:

@@ -49,20 +49,21 @@ def grid_of_arms(
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
             covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
+    builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        crushing = table["k1"] * build.crushing_shares(table.get("taper", np.ones(1)))
+        shares = [arm.crushing_force / arm.k1 if arm else np.nan for arm in arms] if builds else []
+        beside_arm = build.crushing_shares(table.get("taper", np.ones(1)))
+        crushing = table["k1"] * (_along(0, shares) if builds else beside_arm)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * crushing, shape)
         covered[(covered == SLENDER) & crushed] = CRUSHED
     if (covered != SLENDER).all():
         _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()))
     axes = {name: section.given[name].array() for name in section.several}
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
-    columns, at_points = (
-        {name: np.broadcast_to(column, shape).ravel() for name, column in each.items()}
-        for each in ({name: table[name] for name in names}, units)
-    )
+    columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
+    at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes = covered.astype(np.int8).ravel()
-    return Points(names, tuple(columns.values()), False, over, at_points, covered=codes)
+    return Points(names, columns, False, over, at_points, builds=builds, covered=codes)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
