@@ -1,6 +1,7 @@
 """`rs.Rod`: one rod, with every task as a method."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
@@ -77,6 +78,8 @@ class SoftRod:
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
         self._material = _material(material)
         build = STANDARD if self._material is None else self._material.build
+        if arm is not None and build.section == "swelling":
+            replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
         refuse_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)
 
     @property

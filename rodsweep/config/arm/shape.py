@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from ...errors import InputError
 from ...model.arm.segments import EXAMPLE, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import STANDARD, Build
+from ...model.units import unit_of, written_in
 from .uncovered import UncoveredArm
 
 if TYPE_CHECKING:
@@ -37,8 +38,10 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
     """Keys of an arm, with the sum of its segments where no length is given."""
     if given.get("segments") is None or given.get("length") is not None:
         return given
-    segments = segments_of(as_segments(given["segments"]) or ())
-    return given | {"length": f"{sum(segment.length for segment in segments):.15g} m"}
+    texts = as_segments(given["segments"]) or ()
+    unit = unit_of(texts[0].partition(":")[0], "m")
+    total = sum(segment.length for segment in segments_of(texts))
+    return given | {"length": f"{written_in(total, unit, 'm'):.15g} {unit}"}
 
 
 def material_of(arm: "ArmSection") -> dict[str, Any]:

@@ -76,7 +76,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         if getattr(arm, name) is not None and arm.radius is None:
             raise InputError(f"{arm.told(name)} needs a radius; {why}")
     if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
-        raise InputError("radius: give either a radius, or width and height")
+        raise InputError("radius: give either a radius, or width and height, or segments")
     if arm.si.inner_radius >= arm.si.radius:
         raise NoWall(f"{arm.told('inner_radius')} is not below {arm.told('radius')}")
     if arm.tip_radius is None:
