@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 from itertools import product
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -14,6 +14,7 @@ from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from ..material import LawName, SectionName
 from ..values import Axis, Strict, Values
 from .axes import AXIS_OF, LOAD_AXES, SECTION
 from .quantities import Drags, Quantities, drags_written, with_shares
@@ -51,9 +52,9 @@ class ArmSection(Strict):
     """Young's modulus at small strain; with segments, that of those without their own."""
     poisson: Annotated[Values | None, RatioAllowed] = None
     """Poisson's ratio, by default 0.5."""
-    law: Literal["linear", "neo_hookean"] | None = None
+    law: Annotated[LawName | None, Field(description="linear or neo_hookean")] = None
     """Constitutive law, by default linear; in place of `material.law`."""
-    section: Literal["fixed", "swelling"] | None = None
+    section: Annotated[SectionName | None, Field(description="fixed or swelling")] = None
     """Whether the section of rubber is fixed, the default, or swelling; in place of `material.section`."""
     viscosity: Annotated[Quantities, Allowed]
     """Viscosity of the fluid. It changes no parameter; times are proportional to it."""
