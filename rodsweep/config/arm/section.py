@@ -42,8 +42,7 @@ class ArmSection(Strict):
     tip_radius: Annotated[Quantities | None, Allowed] = None
     """Radius at the tip of a solid cone, which has `radius` at its base."""
     segments: Annotated[Segments, Field(description=SEGMENTS_ALLOWED)] = None
-    """Segments from the base to the tip, each with a length, a radius, and if need be an inner_radius and its
-    own young."""
+    """Segments from the base to the tip: lengths, radii, and if need be inner_radius and their own young."""
     width: Annotated[Quantities | None, Allowed] = None
     """Width of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
