@@ -246,12 +246,24 @@ def test_rubber(command):
         assert np.isnan(file["F_restabilization"][...]).all()
 
 
+def test_cast_arm(command):
+    """The threshold of elements in displacements, and its pressure and frequency at 100 kPa."""
+    force, pressure, frequency = stated("cast_arm")[-3:]
+    with run(command, "cast_arm", "parameters.arm.young=[80 kPa, 100 kPa]") as file:
+        assert file["F_hopf"][...].ravel()[1] == pytest.approx(force, rel=4e-9)
+        assert file["pressure_hopf"][...].ravel()[1] == pytest.approx(1e3 * pressure, rel=4e-9)
+        assert file["frequency_hopf_hz"][...].ravel()[1] == pytest.approx(frequency, rel=4e-9)
+        assert file["young"].attrs["units"] == "Pa"
+        assert not file["status"][...].any()
+
+
 def test_slender(command):
     rubber, linear = stated("slender")
     length = "parameters.arm.length=[12 cm, 14 cm]"
-    with run(command, "slender", length, "parameters.taper=1") as file:
+    uniform = "parameters.arm.tip_radius=6 mm"
+    with run(command, "slender", length, uniform) as file:
         assert file["F_hopf"][...].ravel()[0] == pytest.approx(rubber, rel=1e-11)
     (command.directory / "slender.h5").unlink()
-    of_linear = ("material.section=fixed", "material.law=linear", "parameters.taper=1")
+    of_linear = ("parameters.arm.section=fixed", "parameters.arm.law=linear", uniform)
     with run(command, "slender", length, *of_linear) as file:
         assert file["F_hopf"][...].ravel()[0] == pytest.approx(linear, rel=1e-11)

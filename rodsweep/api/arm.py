@@ -21,7 +21,12 @@ if TYPE_CHECKING:
     from ..verdict.flutter import FlutterRange
 
 EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
-EXCLUSIVE = (tuple((load,) for load in LOADS), SECTION_SIDES)
+EXCLUSIVE = (
+    tuple((load,) for load in LOADS),
+    SECTION_SIDES,
+    (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
+    (("inner_radius",), ("tip_radius",)),
+)
 """Pairs of exclusive sets of quantities: setting one set removes the other."""
 
 
@@ -29,10 +34,11 @@ EXCLUSIVE = (tuple((load,) for load in LOADS), SECTION_SIDES)
 class Arm(SlenderArm):
     """An arm in a viscous fluid, clamped at one end and pushed at its tip.
 
-    A quantity is text with a unit, a pint quantity, or a number in SI units. Required are length, young,
-    viscosity, and either radius (with inner_radius for a tube) or width and height. The load is pressure or
-    force. `flutter` needs no load; "1.2 of flutter" is a load relative to the flutter threshold at the
-    likeliest drag.
+    A quantity is text with a unit, a pint quantity, or a number in SI units. Required are viscosity, length,
+    young and radius (with inner_radius for a tube, tip_radius for a cone) or width and height; or viscosity
+    and segments, from the base to the tip, each as "4 cm: radius 6 mm, young 80 kPa" or a mapping. law:
+    "linear" or "neo_hookean". section: "fixed" or "swelling". The load is pressure or force. `flutter` needs
+    no load; "1.2 of flutter" is a load relative to the flutter threshold at the likeliest drag.
 
     Every task of a rod is a method with the task's name and the options of the config as keywords. Its Answer
     has SI units beside dimensionless ones. Calling a task starts PETSc; creating an arm does not. Raises
@@ -56,14 +62,16 @@ class Arm(SlenderArm):
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
-        """A copy with other quantities. A force replaces a pressure, and width and height replace a
-        radius.
+        """A copy with other quantities. A force replaces a pressure, width and height replace a radius, and
+        segments replace both, and the length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE:
             for new, old in ((one, other), (other, one)):
                 if any(changed.get(name) is not None for name in new):
                     gone |= dict.fromkeys(old)
+        if changed.get("segments") is not None:
+            gone["length"] = None
         return Arm(**(self._given | gone | changed))
 
     @property
@@ -71,7 +79,7 @@ class Arm(SlenderArm):
         """The arm in the second plane of its rectangular section, width and height exchanged; a round arm
         unchanged.
         """
-        return self if self.radius is not None else self.replace(width=self.height, height=self.width)
+        return self if self.radius or self.segments else self.replace(width=self.height, height=self.width)
 
     @cached_property
     def loaded(self) -> "Arm":

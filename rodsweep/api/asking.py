@@ -15,11 +15,14 @@ from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAGS
 from ..model.arm.quantities import LOADS, RELATIVE
+from ..model.material.build import STANDARD
 from ..solve.exclusive import signals_held
 from ..tasks.running.job import Job, job_of, memory
 from .axes import plain
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
+DEFAULT_WORDS = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
+"""Keys of an arm that a config leaves out where they have these values."""
 Tree = dict[str, Any]
 """Keys and values as YAML would read them."""
 
@@ -64,7 +67,8 @@ def _write_out_arm(task: str, tree: Tree) -> None:
         names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
         known = known_load(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
-        given["drag"] = None if known.drag == DRAGS[0] else known.drag
+        for name, default in DEFAULT_WORDS.items():
+            given[name] = None if given[name] == default else given[name]
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
 
 

@@ -1,6 +1,7 @@
 """`rs.Rod`: one rod, with every task as a method."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
@@ -17,6 +18,7 @@ from ..config.values import as_number, short
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.material.build import STANDARD
+from ..model.material.profile import FACTORS
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
@@ -64,15 +66,20 @@ class SoftRod:
                 left = [other for other in (*PARAMETERS, "arm") if other not in given]
                 hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
                 raise InputError(f"unknown key parameters.{name}; {hint}")
+        material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
             given = _of_arm(arm) | given
+            beside = {name: value for name, value in material.items() if value is not None}
+            material = _build_of(arm) | beside
         for name in REQUIRED:
             if name not in given:
                 raise InputError(f"parameters.{name} is missing; give {words(REQUIRED, 'and')}")
         values = {name: given.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
-        self._material = _material({"law": law, "section": section, "profile": profile})
+        self._material = _material(material)
         build = STANDARD if self._material is None else self._material.build
+        if arm is not None and build.section == "swelling":
+            replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
         refuse_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)
 
     @property
@@ -192,7 +199,19 @@ def _of_arm(arm: object) -> dict[str, Any]:
         raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
     known = known_load(arm)
     names = [name for name in NONLINEAR_PARAMETERS if name != "F" or known.load is not None]
+    names += ["taper"] if known.taper != 1 else []
     return {name: known.parameter(name) for name in names}
+
+
+def _build_of(arm: SlenderArm) -> dict[str, Any]:
+    """Law, section and profile of an arm as keys of `material`, None where they are the default."""
+    build, profile = arm.build, arm.build.profile
+    columns = None if profile is None else dict(zip(FACTORS, zip(*profile.rows, strict=True), strict=True))
+    return {
+        "law": None if build.law == STANDARD.law else build.law,
+        "section": None if build.section == STANDARD.section else build.section,
+        "profile": None if profile is None or columns is None else {"u": profile.u, **columns},
+    }
 
 
 def _number(name: str, value: Any) -> float:

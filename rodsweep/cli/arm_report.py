@@ -1,5 +1,7 @@
 """The command `arm`: prints the numbers and the verdict of an arm in SI units."""
 
+from typing import Any
+
 from rich.console import Console
 
 from ..errors import InputError
@@ -9,14 +11,17 @@ STYLES = {"headline": "bold", "warning": "yellow"}
 """Styles of the printed lines by their kind."""
 
 
-def describe_arm(given: dict[str, str | None], poisson: float) -> None:
-    """Prints the report on an arm; InputError, naming the option, for an invalid quantity."""
+def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
+    """Prints the report on an arm; InputError, naming the option, for an invalid quantity.
+
+    given: quantities, law and section.
+    """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import report_on
 
-    quantities = {name: text for name, text in given.items() if text is not None}
+    quantities: dict[str, Any] = {name: text for name, text in given.items() if text is not None}
     try:
-        report = report_on(SlenderArm(**quantities, poisson=poisson))
+        report = report_on(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
     except InputError as error:
         raise InputError(f"--{_as_option(str(error))}") from None
     console = Console(highlight=False, soft_wrap=True)
@@ -26,5 +31,5 @@ def describe_arm(given: dict[str, str | None], poisson: float) -> None:
 
 def _as_option(sentence: str) -> str:
     """A sentence that begins with a quantity's name, with the name of the option instead."""
-    name = next((name for name in UNITS if sentence.startswith(name)), "")
-    return name.replace("_", "-") + sentence[len(name) :]
+    name = next((name for name in (*UNITS, "segments") if sentence.startswith(name)), "")
+    return name.replace("_", "-").replace("segments", "segment") + sentence[len(name) :]

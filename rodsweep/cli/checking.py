@@ -60,13 +60,20 @@ def _arm_lines(job: Job) -> list[str]:
     at_rest = ArmValidity(job.config, job.points).at_rest()
     validity = validity_sentence(at_rest, when=" before anything moves")
     return [
-        f"the arm: {given_text(arm.given)}",
+        f"the arm: {given_text(arm.given)}{_material_text(arm)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
         f"{validity}; the run judges inertia by how fast the arm moves",
     ]
+
+
+def _material_text(arm: ArmSection) -> str:
+    """Segments and law of an arm, as the end of a list."""
+    told = "".join(f"; segment {text}" for text in arm.segments or ())
+    laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
+    return f"{told}; {', '.join(laws)}" if laws else told
 
 
 def _wall_lines(arm: ArmSection) -> list[str]:

@@ -16,6 +16,8 @@ MOST_ROWS = 1000
 """Largest number of rows of a profile."""
 LARGEST_FILE = 1_000_000
 """Largest number of characters in a profile's file."""
+LawName = Literal["linear", "neo_hookean"]
+SectionName = Literal["fixed", "swelling"]
 Column = Annotated[
     list[Number] | None, Field(max_length=MOST_ROWS, description=f"a list of at most {MOST_ROWS} numbers")
 ]
@@ -64,9 +66,9 @@ def _or_file(schema: dict[str, Any]) -> None:
 class MaterialSection(Strict):
     """Constitutive law of the arm, and how the arm varies along its length."""
 
-    law: Literal["linear", "neo_hookean"] = "linear"
+    law: LawName = "linear"
     """Constitutive law: stress proportional to strain, or incompressible neo-Hookean rubber."""
-    section: Literal["fixed", "swelling"] = "fixed"
+    section: SectionName = "fixed"
     """Whether the cross-section keeps its size or swells as the arm shortens."""
     profile: Annotated[
         ProfileTable | None,

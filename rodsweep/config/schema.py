@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from ..model.material.build import STANDARD, Build
 from ..model.material.laws import LINEAR
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from .arm.shape import OF_MATERIAL, SHAPES, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
 from .material import MaterialSection
 from .values import Number, Strict, Text
@@ -50,17 +51,23 @@ class Config(Strict):
     @property
     def names(self) -> tuple[str, ...]:
         """Parameters of a point of the sweep: what the task needs, and what the config adds."""
-        given = (name for name in OPTIONAL_PARAMETERS if name in self.parameters.given_axes)
+        arm = self.parameters.arm
+        made = () if arm is None else arm.tapering
+        given = (n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_axes or n in made)
         return (*self.taken_of_a_rod({}), *given)
 
     @property
     def build(self) -> Build:
         """Law and profile of the arm."""
-        return STANDARD if self.material is None else self.material.build
+        if self.material is None:
+            return STANDARD if self.parameters.arm is None else self.parameters.arm.build
+        return self.material.build
 
     @property
     def standard(self) -> bool:
         """Whether all rods are uniform and of linear material."""
+        if self.parameters.arm is not None and not self.parameters.arm.standard:
+            return False
         tapers = self.parameters.given_axes.get("taper")
         return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))
 
@@ -108,6 +115,20 @@ class Config(Strict):
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
 
     @model_validator(mode="after")
+    def _one_material(self) -> "Config":
+        arm = self.parameters.arm
+        if arm is None:
+            return self
+        own = next((name for name in (*OF_MATERIAL, *SHAPES) if getattr(arm, name) is not None), "")
+        if self.material is not None and own:
+            raise ValueError(
+                f"material and parameters.arm.{own} are both given; give law and section in parameters.arm"
+            )
+        refuse_misused_shape(arm, self.parameters.given_axes)
+        refuse_compressible(arm, self.build.section)
+        return self
+
+    @model_validator(mode="after")
     def _arms_only_where_solved(self) -> "Config":
         if self.of_cycles and self.build.law != LINEAR.law and not self.build.continuous:
             raise ValueError(
@@ -116,7 +137,11 @@ class Config(Strict):
             )
         if self.takes_arms:
             return self
-        asked = "material" if not self.build.standard else ""
+        arm = self.parameters.arm
+        asked = "material" if self.material is not None and not self.build.standard else ""
+        if arm is not None and not arm.standard:
+            given = (name for name in (*SHAPES, "law") if getattr(arm, name) is not None)
+            asked = f"parameters.arm.{next(given)}"
         for name in OPTIONAL_PARAMETERS:
             asked = f"parameters.{name}" if name in self.parameters.given_axes else asked
         if asked:

@@ -11,6 +11,7 @@ from .folding import folded
 from .load import Load
 from .planes import planes_of, with_load
 from .sentences import verdict_sentences
+from .shape import no_cycles
 from .table import NumberRow, number_rows
 from .validity import Assessment
 
@@ -79,7 +80,7 @@ def report_on(arm: SlenderArm) -> ArmReport:
     return ArmReport(
         validity=assessment.of_verdict,
         warnings=above,
-        verdict=(headline, *others),
+        verdict=(headline, *others, *no_cycles(arm)),
         rows=tuple(number_rows(first)),
         checks=tuple(check for check in checks if check not in above),
     )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import SELF_BUCKLING, Effect, Validity
+from ..model.material.laws import LINEAR
 
 if TYPE_CHECKING:
     from .validity import Assessment  # for annotations only: the module imports solvers
@@ -56,14 +57,14 @@ def checks_of(assessment: "Assessment") -> list[Check]:
         *inertia(effects["inertia of the arm"], effects["inertia of the fluid"]),
         *reynolds(effects["Reynolds number"]),
         *wall(effects.get("flattening of the wall")),
-        weight(effects.get("weight")),
+        weight(effects.get("weight"), arm),
         poisson(arm),
     ]
 
 
 def slenderness(arm: SlenderArm) -> Check:
     """Check of the ratio of length to radius."""
-    ratio = arm.si.length / arm.section.drag_radius
+    ratio = arm.si.length / arm.shape.drag_radius
     fine = ratio >= SLENDER
     why = (
         "slender enough for local drag"
@@ -74,7 +75,9 @@ def slenderness(arm: SlenderArm) -> Check:
 
 
 def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
-    """Check of F/k1, the compressive strain of the straight arm."""
+    """Check of F/k1, the compressive strain of the straight arm where it is weakest."""
+    if assessment.arm.law != LINEAR.law:
+        return _compression_of_rubber(assessment)
     says, effects = [], [at_flutter, *assessment.under_load]
     if assessment.under_load:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
@@ -89,7 +92,29 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
         "real materials are no longer linear there",
     )[validity]
     shares = " and ".join(says) or "there is no load"
-    return Check(validity, f"Compression: {shares} (F/k1); {ending}.", of_verdict=True)
+    where = " at the weakest section" if assessment.arm.shape.varies else ""
+    return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", of_verdict=True)
+
+
+def _compression_of_rubber(assessment: "Assessment") -> Check:
+    """Compression by a law that covers it: nothing is neglected."""
+    arm, says = assessment.arm, []
+    flutter = assessment.force_at_flutter
+    if arm.load is not None:
+        says.append(f"the load shortens the arm by {100 * _shortening(arm, arm.F):.2g} %")
+    if flutter is not None:
+        shortens = "that of flutter" if says else "flutter shortens the arm"
+        says.append(f"{shortens} by {100 * _shortening(arm, flutter):.2g} %")
+    shares = " and ".join(says) or "there is no load"
+    where = " at the weakest section" if arm.shape.varies else ""
+    return Check(Validity.applies, f"Compression: {shares}{where}, by the law of rubber.")
+
+
+def _shortening(arm: SlenderArm, F: float) -> float:
+    """Fraction of its length that the weakest section loses under a force in k3/L^2."""
+    smallest = min(each.young * each.section.area for each in arm.shape.stations)
+    largest = arm.shape.base.young * arm.cross_section.area
+    return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
 
 
 def stiffening(share: float) -> float:
@@ -148,7 +173,7 @@ def wall_check(effect: Effect) -> Check:
     return Check(validity, sentence)
 
 
-def weight(effect: Effect | None) -> Check:
+def weight(effect: Effect | None, arm: SlenderArm) -> Check:
     """Check of weight minus buoyancy against bending stiffness."""
     if effect is None:
         says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
@@ -162,7 +187,8 @@ def weight(effect: Effect | None) -> Check:
         "it bends the arm, which the model leaves out",
     )[validity]
     upright = f"weight less buoyancy is {share:.2g} of what buckles an upright arm"
-    return Check(validity, f"Weight: {upright}; {level}; {ending}.", of_verdict=True)
+    sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is of uniform arms
+    return Check(validity, f"Weight: {upright}{sags}; {ending}.", of_verdict=True)
 
 
 def poisson(arm: SlenderArm) -> Check:

@@ -1,7 +1,7 @@
 """Thresholds of an arm over its range of drag: flutter, beating frequency, return. Forces in k3/L^2."""
 
-from dataclasses import dataclass
-from math import pi
+from dataclasses import dataclass, replace
+from math import inf, pi
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
@@ -13,6 +13,11 @@ from .relative import FARTHEST
 
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
 """Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
+ENDS_OF_VARIED = (100.0, 300.0, FARTHEST)
+"""Largest forces of the search for an arm that varies along its length, in k3/L^2 at its base, tried in turn:
+up to 100 the search takes a second a drag, up to FARTHEST twenty."""
+BEYOND_FLUTTER = 2.0
+"""Least ratio of the end of the search to the first flutter, and to the load, of an arm that varies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,13 +93,35 @@ def span_of(values: list[float | None]) -> Span | None:
     return Span(min(known), max(known), len(known) == len(values)) if known else None
 
 
-def flutter_forces(arm: SlenderArm, drag: Drag) -> FlutterForces:
-    """All changes of an arm with one drag."""
-    thresholds = solve_thresholds(Rod(F=0.0, k1=arm.k1, k2=arm.k2, gamma3=arm.gamma3_with(drag)), REQUEST)
+def flutter_forces(arm: SlenderArm, drag: Drag, end: float = FARTHEST) -> FlutterForces:
+    """All changes of an arm with one drag, up to the force `end`."""
+    rod = Rod(
+        F=0.0,
+        k1=arm.k1,
+        k2=arm.k2,
+        gamma3=arm.gamma3_with(drag),
+        taper=arm.taper,
+        build=arm.build_with(drag),
+    )
+    thresholds = solve_thresholds(rod, replace(REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
 @solving
 def flutter_range(arm: SlenderArm) -> FlutterRange:
-    """All changes of an arm over the range of its drag."""
-    return FlutterRange(tuple(flutter_forces(arm, drag) for drag in arm.drags))
+    """All changes of an arm over the range of its drag, up to a force that the likeliest drag decides."""
+    likeliest, *others = arm.drags
+    end, first = _first_search(arm, likeliest)
+    return FlutterRange((first, *(flutter_forces(arm, drag, end) for drag in others)))
+
+
+def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
+    """(end of the search, all changes up to it): far beyond the first flutter, and beyond the load."""
+    known_load = arm.load is not None and arm.share_of_flutter is None
+    for end in ENDS_OF_VARIED if arm.shape.varies else (FARTHEST,):
+        found = flutter_forces(arm, drag, end)
+        flutter = found.force(Kind.hopf)
+        reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
+        if BEYOND_FLUTTER * reached <= end or found.thresholds.end < end:
+            break
+    return end, found

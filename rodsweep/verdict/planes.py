@@ -50,7 +50,7 @@ class Planes:
 
 def planes_of(arm: SlenderArm) -> Planes:
     """Both planes of a rectangle, or one plane if all planes are equivalent; solves for the thresholds."""
-    if arm.radius is not None or arm.si.width == arm.si.height:
+    if arm.isotropic:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
     other = turned(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")

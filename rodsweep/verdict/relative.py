@@ -42,9 +42,9 @@ def turned(arm: A) -> A:
 def plane_rods(arm: SlenderArm) -> list[tuple[PlaneRod, float]]:
     """(rod in a plane with the likeliest drag, its k3/L^2 in units of the arm's) for each plane of an arm."""
     planes = [(_in_its_plane(arm), 1.0)]
-    if arm.radius is None and arm.si.width != arm.si.height:
+    if not arm.isotropic:
         other = turned(arm)
-        scale = other.section.second_moment / arm.section.second_moment
+        scale = other.cross_section.second_moment / arm.cross_section.second_moment
         planes.append((_in_its_plane(other), scale))
     return planes
 

@@ -120,7 +120,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
 def _until(plane: PlaneOfMotion, load: Load) -> str:
     """Largest load of the search, or the load that crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
-    if plane.found.end > 0.999 * plane.arm.k1:
+    if plane.found.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 

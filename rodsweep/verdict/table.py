@@ -3,8 +3,13 @@
 from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
+from ..model.material.laws import LINEAR
 from .load import rounded
 from .planes import PlaneOfMotion
+from .shape import law_words, station_words
+
+LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
+"""Stress of neo-Hookean rubber in the units of a report."""
 
 
 class NumberRow(NamedTuple):
@@ -19,7 +24,13 @@ class NumberRow(NamedTuple):
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     """All numbers of an arm in the plane of its verdict, dimensional numbers first."""
     arm = plane.arm
-    return [*plane_row(plane), *dimensional(arm), *drag_rows(arm), *dimensionless(arm)]
+    return [
+        *plane_row(plane),
+        *shape_rows(arm),
+        *dimensional(arm),
+        *drag_rows(arm),
+        *dimensionless(arm),
+    ]
 
 
 def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
@@ -30,9 +41,27 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
     return [NumberRow("motion", f"in {plane.name}", sides, "where the arm flutters first")]
 
 
+def shape_rows(arm: SlenderArm) -> list[NumberRow]:
+    """Rows of the taper or of every segment, and of a law of rubber; empty for a uniform linear arm."""
+    rows = []
+    if arm.taper != 1:
+        formula = "tip radius/radius; all other rows are of the base"
+        rows.append(NumberRow("taper", f"{arm.taper:.4g}", formula, "k1, k2, gamma3 ~ r^2, k3 ~ r^4"))
+    elif arm.shape.varies:
+        start = 0.0
+        for number, station in enumerate(arm.shape.stations, 1):
+            place = f"u = {start:.4g} to {station.end:.4g}"
+            source = "all other rows are of it" if number == 1 else "drag of its own radius"
+            rows.append(NumberRow(f"segment {number}", place, station_words(station), source))
+            start = station.end
+    if arm.law != LINEAR.law:
+        rows.append(NumberRow("law", law_words(arm), LAW_FORMULA, "E is the modulus at small strain"))
+    return rows
+
+
 def dimensional(arm: SlenderArm) -> list[NumberRow]:
     """Rows of section, stiffness and load."""
-    section = arm.section
+    section = arm.cross_section
     kappa = section.shear_coefficient(arm.poisson)
     return [
         NumberRow("A", f"{section.area:.4g} m^2", section.formula.split(", ")[0], "geometry"),
@@ -48,7 +77,8 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     """Row of the tip force; empty without load."""
     if arm.load is None:
         return []
-    formula = arm.section.face_formula if arm.load == "pressure" else "as given"
+    of_tip = " of the tip" if arm.shape.varies else ""
+    formula = f"{arm.shape.tip.section.face_formula}{of_tip}" if arm.load == "pressure" else "as given"
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 

@@ -5,12 +5,18 @@ from functools import cached_property
 from itertools import chain
 from math import floor, isnan, log10, nan
 
-import numpy as np
-
 from ..model.arm.arm import SlenderArm
-from ..model.arm.neglected import Effect, Validity, compression, effects_of, fastest_rate, worst_validity
+from ..model.arm.neglected import (
+    Effect,
+    Validity,
+    compression,
+    effects_of,
+    fastest_rate,
+    weakest_load,
+    worst_validity,
+)
 from ..model.arm.quantities import LOADS, SECTION_SIDES
-from ..solve.changes.unstable_modes import Kind
+from ..solve.changes.unstable_modes import Crossing, Kind
 from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces
 
@@ -39,7 +45,13 @@ class Assessment:
     @cached_property
     def under_load(self) -> tuple[Effect, ...]:
         """Effects of the load itself; empty without a load."""
-        return () if self.arm.load is None else (compression(self.arm, np.asarray(self.arm.F)),)
+        return () if self.arm.load is None else (compression(self.arm, weakest_load(self.arm, self.arm.F)),)
+
+    @property
+    def force_at_flutter(self) -> float | None:
+        """Force of the first flutter, with the likeliest drag that has one, in k3/L^2."""
+        first = first_flutter_of(self.found)
+        return None if first is None else first.at
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -62,12 +74,17 @@ class Assessment:
         return sorted(counted, key=lambda effect: -float(effect.excess))
 
 
+def first_flutter_of(found: FlutterRange) -> Crossing | None:
+    """The first flutter, with the likeliest drag that has one; None without flutter."""
+    return next((each for c in found.forces if (each := c.first(Kind.hopf))), None)
+
+
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
     """Neglected effects at the threshold; inertia and compression are NaN without flutter."""
-    first = next((each for c in found.forces if (each := c.first(Kind.hopf))), None)
+    first = first_flutter_of(found)
     if first is None:
         return effects_of(arm, nan, nan)
-    return effects_of(arm, fastest_rate(arm, abs(first.frequency)), first.at)
+    return effects_of(arm, fastest_rate(arm, abs(first.frequency)), weakest_load(arm, first.at))
 
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:
@@ -80,8 +97,11 @@ def thickness_factor(arm: SlenderArm) -> float:
     """Largest factor on all sides of the section at which inertia is within its limit in the same fluid.
 
     Solves for the thresholds of thinner arms. NaN if the arm does not flutter, or if the model does not apply
-    to the thinner arm for a further reason, such as weight.
+    to the thinner arm for a further reason, such as weight. NaN also for an arm that varies along its length,
+    of which every solve takes a second.
     """
+    if arm.shape.varies:
+        return nan
     factor = 1.0
     for _ in range(THINNING_STEPS):
         thinner = _scaled(arm, factor)
@@ -100,7 +120,7 @@ def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
     """The arm without load, all sides of its section multiplied by a factor."""
     given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
     section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
-    return SlenderArm(**(given | section), poisson=arm.poisson)
+    return SlenderArm(**(given | section), poisson=arm.poisson, law=arm.law, section=arm.section)
 
 
 def rounded_down(value: float) -> float:

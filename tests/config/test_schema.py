@@ -75,6 +75,10 @@ def fits_schema(text):
 
 ARM = "length: 10 cm, young: 100 kPa, viscosity: 1.4 Pa s"
 ROUND = f"{ARM}, radius: 5 mm"
+CAST = (
+    "viscosity: 1.4 Pa s, segments: ['4 cm: radius 5 mm, young 80 kPa', "
+    "{length: 6 cm, radius: 4 mm, young: 9.0e4}]"
+)
 TOGETHER = [
     ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa}}", True),
     ("spectrum", f"arm: {{{ROUND}, pressure: -2 kPa}}", True),
@@ -92,6 +96,20 @@ TOGETHER = [
     ("spectrum", "F: 3, k1: .inf, k2: +inf, gamma3: 0, points: null", True),
     ("spectrum", "F: -3, k1: [10, inf], k2: {start: 1, stop: 10, num: 3, spacing: log}, gamma3: 0.0", True),
     ("thresholds", f"arm: {{{ROUND}}}", True),
+    ("thresholds", f"arm: {{{ROUND}, tip_radius: [3 mm, 5 mm], law: neo_hookean, section: swelling}}", True),
+    ("thresholds", f"arm: {{{CAST}, law: neo_hookean}}", True),
+    ("thresholds", f"arm: {{{CAST}, length: 10 cm, young: [1 kPa, 2 kPa]}}", True),
+    ("thresholds", "arm: {viscosity: 1 Pa s, segments: '10 cm: radius 5 mm, young 1 kPa'}", True),
+    ("thresholds", f"arm: {{{CAST}, radius: 5 mm}}", False),
+    ("thresholds", f"arm: {{{CAST}, tip_radius: 5 mm}}", False),
+    ("thresholds", "arm: {viscosity: 1 Pa s, segments: []}", False),
+    ("thresholds", "arm: {viscosity: 1 Pa s, young: 9 kPa, segments: [10 cm]}", False),
+    ("thresholds", "arm: {viscosity: 1 Pa s, young: 9 kPa, segments: [{length: 9 cm, radios: 5 mm}]}", False),
+    ("thresholds", f"arm: {{{ROUND}, tip_radius: 0}}", False),
+    ("thresholds", f"arm: {{{ROUND}, tip_radius: 3 mm, inner_radius: 1 mm}}", False),
+    ("thresholds", f"arm: {{{ARM}, width: 5 mm, height: 5 mm, tip_radius: 3 mm}}", False),
+    ("thresholds", f"arm: {{{ROUND}, law: hooke}}", False),
+    ("thresholds", f"arm: {{{ROUND.replace('length: 10 cm, ', '')}}}", False),
     ("thresholds", f"arm: {{{ROUND}, fluid_density: 1260, density_difference: -160 kg/m^3}}", True),
     ("limit_cycle", f"arm: {{{ROUND}, pressure: 3 kPa}}, gamma1: [1, 2]", True),
     ("limit_cycle", "F: 3, k1: 200, k2: 100, gamma3: 0", True),

@@ -190,7 +190,11 @@ def odd_keys(tree: dict, rng: Random) -> Iterator[Case]:
         between = "\n" if len(keys) == 1 else ", "
         twice = renamed(tree, keys, f"{name}: {value}{between}{name}")
         yield Case(f"{dotted} twice", text_of(twice), says=name)
-        optional = keys[0] in ("title", "accuracy", tree["task"]) or name in ("spacing", "gamma1")
+        optional = keys[0] in ("title", "accuracy", tree["task"]) or name in (
+            "spacing",
+            "gamma1",
+            *wrong.OPTIONAL_OF_ARM,
+        )
         yield Case(f"{dotted} missing", text_of(without(tree, keys)), refused=not optional)
     for keys in [(), *(keys for keys in places if isinstance(at(tree, keys), dict))]:
         for key in wrong.KEYS:

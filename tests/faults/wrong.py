@@ -18,7 +18,12 @@ NEVER = [
 """For no key at all; in some places they are no YAML, or break the line."""
 NOTHING = {"}", ",", "\x85", "\u2028"}
 """Of NEVER, what YAML may take for no value at all, which MAY_BE_NOTHING allows."""
-MAY_BE_NOTHING = {("parameters", "points"), ("parameters", "gamma1")}
+OPTIONAL_OF_ARM = ("density_difference", "tip_radius", "law", "section")
+"""Keys of an arm in a config, of which it may have none."""
+MAY_BE_NOTHING = {
+    ("parameters", "points"), ("parameters", "gamma1"),
+    *(("parameters", "arm", name) for name in OPTIONAL_OF_ARM),
+}  # fmt: skip
 
 NO_NUMBER = ["abc", '"3"', "''", "1e", "0x", "--1", "1,5", "+", ".", "yes"]
 NO_RANGE = [

@@ -64,7 +64,7 @@ def test_values_are_selected_by_the_quantities_in_si(thresholds):
     here = data.sel(length=0.12, young=1e5)
     assert here.F_hopf.item() == alone.F_hopf
     assert here.k1.item() == pytest.approx(arm.k1, rel=1e-12)
-    assert here.pressure_hopf.item() == pytest.approx(alone.F_hopf * arm.force_scale / arm.section.area)
+    assert here.pressure_hopf.item() == pytest.approx(alone.F_hopf * arm.force_scale / arm.cross_section.area)
     assert here.pressure_hopf.units == "Pa"
     hertz = here.hopf_frequency / (2 * np.pi * here.tau2)
     assert here.frequency_hopf_hz.item() == pytest.approx(hertz.item(), rel=1e-12)

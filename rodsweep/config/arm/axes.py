@@ -24,7 +24,18 @@ parameters."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
 whether the model applies."""
-SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID, "drag")
+SECTION = (
+    "length",
+    "young",
+    "radius",
+    "inner_radius",
+    "tip_radius",
+    "width",
+    "height",
+    "poisson",
+    *FLUID,
+    "drag",
+)
 """All quantities of an arm except the load."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 101, 102, 103, 104
 """Codes for whether a rod covers a point: covered; arm too short for the drag of slender bodies; F reaches

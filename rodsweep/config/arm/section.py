@@ -1,6 +1,7 @@
 """The section `parameters.arm` of a config: an arm in SI units, and the parameter axes made from it."""
 
 from collections.abc import Collection, Iterator, Mapping
+from functools import cached_property
 from itertools import product
 from typing import Annotated, Any
 
@@ -9,13 +10,16 @@ from pydantic import Field, model_validator
 
 from ...arrays import Array
 from ...errors import InputError
-from ...model.arm.arm import NotSlender, SlenderArm
+from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
-from ...model.arm.section import NoWall
+from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from ..material import LawName, SectionName
 from ..values import Axis, Strict, Values
-from .axes import AXIS_OF, LOAD_AXES, NO_WALL, NOT_SLENDER, SECTION
+from .axes import AXIS_OF, LOAD_AXES, SECTION
 from .quantities import Drags, Quantities, drags_written, with_shares
+from .shape import SEGMENTS_ALLOWED, Segments, build_of, is_standard, material_of, with_length
+from .uncovered import UNCOVERED, UncoveredArm
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
@@ -23,36 +27,34 @@ DragAllowed = Field(description="range, the name of a drag, or a list of names")
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
 
 
-UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
-"""Status of a point by the error of its arm."""
 NO_LOAD = {"pressure": 0.0}
-
-
-class UncoveredArm(ValueError):
-    """No rod covers this arm; `status` is the status of its points."""
-
-    def __init__(self, error: NotSlender | NoWall):
-        super().__init__(f"parameters.arm.{error}")
-        self.status = UNCOVERED[type(error)]
 
 
 class ArmSection(Strict):
     """The arm as `rodsweep arm` takes it; each quantity is one value or an axis."""
 
-    length: Annotated[Quantities, Allowed]
-    """Length from the clamp to the tip."""
+    length: Annotated[Quantities | None, Allowed] = None
+    """Length from the clamp to the tip; of an arm in segments their sum."""
     radius: Annotated[Quantities | None, Allowed] = None
-    """Radius of a circular section; or give width and height."""
+    """Radius of a circular section; or give width and height, or segments."""
     inner_radius: Annotated[Quantities | None, Allowed] = None
     """Radius of the bore of a tube, which is closed at its tip."""
+    tip_radius: Annotated[Quantities | None, Allowed] = None
+    """Radius at the tip of a solid cone, which has `radius` at its base."""
+    segments: Annotated[Segments, Field(description=SEGMENTS_ALLOWED)] = None
+    """Segments from the base to the tip: lengths, radii, and if need be inner_radius and their own young."""
     width: Annotated[Quantities | None, Allowed] = None
     """Width of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
     """Height of a rectangular section, in the plane of motion."""
-    young: Annotated[Quantities, Allowed]
-    """Young's modulus."""
+    young: Annotated[Quantities | None, Allowed] = None
+    """Young's modulus at small strain; with segments, that of those without their own."""
     poisson: Annotated[Values | None, RatioAllowed] = None
     """Poisson's ratio, by default 0.5."""
+    law: Annotated[LawName | None, Field(description="linear or neo_hookean")] = None
+    """Constitutive law, by default linear; in place of `material.law`."""
+    section: Annotated[SectionName | None, Field(description="fixed or swelling")] = None
+    """Whether the section of rubber is fixed, the default, or swelling; in place of `material.section`."""
     viscosity: Annotated[Quantities, Allowed]
     """Viscosity of the fluid. It changes no parameter; times are proportional to it."""
     fluid_density: Annotated[Quantities | None, Allowed] = None
@@ -74,8 +76,35 @@ class ArmSection(Strict):
     @model_validator(mode="before")
     @classmethod
     def _with_shares(cls, given: Any) -> Any:
-        """Moves a load relative to flutter to its own key."""
-        return with_shares(given) if isinstance(given, dict) else given
+        """Moves a load relative to flutter to its own key, and adds the length of segments."""
+        return with_length(with_shares(given)) if isinstance(given, dict) else given
+
+    @model_validator(mode="after")
+    def _has_length_and_modulus(self) -> "ArmSection":
+        for name in ("length", "young"):
+            if getattr(self, name) is None and self.segments is None:
+                raise ValueError(f"parameters.arm.{name} is missing")
+        return self
+
+    @cached_property
+    def build(self) -> Build:
+        """Law and profile of all arms; ValueError where segments have several profiles."""
+        return build_of(self)
+
+    @property
+    def material(self) -> dict[str, Any]:
+        """Segments, law and section, without what is not given."""
+        return material_of(self)
+
+    @property
+    def varies(self) -> bool:
+        """Whether the arms are cones or have segments."""
+        return self.tip_radius is not None or self.segments is not None
+
+    @property
+    def standard(self) -> bool:
+        """Whether all arms are uniform and of linear material."""
+        return is_standard(self)
 
     @property
     def load_axis(self) -> str | None:
@@ -95,10 +124,11 @@ class ArmSection(Strict):
         return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
 
     @property
-    def meaning(self) -> dict[str, float | None]:
-        """Given quantities in SI units, by name: a value if all points share it, else None."""
+    def meaning(self) -> dict[str, Any]:
+        """Given quantities in SI units, by name: a value if all points share it, else None; and material."""
         told = AXIS_OF if self.is_grid else self.several
-        return {name: None if name in told else float(axis.array()[0]) for name, axis in self.given.items()}
+        numbers = {n: None if n in told else float(axis.array()[0]) for n, axis in self.given.items()}
+        return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
 
     @property
     def is_grid(self) -> bool:
@@ -151,7 +181,8 @@ class ArmSection(Strict):
         ValueError if the arm is not slender, or if the smallest load crushes it.
         """
         arm = self.made(self.firsts, loaded=True)
-        axes = {name: Axis(values=(arm.parameter(name),)) for name in all_but("F", NONLINEAR_PARAMETERS)}
+        names = (*all_but("F", NONLINEAR_PARAMETERS), *self.tapering)
+        axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
             different = {getattr(self.made(each), name) for each in self.sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
@@ -173,6 +204,11 @@ class ArmSection(Strict):
             values["drag"] = np.array(sorted(arms, key=lambda place: arms[place].gamma3))
             units["tau2"] = np.array([arms[place].tau2 for place in values["drag"].tolist()])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
+
+    @property
+    def tapering(self) -> tuple[str, ...]:
+        """("taper",) for cones, else ()."""
+        return () if self.tip_radius is None else ("taper",)
 
     def count(self, beside: int) -> int:
         """Number of points of a grid, given the number of combinations of parameters beside the arm."""
@@ -202,12 +238,13 @@ class ArmSection(Strict):
 
         UncoveredArm if no rod covers the arm. A load relative to flutter is left out.
         """
-        section = {name: value for name, value in values.items() if name in SECTION}
-        load = {self.load_axis: values[self.load_axis]} if loaded and self.load_axis in LOADS else NO_LOAD
+        section: dict[str, Any] = {name: value for name, value in values.items() if name in SECTION}
+        has_load = loaded and self.load_axis in LOADS
+        section |= {str(self.load_axis): values[str(self.load_axis)]} if has_load else NO_LOAD
         (drag,) = drags_written([section.pop("drag", 0.0)])
         try:
-            return SlenderArm(**section, **load, drag=drag)
-        except (NotSlender, NoWall) as error:
-            raise UncoveredArm(error) from None
+            return SlenderArm(**section, **self.material, drag=drag)
         except InputError as error:
+            if type(error) in UNCOVERED:
+                raise UncoveredArm(error) from None
             raise ValueError(f"parameters.arm.{error}") from None

@@ -8,7 +8,7 @@ from copy import deepcopy
 from itertools import combinations
 from typing import Any
 
-from ...model.arm.quantities import LOADS, QUANTITIES, RELATIVE
+from ...model.arm.quantities import LOADS, QUANTITIES, RELATIVE, SECTION_SIDES
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from ..arm.axes import LOAD_AXES, SECTION
 
@@ -72,15 +72,21 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
         if "anyOf" in key:
             kinds = [axis if "$ref" in kind else kind for kind in key["anyOf"]]
             key["anyOf"] = [bounded(kind, bound) for kind in kinds]
+        if name not in QUANTITIES:
+            continue
         pattern = QUANTITY_TEXT.format(
             sign="[+]?" if bound else "[+-]?", percent="%" if name in LOADS else ""
         )
         for node in nodes_of(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern
-    circle, rectangle = all_of(["radius"], none_of(["width", "height"])), ["width", "height"]
+    of_one = ["length", "young"]
+    circle = all_of([*of_one, "radius"], none_of(["width", "height", "segments"]))
+    rectangle = all_of([*of_one, "width", "height"], none_of([*SECTION_SIDES[0], "segments"]))
+    pieces = all_of(["segments"], none_of([*SECTION_SIDES[0], *SECTION_SIDES[1]]))
     section["allOf"] = [
-        {"oneOf": [circle, all_of(rectangle, none_of(["radius", "inner_radius"]))]},
+        {"oneOf": [circle, rectangle, pieces]},
+        {"not": all_of(["inner_radius", "tip_radius"])},
         *({"not": all_of(pair)} for pair in combinations(LOAD_AXES, 2)),
     ]
 

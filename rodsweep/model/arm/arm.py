@@ -1,140 +1,136 @@
 """An arm in SI units as the rod of the paper: stiffness, drag and force without dimension.
 
 Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimensionless parameters of Sec. VI.
-Knows no mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
+Stiffnesses and drags are those of the base; `build` and `taper` say how they go on along the arm. Knows no
+mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import inf, isnan
-from numbers import Real
+from math import isnan
 from types import SimpleNamespace
-from typing import Any
 
 from ...errors import InputError
+from ..material.build import STANDARD, Build
 from ..parameters import PARAMETERS
-from ..units import Given, share_of_flutter, unit_of, written_in
-from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
-from .quantities import LOADS, QUANTITIES, UNITS, number_in_si, told
-from .section import Circle, NoWall, Rectangle, Section, Tube
-
-CRUSHED_FROM = 1 - 1e-14
-"""Part of k1 from which on F is as large: what conversion of units leaves between them."""
-
-
-class NotSlender(InputError):
-    """The refusal of an arm that is too short for the drag of slender bodies."""
+from ..units import Given, share_of_flutter
+from .drag import DRAGS, Drag
+from .quantities import LOADS, UNITS, number_in_si, told
+from .refusals import refuse_crushed, refuse_misfits, refuse_other_sets, refuse_words
+from .section import Circle, Rectangle, Section, Tube
+from .segments import ArmSegment, segment_texts, segments_of
+from .shape import Shape, Station, cone, in_segments
 
 
 @dataclass(frozen=True, kw_only=True)
 class SlenderArm:
     """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
 
-    Either a radius, or width and height, of which the height lies in the plane of motion. inner_radius: of
-    the bore of a tube, which is closed at the tip and filled with the fluid at the pressure around. A
-    pressure on the tip or a force there, of which positive ones push, or no load; "1.2 of flutter" is a load
-    that is known once the threshold is. density_difference: of the arm's material over the fluid. drag: which
-    member of its range, one of DRAGS, the arm has as a rod. Raises InputError, naming the quantity.
+    Either a radius, or width and height, of which the height lies in the plane of motion, or segments, each
+    as "4 cm: radius 6 mm, young 80 kPa" from the base to the tip; young is then that of segments without one.
+    tip_radius: of a solid cone. inner_radius: of the bore of a tube, which is closed at the tip and filled
+    with the fluid at the pressure around. law, section: of the material, keys of
+    `rodsweep.model.material.laws.LAWS`. A pressure on the tip or a force there, of which positive ones push,
+    or no load; "1.2 of flutter" is a load that is known once the threshold is. density_difference: of the
+    arm's material over the fluid. drag: which member of its range, one of DRAGS, the arm has as a rod. Raises
+    InputError, naming the quantity.
     """
 
-    length: Given
-    young: Given
+    length: Given | None = None
+    young: Given | None = None
     viscosity: Given
     radius: Given | None = None
     inner_radius: Given | None = None
+    tip_radius: Given | None = None
     width: Given | None = None
     height: Given | None = None
+    segments: Sequence[str | Mapping[str, Given]] | None = None
     pressure: Given | None = None
     force: Given | None = None
     poisson: float = 0.5
+    law: str = STANDARD.law
+    section: str = STANDARD.section
     fluid_density: Given = "1000 kg/m^3"
     density_difference: Given | None = None
     drag: str = DRAGS[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Each quantity of UNITS as a number in SI; nan where it is not given."""
+    pieces: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
+    """The segments in SI units; empty without."""
 
     def __post_init__(self) -> None:
         """Reads the units, and refuses what is no slender arm."""
-        object.__setattr__(
-            self, "si", SimpleNamespace(**{name: number_in_si(name, getattr(self, name)) for name in UNITS})
-        )
-        ratio: Any = self.poisson
-        is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
-        if not is_number or not -1 < ratio <= 0.5:
-            try:
-                text = repr(ratio) if isinstance(ratio, str) else str(ratio)
-            except ValueError:  # an integer of thousands of digits
-                text = "an integer too large to be shown"
-            raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
-        if self.drag not in DRAGS:
-            raise InputError(f"drag = {self.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
-        self._refuse_other_sets()
-        if self.si.density_difference <= -self.si.fluid_density:
-            given, least = self._told("density_difference"), f"{-self.si.fluid_density:.4g} kg/m^3"
-            raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
-        try:
-            slenderness = self.si.length / self.section.drag_radius
-            fine = all(0 < number < inf for number in (self.k1, self.k2, self.force_scale))
-        except ArithmeticError:
-            fine = False
-        if not fine:
-            raise InputError(
-                f"{self._told('length')} makes numbers too large or too small with its section and Young's "
-                "modulus; check their units"
-            )
-        if slenderness < LEAST_SLENDERNESS:
-            raise NotSlender(
-                f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
-                f"least {LEAST_SLENDERNESS:g}"
-            )
-        self._refuse_crushed()
-
-    def _refuse_crushed(self) -> None:
-        """InputError where F is not below k1."""
-        loaded = self.load
-        if loaded is None or self.share_of_flutter is not None or CRUSHED_FROM * self.k1 > self.F:
-            return
-        limit, si = self.si.young * self.section.area / self._loaded_area, UNITS[loaded][0]
-        unit = unit_of(getattr(self, loaded), si)
-        raise InputError(
-            f"{self._told(loaded)} compresses the arm to nothing; it must be below "
-            f"{float(f'{written_in(limit, unit, si):.4g}'):g} {unit}, where a linear material is crushed"
-        )
-
-    def _refuse_other_sets(self) -> None:
-        """InputError unless length, material, fluid and one section are given, and at most one load."""
-        for name, quantity in QUANTITIES.items():
-            if quantity.needed and getattr(self, name) is None:
-                raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
-        sides = (self.width, self.height)
-        if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
-            raise InputError("radius: give either a radius, or width and height")
-        if self.inner_radius is not None and self.radius is None:
-            raise InputError(f"{self._told('inner_radius')} needs a radius; a rectangle has no bore here")
-        if self.si.inner_radius >= self.si.radius:
-            raise NoWall(f"{self._told('inner_radius')} is not below {self._told('radius')}")
-        if self.pressure is not None and self.force is not None:
-            raise InputError(
-                f"{self._told('pressure')} and {self._told('force')} are both given; give one of them: the "
-                "pressure on the tip's cross section, or its resultant"
-            )
+        numbers = {name: number_in_si(name, getattr(self, name)) for name in UNITS}
+        texts = None if self.segments is None else segment_texts(self.segments)
+        object.__setattr__(self, "si", SimpleNamespace(**numbers))
+        object.__setattr__(self, "segments", texts)
+        object.__setattr__(self, "pieces", segments_of(texts or ()))
+        refuse_words(self)
+        refuse_other_sets(self)
+        self.si.length, self.si.young = self.shape.length, self.shape.base.young
+        refuse_misfits(self)
+        refuse_crushed(self)
 
     def parameter(self, name: str) -> float:
         """A parameter of the arm as a rod; the default of what no arm determines."""
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
-    def _told(self, name: str) -> str:
+    def told(self, name: str) -> str:
         """A quantity as it was given, for a sentence."""
         return told(name, getattr(self, name))
 
+    @cached_property
+    def shape(self) -> Shape:
+        """The sections along the arm."""
+        if self.pieces:
+            own = self.si.young
+            return in_segments([(L, each, own if E is None else E) for L, each, E in self.pieces])
+        if self.tip_radius is not None:
+            return cone(self.si.length, self.si.radius, self.si.tip_radius, self.si.young)
+        return Shape(self.si.length, (Station(1.0, self._uniform_section, self.si.young),))
+
     @property
-    def section(self) -> Section:
-        """The cross section."""
+    def _uniform_section(self) -> Section:
         if self.radius is None:
             return Rectangle(self.si.width, self.si.height)
         if self.inner_radius is None:
             return Circle(self.si.radius)
         return Tube(self.si.radius, self.si.inner_radius)
+
+    @property
+    def cross_section(self) -> Section:
+        """The cross section at the base."""
+        return self.shape.base.section
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether the arm moves alike in all planes."""
+        return not isinstance(self.cross_section, Rectangle) or self.si.width == self.si.height
+
+    @property
+    def taper(self) -> float:
+        """Tip radius over base radius."""
+        return self.shape.taper
+
+    def build_with(self, drag: Drag) -> Build:
+        """Law and profile of the arm, with one of `drags`."""
+        return Build(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
+
+    @cached_property
+    def build(self) -> Build:
+        """Law and profile of the arm as a rod."""
+        return self.build_with(self.own_drag)
+
+    @property
+    def standard(self) -> bool:
+        """Whether the arm is uniform and of linear material."""
+        return self.build.standard and self.taper == 1
+
+    @property
+    def crushing_force(self) -> float:
+        """The force that crushes the weakest section, in k3/L^2; inf where no force does."""
+        return self.build.crushing_share(self.taper) * self.k1
 
     @property
     def load(self) -> str | None:
@@ -146,15 +142,14 @@ class SlenderArm:
         """Load divided by the flutter load, if the load is given in this way."""
         return None if self.load is None else share_of_flutter(getattr(self, self.load))
 
-    @property
-    def mass_per_length(self) -> float:
-        """Mass of the material and of the fluid in its bore, in kg/m.
+    def mass_at(self, station: Station) -> float:
+        """Mass per length at a station, of the material and of the fluid in its bore, in kg/m.
 
         The material is as dense as the fluid where no difference is given.
         """
         difference, fluid = self.si.density_difference, self.si.fluid_density
         density = fluid + (0.0 if isnan(difference) else difference)
-        return density * self.section.area + fluid * self.section.bore_area
+        return density * station.section.area + fluid * station.section.bore_area
 
     @property
     def tip_force(self) -> float:
@@ -165,18 +160,18 @@ class SlenderArm:
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
-            raise InputError(f"{self._told(self.load)} is no number yet; it takes the threshold of flutter")
+            raise InputError(f"{self.told(self.load)} is no number yet; it takes the threshold of flutter")
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property
     def _loaded_area(self) -> float:
         """Resultant over load: the area of the tip's face for a pressure, 1 for a force."""
-        return 1.0 if self.load == "force" else self.section.face_area
+        return 1.0 if self.load == "force" else self.shape.tip.section.face_area
 
     @property
     def pressure_scale(self) -> float:
         """Pressure on the tip's face that makes F = 1, in Pa."""
-        return self.force_scale / self.section.face_area
+        return self.force_scale / self.shape.tip.section.face_area
 
     @property
     def load_scale(self) -> float:
@@ -185,8 +180,8 @@ class SlenderArm:
 
     @property
     def bending_stiffness(self) -> float:
-        """k3 = E I, in N m^2 (Sec. III)."""
-        return self.si.young * self.section.second_moment
+        """k3 = E I at the base, in N m^2 (Sec. III)."""
+        return self.si.young * self.cross_section.second_moment
 
     @property
     def force_scale(self) -> float:
@@ -196,12 +191,12 @@ class SlenderArm:
     @property
     def k1(self) -> float:
         """E A L^2/k3 = A L^2/I (Sec. III and VI): the same bits whatever Young's modulus."""
-        return self.section.area * self.si.length**2 / self.section.second_moment
+        return self.cross_section.area * self.si.length**2 / self.cross_section.second_moment
 
     @property
     def k2(self) -> float:
         """kappa G A L^2/k3, kappa G being the paper's effective G (Sec. III and VI; Cowper 1966)."""
-        return self.section.shear_coefficient(self.poisson) / (2 * (1 + self.poisson)) * self.k1
+        return self.cross_section.shear_coefficient(self.poisson) / (2 * (1 + self.poisson)) * self.k1
 
     @property
     def F(self) -> float:
@@ -210,9 +205,13 @@ class SlenderArm:
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """The drags of DRAGS: the likeliest, then the corners of the range."""
-        section = self.section
-        return range_of_drag(self.si.viscosity, self.si.length, section.drag_radius, section.half_height)
+        """The drags of DRAGS at the base: the likeliest, then the corners of the range."""
+        return self.shape.drags(self.shape.base, self.si.viscosity)
+
+    def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
+        """The drag at every station of the shape; drag: that at the base, one of `drags`."""
+        place = self.drags.index(drag)
+        return tuple(self.shape.drags(each, self.si.viscosity)[place] for each in self.shape.stations)
 
     @property
     def own_drag(self) -> Drag:

@@ -1,5 +1,7 @@
 """What the model leaves out of an arm, as numbers: each neglected effect beside what the model keeps.
 
+Of an arm that varies along its length each effect is that of the section where it is largest.
+
 An effect has a limit beyond which the model does not apply; from a tenth of the limit on it is doubtful.
 Quantities are in SI units. Rates, forces and amplitudes are numbers or NumPy arrays that broadcast.
 Sentences about the effects belong to `rodsweep.verdict`.
@@ -16,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...arrays import Array
 from .arm import SlenderArm
 from .drag import Drag
+from .section import Tube
 
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
@@ -98,7 +101,7 @@ def effects_of(
     rate: of the motion, in rad/s; nan where nothing moves. F: follower force, in k3/L^2; nan without load.
     drag: with which the arm moves so fast; by default the least of its range, with which effects of inertia
     are largest. amplitude: of the tip, over the length. The effect of weight is left out where no density
-    difference is given, that of the wall where the arm has no bore.
+    difference is given, that of the wall where the arm has no bore. F is that of `weakest_load`.
     """
     drag = least_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
@@ -111,9 +114,10 @@ def effects_of(
     ]
     if not isnan(arm.si.density_difference):
         effects.append(weight(arm, force))
-    if arm.inner_radius is not None:
-        si = arm.si
-        effects.append(wall_effect(si.length, si.radius, si.inner_radius, arm.poisson, wide))
+    tubes = [each.section for each in arm.shape.stations if isinstance(each.section, Tube)]
+    if tubes:
+        walls = [wall_effect(arm.si.length, t.radius, t.inner_radius, arm.poisson, wide) for t in tubes]
+        effects.append(max(walls, key=lambda effect: float(np.nanmax(effect.value))))
     return tuple(effects)
 
 
@@ -135,7 +139,8 @@ def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
 
 def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase m omega/gamma2, of the shape of the rate, by which the arm's mass turns its drag."""
-    value = arm.mass_per_length * rate / drag.gamma2
+    along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
+    value = max(arm.mass_at(station) / own.gamma2 for station, own in along) * rate
     # The rate itself falls with viscosity, and so does its ratio to the drag.
     factor = np.sqrt(value / INERTIA_LIMIT)
     return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
@@ -143,7 +148,7 @@ def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase, of the shape of the rate, by which the drag lags: the fluid has to be set moving."""
-    logarithm = 4 * pi * arm.si.viscosity / drag.gamma2
+    logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
     k = FLUTTER_WAVENUMBER / arm.si.length
     s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
     return Effect(
@@ -188,10 +193,21 @@ def compression(arm: SlenderArm, F: Array) -> Effect:
     return _whatever_the_fluid("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
+def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
+    """The force that would compress the base as F does the weakest section, of the shape of F.
+
+    nan for rubber: its own law says how it is compressed.
+    """
+    share = arm.crushing_force / arm.k1
+    return np.asarray(F, float) / share if share < inf else np.full(np.shape(F), np.nan)
+
+
 def weight(arm: SlenderArm, F: Array) -> Effect:
     """Weight less buoyancy over that under which an upright arm buckles, of the shape of F."""
-    load = abs(arm.si.density_difference) * GRAVITY * arm.section.area * arm.si.length
-    value = load / (SELF_BUCKLING * arm.force_scale)
+    heaviness = abs(arm.si.density_difference) * GRAVITY
+    load = heaviness * arm.cross_section.area * arm.si.length
+    uniform = load / (SELF_BUCKLING * arm.force_scale)
+    value = arm.shape.buckling_share(heaviness) if arm.shape.varies else uniform
     return _whatever_the_fluid("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
@@ -218,7 +234,7 @@ def wall_effect(
 def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
     """rho U (2 a)/eta of a tip that moves by amplitude times L at the rate, of their shape."""
     speed = rate * amplitude * arm.si.length
-    value = arm.si.fluid_density * speed * 2 * arm.section.drag_radius / arm.si.viscosity
+    value = arm.si.fluid_density * speed * 2 * arm.shape.drag_radius / arm.si.viscosity
     return Effect(
         name="Reynolds number",
         value=value,

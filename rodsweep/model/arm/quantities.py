@@ -25,12 +25,13 @@ class Quantity(NamedTuple):
 
 
 QUANTITIES = {
-    "length": Quantity("m", "length of the arm", "10 cm", needed=True),
+    "length": Quantity("m", "length of the arm", "10 cm"),
     "radius": Quantity("m", "radius of the arm's circular section", "5 mm"),
     "inner_radius": Quantity("m", "radius of the bore of the arm, closed at its tip", "3 mm"),
+    "tip_radius": Quantity("m", "radius at the tip of a solid cone, with radius at its base", "3 mm"),
     "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
     "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
-    "young": Quantity("Pa", "Young's modulus of the arm", "100 kPa", needed=True),
+    "young": Quantity("Pa", "Young's modulus of the arm at small strain", "100 kPa"),
     "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s", needed=True),
     "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa", signed=True),
     "force": Quantity("N", "follower force at the tip", "0.16 N", signed=True),
@@ -52,7 +53,7 @@ UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if
 """SI unit and accepted notations of each quantity with a unit."""
 RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
 """Loads in units of that at which the arm flutters first, with the likeliest drag."""
-SECTION_SIDES = ("radius", "inner_radius"), ("width", "height")
+SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
 """Quantities that define a round section, and quantities that define a rectangular section."""
 ARM_UNITS = {
     "tau2": Quantity("s", "unit of time, gamma2 L^4/k3"),

@@ -7,9 +7,11 @@ import numpy as np
 
 from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER
-from ...config.arm.section import ArmSection, UncoveredArm
-from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...config.arm.section import ArmSection
+from ...config.arm.uncovered import UncoveredArm
+from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
+from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from .flutter_forces import FlutterForce
@@ -39,7 +41,7 @@ def grid_of_arms(
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
     table = {
         name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms])
-        for name in all_but("F", NONLINEAR_PARAMETERS)
+        for name in (*all_but("F", NONLINEAR_PARAMETERS), *section.tapering)
     }
     units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
     forces = [_force_of(section, arm, flutter) if arm else UNCOVERED for arm in arms]
@@ -52,19 +54,21 @@ def grid_of_arms(
         if section.load_axis in RELATIVE:
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
+    builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        crushing = table["k1"] * build.crushing_shares(table.get("taper", np.ones(1)))
-        covered[(covered == SLENDER) & (table["F"] >= CRUSHED_FROM * crushing)] = CRUSHED
+        shares = [arm.crushing_force / arm.k1 if arm else np.nan for arm in arms] if builds else []
+        beside_arm = build.crushing_shares(table.get("taper", np.ones(1)))
+        crushing = table["k1"] * (_along(0, shares) if builds else beside_arm)
+        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * crushing, shape)
+        covered[(covered == SLENDER) & crushed] = CRUSHED
     if (covered != SLENDER).all():
         _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()), forces)
     axes = {name: section.given[name].array() for name in section.several}
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
-    columns, at_points = (
-        {name: np.broadcast_to(column, shape).ravel() for name, column in each.items()}
-        for each in ({name: table[name] for name in names}, units)
-    )
+    columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
+    at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes, failures = covered.astype(np.int8).ravel(), _failures(covered, forces)
-    return Points(names, tuple(columns.values()), False, over, at_points, covered=codes, failures=failures)
+    return Points(names, columns, False, over, at_points, builds=builds, covered=codes, failures=failures)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:

@@ -13,7 +13,7 @@ from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...errors import InputError
-from ...model.arm.arm import CRUSHED_FROM
+from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
 from .arm_grid import FlutterOf, grid_of_arms

@@ -40,6 +40,9 @@ class Points:
     """Units of length, time and so on of the arm at every point of a grid over quantities, (points,)."""
     build: Build = STANDARD
     """Law and profile of all rods."""
+    builds: tuple[Build, ...] = ()
+    """Law and profile of each arm of a grid over quantities, in the order of the points, if arms differ by
+    them; each is that of equally many points. Empty if `build` is that of all."""
     covered: NDArray[np.int8] | None = None
     """Codes of `rodsweep.config.arm.axes`: whether a rod covers each point of an arm, (points,)."""
     failures: dict[int, str] = field(default_factory=dict)
@@ -109,4 +112,8 @@ class Points:
         Raises Crushed.
         """
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
-        return Rod(**parameters, build=self.build)
+        return Rod(**parameters, build=self.build_of(index))
+
+    def build_of(self, index: int) -> Build:
+        """Law and profile of the rod at a flat index."""
+        return self.builds[index * len(self.builds) // self.count] if self.builds else self.build

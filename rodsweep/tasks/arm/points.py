@@ -82,7 +82,12 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
     """
     if not points.over:
         return None
-    table = np.stack(points.columns, axis=-1)
+    columns = list(points.columns)
+    if points.builds:
+        number = {build: float(i) for i, build in enumerate(points.builds)}
+        each = points.count // len(points.builds)
+        columns.append(np.repeat([number[build] for build in points.builds], each))
+    table = np.stack(columns, axis=-1)
     rods = np.unique(np.nan_to_num(table, nan=-1.0), axis=0, return_inverse=True)[1].ravel()
     return None if rods.max() + 1 == len(rods) else rods
 

@@ -92,7 +92,7 @@ class ArmValidity:
     def __init__(self, config: Config, points: Points):
         assert config.parameters.arm is not None
         self.section: ArmSection = config.parameters.arm
-        self.points, self.task, self.build = points, config.task, config.build
+        self.points, self.task = points, config.task
         sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
@@ -155,10 +155,11 @@ class ArmValidity:
 
         Rubber is compressed by its own law, which neglects nothing of it.
         """
-        if self.build.law != LINEAR.law:
+        build = self.points.build_of(int(np.ravel(index)[0]))
+        if build.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
         tapers = self._column("taper", index)
-        shares = self.build.crushing_shares(np.ones(()) if tapers is None else tapers)
+        shares = build.crushing_shares(np.ones(()) if tapers is None else tapers)
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:

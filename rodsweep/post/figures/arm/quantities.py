@@ -7,6 +7,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....config.arm.axes import ALONG
+from ....config.arm.shape import OF_MATERIAL
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAGS
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
@@ -59,7 +60,8 @@ def replaced(view: View, number: int) -> dict[str, float]:
     given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAGS[int(given["drag"])]
-    own = SlenderArm(**given)
+    arm = view.config.get("parameters", {}).get("arm") or {}
+    own = SlenderArm(**given, **{name: arm[name] for name in OF_MATERIAL if arm.get(name) is not None})
     columns = view.point_columns
     at = {name: float(columns[name][number - 1]) for name in view.parameters}
     if own.load:

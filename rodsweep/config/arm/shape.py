@@ -1,0 +1,140 @@
+"""Shape and material of an arm in a config: segments, taper, law, and the build that all its points share."""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import product
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator, WithJsonSchema
+
+from ...errors import InputError
+from ...model.arm.segments import EXAMPLE, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
+from ...model.material.build import STANDARD, Build
+from ...model.units import unit_of, written_in
+from .uncovered import UncoveredArm
+
+if TYPE_CHECKING:
+    from .section import ArmSection
+
+OF_MATERIAL = ("segments", "law", "section")
+"""Keys of an arm that state what `material` states for a rod without dimension."""
+SHAPES = ("tip_radius", "segments")
+"""Keys of an arm that varies along its length."""
+RUBBER_POISSON = 0.5
+"""Poisson's ratio of rubber, which a section needs in order to swell."""
+
+
+def as_segments(value: Any) -> tuple[str, ...] | None:
+    """Segments as texts; ValueError for what is no list of segments."""
+    if value is None:
+        return None
+    try:
+        return segment_texts(value)
+    except InputError as error:
+        raise ValueError(f"parameters.arm.{error}") from None
+
+
+def with_length(given: dict[str, Any]) -> dict[str, Any]:
+    """Keys of an arm, with the sum of its segments where no length is given."""
+    if given.get("segments") is None or given.get("length") is not None:
+        return given
+    texts = as_segments(given["segments"]) or ()
+    unit = unit_of(texts[0].partition(":")[0], "m")
+    total = sum(segment.length for segment in segments_of(texts))
+    return given | {"length": f"{written_in(total, unit, 'm'):.15g} {unit}"}
+
+
+def material_of(arm: "ArmSection") -> dict[str, Any]:
+    """Segments, law and section of an arm, without what is not given."""
+    return {name: getattr(arm, name) for name in OF_MATERIAL if getattr(arm, name) is not None}
+
+
+def build_of(arm: "ArmSection") -> Build:
+    """Law of all arms, and profile of the first that a rod covers.
+
+    ValueError where a grid of parameters has arms with several profiles.
+    """
+    alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
+    if all(getattr(arm, name) is None for name in SHAPES):
+        return alike
+    if arm.is_grid and len(set(_builds_of(arm))) > 1:
+        raise ValueError(
+            f"parameters.arm.{arm.several[0]} has several values, with which the segments differ by other "
+            "factors; give one value"
+        )
+    return next(_builds_of(arm), alike)
+
+
+def is_standard(arm: "ArmSection") -> bool:
+    """Whether all arms are uniform and of linear material."""
+    if arm.segments is None:
+        return arm.build.standard and tapers_of(arm) == {1.0}
+    return all(build.standard for build in _builds_of(arm))
+
+
+def _builds_of(arm: "ArmSection") -> Iterator[Build]:
+    """Law and profile of every arm that a rod covers."""
+    for values in arm.sections():
+        with suppress(UncoveredArm):
+            yield arm.made(values).build
+
+
+def tapers_of(arm: "ArmSection") -> set[float]:
+    """Tip radius over base radius of all arms, as a cone has it; {1.0} without a tip radius."""
+    if arm.tip_radius is None or arm.radius is None:
+        return {1.0}
+    pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
+    return {tip / base for tip, base in pairs}
+
+
+def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
+    """ValueError for an axis of a length that segments fix, and for what stands beside a cone or segments.
+
+    beside: parameters given beside the arm.
+    """
+    if arm.segments is not None and "length" in arm.several:
+        raise ValueError("parameters.arm.length has several values, but the segments make one; leave it out")
+    for name in SHAPES:
+        if getattr(arm, name) is not None and "taper" in beside:
+            raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
+
+
+def refuse_compressible(arm: "ArmSection", section: str) -> None:
+    """ValueError where the section of the material swells and Poisson's ratio is not that of rubber."""
+    ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
+    wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
+    if section == "swelling" and wrong is not None:
+        raise ValueError(
+            f"parameters.arm.poisson = {wrong:g} contradicts section = swelling, which keeps the volume of "
+            f"rubber; it must be {RUBBER_POISSON:g}, or section = fixed"
+        )
+
+
+_SEGMENT = {
+    "anyOf": [
+        {"type": "string", "pattern": r"^[^:]+:.*radius"},
+        {
+            "type": "object",
+            "properties": {
+                name: {"anyOf": [{"type": "number"}, {"type": "string"}]} for name in SEGMENT_KEYS
+            },
+            "required": ["length", "radius"],
+            "additionalProperties": False,
+        },
+    ]
+}
+Segments = Annotated[
+    tuple[str, ...] | None,
+    BeforeValidator(as_segments),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "array", "items": _SEGMENT, "minItems": 1, "maxItems": MAX_SEGMENTS},
+                *_SEGMENT["anyOf"],
+                {"type": "null"},
+            ]
+        }
+    ),
+]
+SEGMENTS_ALLOWED = f"a list of segments, each as '{EXAMPLE}' or a mapping of {', '.join(SEGMENT_KEYS)}"
+"""Allowed values of the key `segments`, as a phrase."""

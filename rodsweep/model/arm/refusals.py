@@ -1,0 +1,151 @@
+"""Sentences that refuse an arm: quantities that do not go together, or that make no slender arm."""
+
+from math import inf
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+from ...errors import InputError
+from ..material.laws import law_of
+from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
+from ..units import unit_of, written_in
+from .drag import DRAGS, LEAST_SLENDERNESS
+from .quantities import QUANTITIES, SECTION_SIDES, UNITS
+from .section import NoWall
+
+if TYPE_CHECKING:
+    from .arm import SlenderArm
+
+CRUSHED_FROM = 1 - 1e-14
+"""Part of k1 from which on F is as large: what conversion of units leaves between them."""
+SAME_LENGTH = 1e-9
+"""Relative difference between a length and the sum of segments that rounding may leave."""
+INCOMPRESSIBLE = 0.5
+"""Poisson's ratio of material that keeps its volume, as a section that swells does."""
+
+
+class NotSlender(InputError):
+    """The refusal of an arm that is too short for the drag of slender bodies."""
+
+
+def refuse_words(arm: "SlenderArm") -> None:
+    """InputError for Poisson's ratio, a drag or a law that is none, and for a law that contradicts it."""
+    ratio: Any = arm.poisson
+    is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
+    if not is_number or not -1 < ratio <= INCOMPRESSIBLE:
+        try:
+            text = repr(ratio) if isinstance(ratio, str) else str(ratio)
+        except ValueError:  # an integer of thousands of digits
+            text = "an integer too large to be shown"
+        raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
+    if arm.drag not in DRAGS:
+        raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
+    try:
+        law_of(arm.law, arm.section)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    if arm.section == "swelling" and ratio != INCOMPRESSIBLE:
+        raise InputError(
+            f"poisson = {ratio} contradicts section = swelling, which keeps the volume of rubber; it must be "
+            f"{INCOMPRESSIBLE:g}, or section = fixed"
+        )
+
+
+def refuse_other_sets(arm: "SlenderArm") -> None:
+    """InputError unless length, material, fluid and one shape are given, and at most one load."""
+    if arm.segments is not None:
+        _refuse_beside_segments(arm)
+    else:
+        for name in ("length", "young"):
+            if getattr(arm, name) is None:
+                raise InputError(f"{name} is missing; write it as in '{QUANTITIES[name].example}'")
+        _refuse_sections(arm)
+    for name, quantity in QUANTITIES.items():
+        if quantity.needed and getattr(arm, name) is None:
+            raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
+    if arm.pressure is not None and arm.force is not None:
+        raise InputError(
+            f"{arm.told('pressure')} and {arm.told('force')} are both given; give one of them: the "
+            "pressure on the tip's cross section, or its resultant"
+        )
+
+
+def _refuse_sections(arm: "SlenderArm") -> None:
+    """InputError unless there is one section, whose bore or tip fits."""
+    sides = (arm.width, arm.height)
+    for name, why in (("inner_radius", "a rectangle has no bore here"), ("tip_radius", "only cones taper")):
+        if getattr(arm, name) is not None and arm.radius is None:
+            raise InputError(f"{arm.told(name)} needs a radius; {why}")
+    if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
+        raise InputError("radius: give either a radius, or width and height, or segments")
+    if arm.si.inner_radius >= arm.si.radius:
+        raise NoWall(f"{arm.told('inner_radius')} is not below {arm.told('radius')}")
+    if arm.tip_radius is None:
+        return
+    if arm.inner_radius is not None:
+        raise InputError(
+            f"{arm.told('tip_radius')} and {arm.told('inner_radius')} are both given, but a cone is solid; "
+            "give one of them, or segments"
+        )
+    if not SMALLEST_TAPER <= arm.si.tip_radius / arm.si.radius <= LARGEST_TAPER:
+        raise InputError(
+            f"{arm.told('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; it must be "
+            f"from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g} of it"
+        )
+
+
+def _refuse_beside_segments(arm: "SlenderArm") -> None:
+    """InputError for a section beside segments, and for a length that is not theirs."""
+    for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
+        if getattr(arm, name) is not None:
+            raise InputError(
+                f"{arm.told(name)} and segments are both given; a segment has its own radius, so give one of "
+                "them"
+            )
+    pieces = arm.pieces
+    for number, piece in enumerate(pieces, 1):
+        if piece.young is None and arm.young is None:
+            raise InputError(
+                f"segments, number {number}: young is missing; give it there, or young for all segments"
+            )
+    total = sum(piece.length for piece in pieces)
+    if arm.length is not None and not abs(arm.si.length - total) <= SAME_LENGTH * total:
+        unit = unit_of(arm.length, "m")
+        summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
+        raise InputError(f"{arm.told('length')} is not the sum of the segments, {summed}; leave it out")
+
+
+def refuse_misfits(arm: "SlenderArm") -> None:
+    """InputError for numbers beyond what is computed, NotSlender for a short arm."""
+    if arm.si.density_difference <= -arm.si.fluid_density:
+        given, least = arm.told("density_difference"), f"{-arm.si.fluid_density:.4g} kg/m^3"
+        raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
+    length = "segments: their length" if arm.length is None else arm.told("length")
+    try:
+        slenderness = arm.shape.length / arm.shape.drag_radius
+        fine = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale)) and arm.build
+    except (ArithmeticError, ValueError):
+        fine = False
+    if not fine:
+        raise InputError(
+            f"{length} makes numbers too large or too small with its section and Young's modulus; check "
+            "their units"
+        )
+    if slenderness < LEAST_SLENDERNESS:
+        raise NotSlender(
+            f"{length} is {slenderness:.3g} radii; the drag of a slender arm needs at least "
+            f"{LEAST_SLENDERNESS:g}"
+        )
+
+
+def refuse_crushed(arm: "SlenderArm") -> None:
+    """InputError where the load is not below the one that crushes the arm at its weakest section."""
+    loaded = arm.load
+    if loaded is None or arm.share_of_flutter is not None or CRUSHED_FROM * arm.crushing_force > arm.F:
+        return
+    limit, si = arm.crushing_force * arm.load_scale, UNITS[loaded][0]
+    unit = unit_of(getattr(arm, loaded), si)
+    where = "the weakest section of" if arm.shape.varies else ""
+    raise InputError(
+        f"{arm.told(loaded)} compresses {f'{where} the arm'.strip()} to nothing; it must be below "
+        f"{float(f'{written_in(limit, unit, si):.4g}'):g} {unit}, where a linear material is crushed"
+    )

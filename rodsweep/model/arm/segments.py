@@ -1,0 +1,116 @@
+"""Segments of an arm as people write them, "4 cm: radius 6 mm, young 80 kPa", and as numbers in SI."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from ...errors import InputError
+from ..units import Given
+from .quantities import number_in_si, told
+from .section import Circle, NoWall, Tube
+
+SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
+"""Quantities of a segment. `young` is by default that of the arm."""
+EXAMPLE = "4 cm: radius 6 mm, young 80 kPa"
+"""A segment as it is written."""
+PART = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
+"""Name and quantity of one part of a segment, as "radius 6 mm"."""
+MAX_SEGMENTS = 100
+"""Largest number of segments of an arm: each ends an element of the mesh."""
+
+
+class ArmSegment(NamedTuple):
+    """A uniform piece of an arm, in SI units; young is None where the arm's own applies."""
+
+    length: float
+    section: Circle | Tube
+    young: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenSegment:
+    """A segment's quantities by name, as they were given."""
+
+    given: Mapping[str, Given]
+
+    def __str__(self) -> str:
+        """The segment as text, from which `written_segment` makes it again."""
+        texts = {name: _text(name, value) for name, value in self.given.items()}
+        length = texts.pop("length")
+        return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"
+
+
+def segment_texts(given: Any) -> tuple[str, ...]:
+    """Every segment of an arm as text; InputError, beginning with "segments", for what is no segment."""
+    if isinstance(given, str | Mapping):
+        given = [given]
+    if not isinstance(given, Sequence) or not given:
+        raise InputError(f"segments = {str(given):.60} is no list of segments; write each as in '{EXAMPLE}'")
+    if len(given) > MAX_SEGMENTS:
+        raise InputError(f"segments: there are {len(given)}; an arm has at most {MAX_SEGMENTS}")
+    written = [written_segment(number, each) for number, each in enumerate(given, 1)]
+    for number, each in enumerate(written, 1):
+        _segment(number, each)
+    return tuple(map(str, written))
+
+
+def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
+    """The segments of `segment_texts` in SI units."""
+    return tuple(_segment(number, written_segment(number, text)) for number, text in enumerate(texts, 1))
+
+
+def written_segment(number: int, given: Any) -> WrittenSegment:
+    """A segment's quantities from its text or mapping; InputError for an unknown or a missing key."""
+    where = f"segments, number {number}"
+    found = dict(_mapping(where, given))
+    for name in found:
+        if name not in SEGMENT_KEYS:
+            raise InputError(f"{where}: unknown key {name}; a segment has {', '.join(SEGMENT_KEYS)}")
+    for name in ("length", "radius"):
+        if found.get(name) is None:
+            raise InputError(f"{where}: {name} is missing; write a segment as in '{EXAMPLE}'")
+    return WrittenSegment({name: found[name] for name in SEGMENT_KEYS if found.get(name) is not None})
+
+
+def _mapping(where: str, given: Any) -> Mapping[str, Given]:
+    """Quantities of a segment by name, from a mapping or a text."""
+    if isinstance(given, Mapping):
+        return {str(name): value for name, value in given.items()}
+    length, colon, parts = str(given).partition(":")
+    if not isinstance(given, str) or not colon:
+        raise InputError(f"{where}: {str(given)!r:.60} is no segment; write it as in '{EXAMPLE}'")
+    found: dict[str, Given] = {"length": length.strip()}
+    for part in parts.split(","):
+        name_and_value = PART.fullmatch(part)
+        if name_and_value is None:
+            raise InputError(
+                f"{where}: {part.strip()!r:.60} is no quantity; write a segment as in '{EXAMPLE}'"
+            )
+        name = name_and_value[1].replace("-", "_").replace(" ", "_")
+        if name in found:
+            raise InputError(f"{where}: {name} is given twice; give it once")
+        found[name] = name_and_value[2]
+    return found
+
+
+def _segment(number: int, written: WrittenSegment) -> ArmSegment:
+    """The numbers of a segment in SI units; InputError for a quantity out of range, NoWall for a bore."""
+    given, where = written.given, f"segments, number {number}"
+    try:
+        length, radius, inner, young = (number_in_si(name, given.get(name)) for name in SEGMENT_KEYS)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    if "inner_radius" not in given:
+        return ArmSegment(length, Circle(radius), young if "young" in given else None)
+    if inner >= radius:
+        bore, outer = (told(name, given[name]) for name in ("inner_radius", "radius"))
+        raise NoWall(f"{where}: {bore} is not below {outer}")
+    return ArmSegment(length, Tube(radius, inner), young if "young" in given else None)
+
+
+def _text(name: str, given: Given) -> str:
+    """A quantity as text with its unit."""
+    from .quantities import UNITS
+
+    return given.strip() if isinstance(given, str) else f"{number_in_si(name, given)!r} {UNITS[name][0]}"

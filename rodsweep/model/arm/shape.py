@@ -1,0 +1,164 @@
+"""An arm along its length, in SI units: its sections and moduli, its taper, and the factors that follow.
+
+The drags are those of the local radius and of the length of the whole arm. Of a cone the parameter `taper`
+has all of this but the logarithms in the drags of translation, which its profile adds.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, log
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ..material.profile import FACTORS, RADIUS_POWERS, Profile
+from .drag import Drag, range_of_drag
+from .section import Circle, Section, Tube
+
+BUCKLING_POINTS = 400
+"""Midpoints at which the weight that buckles an arm is computed: of a uniform arm its error is 5e-5."""
+RADIUS_STEP = 1.3
+"""Largest ratio of radii of a cone at neighbouring rows of its profile: the cubics between them have the
+logarithms of the drag to 3e-4 then, for tapers from 0.01 to 100."""
+
+
+class Station(NamedTuple):
+    """A section of an arm. end: of its piece, in lengths from the base. young: in Pa."""
+
+    end: float
+    section: Section
+    young: float
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Sections along an arm of `length`, in m.
+
+    stations: the segments from the base to the tip; of a cone its base and its tip; of a uniform arm its only
+    section. taper: tip radius over base radius.
+    """
+
+    length: float
+    stations: tuple[Station, ...]
+    taper: float = 1.0
+
+    @property
+    def base(self) -> Station:
+        """The section at the clamp, whose stiffness and drag are units."""
+        return self.stations[0]
+
+    @property
+    def tip(self) -> Station:
+        """The section at the tip, on whose face a pressure pushes."""
+        return self.stations[-1]
+
+    @property
+    def varies(self) -> bool:
+        """Whether sections or moduli differ along the arm."""
+        return any(each[1:] != self.base[1:] for each in self.stations)
+
+    @property
+    def drag_radius(self) -> float:
+        """The largest drag radius along the arm, in m."""
+        return max(each.section.drag_radius for each in self.stations)
+
+    def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
+        """The drags of DRAGS at a station."""
+        section = station.section
+        return range_of_drag(viscosity, self.length, section.drag_radius, section.half_height)
+
+    def profile(self, poisson: float, drag: int) -> Profile | None:
+        """Factors of the segments, or of the logarithms of a cone, to the base; None where they are all 1.
+
+        drag: place of the drag in DRAGS. ValueError where a factor is too large or too small.
+        """
+        if not self.varies:
+            return None
+        if self.taper != 1:
+            return self._logarithms(drag)
+        ends = [0.0, *(each.end for each in self.stations)]
+        u, rows = list[float](), list[tuple[float, ...]]()
+        for start, station in zip(ends, self.stations, strict=False):
+            row = self._factors(station, poisson, drag)
+            if rows and rows[-1] == row:
+                u[-1] = station.end
+            else:
+                u += [start, station.end]
+                rows += [row, row]
+        return Profile(tuple(u), tuple(rows))
+
+    def _logarithms(self, drag: int) -> Profile:
+        """Factors of gamma1 and gamma2 along a cone; `taper` has all other factors."""
+        pieces = max(2, ceil(abs(log(self.taper)) / log(RADIUS_STEP)))
+        radii = self.taper ** (np.arange(pieces + 1) / pieces)
+        u = (1 - radii) / (1 - self.taper)
+        base, rows = self.drags(self.base, 1.0)[drag], list[tuple[float, ...]]()
+        for radius in (radii * self.base.section.drag_radius).tolist():
+            own = range_of_drag(1.0, self.length, radius, radius)[drag]
+            factors = {"gamma1": own.axial / base.axial, "gamma2": own.across / base.across}
+            rows.append(tuple(factors.get(name, 1.0) for name in FACTORS))
+        return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
+
+    def _factors(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
+        """k1, k2, k3, gamma1, gamma2, gamma3 at a station over those at the base."""
+        own, base = (np.array(self._of_station(each, poisson, drag)) for each in (station, self.base))
+        with np.errstate(all="ignore"):
+            return tuple((own / base).tolist())
+
+    def _of_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
+        """E A, kappa E A, E I, and the drags over viscosity."""
+        section, friction = station.section, self.drags(station, 1.0)[drag]
+        stretch = station.young * section.area
+        return (
+            stretch,
+            section.shear_coefficient(poisson) * stretch,
+            station.young * section.second_moment,
+            friction.axial,
+            friction.across,
+            friction.rotational,
+        )
+
+    def buckling_share(self, weight: float) -> float:
+        """Weight per volume, in N/m^3, over the one under which the upright arm buckles.
+
+        theta' = m/(E I) and m' = -W theta, W(u) being the weight beyond u, have a solution with theta(0) = 0
+        and m(1) = 0 where 1 is an eigenvalue of theta -> int_0^u (1/(E I)) int_u^1 W theta.
+        """
+        h, area, stiffness = self._at_midpoints()
+        beyond = np.tril(np.ones((len(h), len(h)))).T * (weight * area * h)
+        np.fill_diagonal(beyond, weight * area * h / 2)
+        moment = np.tril(np.ones((len(h), len(h)))).T * h * beyond.sum(axis=1)
+        moment[np.diag_indices_from(moment)] /= 2
+        turn = np.tril(np.ones((len(h), len(h)))) * (h / stiffness)
+        turn[np.diag_indices_from(turn)] /= 2
+        return float(np.abs(np.linalg.eigvals(turn @ moment)).max())
+
+    def _at_midpoints(self) -> tuple[Array, Array, Array]:
+        """(h, A, E I) of short pieces of the arm, each (pieces,), in m, m^2, N m^2."""
+        if self.taper != 1:
+            u = (np.arange(BUCKLING_POINTS) + 0.5) / BUCKLING_POINTS
+            radius = 1 - (1 - self.taper) * u
+            base = self.base
+            area = base.section.area * radius ** RADIUS_POWERS["k1"]
+            stiffness = base.young * base.section.second_moment * radius ** RADIUS_POWERS["k3"]
+            return np.full(len(u), self.length / len(u)), area, stiffness
+        each = max(4, BUCKLING_POINTS // len(self.stations))
+        lengths = np.diff([0.0, *(station.end for station in self.stations)]) * self.length
+        areas = [station.section.area for station in self.stations]
+        stiffnesses = [station.young * station.section.second_moment for station in self.stations]
+        return np.repeat(lengths / each, each), np.repeat(areas, each), np.repeat(stiffnesses, each)
+
+
+def cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
+    """A solid cone; all lengths in m."""
+    ends = (Station(0.0, Circle(radius), young), Station(1.0, Circle(tip_radius), young))
+    return Shape(length, ends, tip_radius / radius)
+
+
+def in_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
+    """An arm of (length in m, section, young in Pa) from the base to the tip."""
+    ends = np.cumsum([length for length, _, _ in pieces])
+    shares = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
+    stations = [Station(u, section, young) for u, (_, section, young) in zip(shares, pieces, strict=True)]
+    return Shape(float(ends[-1]), tuple(stations))

@@ -1,0 +1,44 @@
+"""An arm that varies along its length or is of rubber, in words: shape, law, and what is not computed."""
+
+from ..model.arm.arm import SlenderArm
+from ..model.arm.section import Tube
+from ..model.arm.shape import Station
+from ..model.material.laws import LINEAR
+from ..model.units import compact
+
+
+def shape_words(arm: SlenderArm) -> str:
+    """A cone, segments or a uniform arm, and its material: "a cone of rubber"."""
+    shape = "an arm" if not arm.shape.varies else "a cone" if arm.taper != 1 else "an arm of segments"
+    return shape if arm.law == LINEAR.law else f"{shape} of rubber"
+
+
+def no_cycles(arm: SlenderArm) -> list[str]:
+    """Sentence on what is not computed; empty for a uniform arm of linear material."""
+    if arm.standard:
+        return []
+    return [
+        f"How far and how fast {shape_words(arm)} beats beyond flutter is not computed: cycles are known for "
+        "uniform arms of linear material only."
+    ]
+
+
+def law_words(arm: SlenderArm) -> str:
+    """The constitutive law in words."""
+    law = "linear" if arm.law == LINEAR.law else "neo-Hookean"
+    return f"{law}, {arm.section} section" if arm.law != LINEAR.law else law
+
+
+def station_words(station: Station) -> str:
+    """Radius, bore and Young's modulus of a segment: "radius 6 mm, inner radius 3 mm, 80 kPa"."""
+    sides = {"radius": station.section.drag_radius}
+    if isinstance(station.section, Tube):
+        sides["inner radius"] = station.section.inner_radius
+    told = [f"{name} {_in_prefix(value, 'm')}" for name, value in sides.items()]
+    return ", ".join([*told, _in_prefix(station.young, "Pa")])
+
+
+def _in_prefix(value: float, si: str) -> str:
+    """A value in an SI unit with a prefix, to four digits."""
+    factor, unit = compact(value, si)
+    return f"{value * factor:.4g} {unit}"
