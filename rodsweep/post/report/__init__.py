@@ -5,12 +5,13 @@ under the pointer, the tables of `rodsweep export`, the config and the provenanc
 from elsewhere are forbidden by the page itself.
 """
 
+import re
 from collections.abc import Sequence
 from itertools import count
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from ... import __version__
 from ...errors import InputError
@@ -19,14 +20,13 @@ from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
 from ..whole_file import written_whole
+from .dark_colours import in_the_dark
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
 from .reported import Reported, reported
 
-DARK_INK = 232
-"""Brightness of black ink on the dark page."""
-DARK_PAPER = 27
-"""Brightness of white paper on the dark page."""
+QUOTED = re.compile("`([^`]*)`")
+"""A command or a key in a sentence."""
 
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
@@ -69,19 +69,20 @@ def page_text(results: Sequence[Reported], together: Pictures) -> str:
         keep_trailing_newline=True,
     )
     environment.filters["svg"] = Markup  # made here from numbers and escaped texts
+    environment.filters["with_code"] = _with_code
     pictures = [each.picture for result in results for each in result.pictures.shown]
     pictures += [each.picture for each in together.shown]
-    greys = sorted(set[int]().union(*(picture.greys for picture in pictures)))
+    colours = sorted(set[str]().union(*(picture.colours for picture in pictures)))
     return environment.get_template("page.html").render(
         results=results,
         together=together,
-        greys=[(f"{grey:02x}", f"{_in_the_dark(grey):02x}") for grey in greys],
+        colours=[(colour, in_the_dark(colour)) for colour in colours],
         max_rows=MAX_ROWS,
         version=__version__,
         written=now(),
     )
 
 
-def _in_the_dark(grey: int) -> int:
-    """Brightness of a grey on the dark page."""
-    return round(DARK_INK + (DARK_PAPER - DARK_INK) * grey / 255)
+def _with_code(text: str) -> Markup:
+    """A sentence as HTML, its words in backquotes as code."""
+    return Markup(QUOTED.sub(r"<code>\1</code>", escape(text)))

@@ -16,8 +16,10 @@ from matplotlib.colors import to_hex
 from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from ...arrays import Array
+from ..figures.cycle.point_map import cell_centres
 from .label_text import label_text
 
 MAX_POINTS = 2500
@@ -75,11 +77,7 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[Series]:
     for line in axes.lines:
         if line.get_visible():
             found.append(_line(axes, line, names))
-    for drawn in axes.collections:
-        if isinstance(drawn, PathCollection) and drawn.get_visible():
-            offsets = np.ma.filled(np.ma.asarray(drawn.get_offsets(), float), np.nan)
-            places = drawn.get_offset_transform().transform(offsets)
-            found.append(Series(places, _texts(names, offsets, _series_name(drawn.get_label()))))
+    found += [_scatter(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
     frame = axes.bbox.padded(MARGIN)
     for series in found:
         inside = np.isfinite(series.places).all(axis=1)
@@ -88,36 +86,59 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[Series]:
 
 
 def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> Series:
-    """Vertices of a line; of a line across the whole panel, such as a threshold, only the middle."""
+    """Vertices of a line; of a line across the whole panel, such as a threshold, the middle and the name."""
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # a logarithmic axis has no place for zero
         places = line.get_transform().transform(data)
     label = _series_name(line.get_label())
     if line.get_transform() == axes.transData:
         return Series(places, _texts(names, data, label))
-    across = 0 if line.get_transform() == axes.get_xaxis_transform() else 1
-    text = label or f"{names[across]} = {_number(data[0, across])}"
-    return Series(places.mean(axis=0, keepdims=True), [text])
+    # A line across the whole panel: a threshold has a name, and an axis at zero needs no text.
+    return Series(places.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
+
+
+def _scatter(dots: PathCollection, names: tuple[str, str]) -> Series:
+    """Scattered points, by their colours' values if there are any.
+
+    An invisible scatter holds the points from which filled contours are drawn.
+    """
+    data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
+    places = dots.get_offset_transform().transform(data)
+    texts = _texts(names, data, _series_name(dots.get_label()))
+    values = dots.get_array()
+    if values is None:
+        return Series(places, texts)
+    name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
+    name = name or _series_name(dots.get_label())
+    return Series(
+        places,
+        [
+            f"{name}: {_number(value)}\n{_text(names, at)}" if name else text
+            for value, at, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
+        ],
+    )
 
 
 def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
-    """Yields the values at the centres of coloured cells, by the colour bar or by the legend."""
+    """Yields the values of coloured cells, by the colour bar or by the legend."""
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
-        corners = mesh.get_coordinates()
-        places = axes.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)
-        centres = (places[1:, 1:] + places[:-1, :-1]) / 2
+        corners = np.asarray(mesh.get_coordinates(), float)
+        edges = axes.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)
+        across = cell_centres(edges[0, :, 0])
+        up = cell_centres(edges[:, 0, 1])
+        places = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 2)
         values = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
-        bar = mesh.colorbar
-        name = "" if bar is None else label_text(bar.ax.get_ylabel())
+        name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
         kept = np.flatnonzero(~np.ma.getmaskarray(values))
-        centres = centres.reshape(-1, 2)[kept]
         texts = []
-        for at, value in zip(axes.transData.inverted().transform(centres), values[kept], strict=True):
-            word = words.get(to_hex(mesh.to_rgba(value)), "") if bar is None else f"{name}: {_number(value)}"
+        for at, value in zip(
+            axes.transData.inverted().transform(places[kept]).reshape(-1, 2), values[kept], strict=True
+        ):
+            word = f"{name}: {_number(value)}" if name else words.get(to_hex(mesh.to_rgba(value)), "")
             texts.append("\n".join(filter(None, (word, _text(names, at)))))
-        yield Series(centres, texts)
+        yield Series(places[kept], texts)
 
 
 def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
@@ -137,11 +158,25 @@ def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator
 def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
     """Name of an axis as plain text, from the panel or from a panel that shares the axis."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
-    for each in (axes, *shared.get_siblings(axes)):
+    for each in (axes, *shared.get_siblings(axes), *_beside(axes, which)):
         label = each.get_xlabel() if which == "x" else each.get_ylabel()
         if label:
             return label_text(label)
     return which
+
+
+def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
+    """Panels in the same column, or for y in the same row, with the same limits of the axis."""
+
+    def place(panel: Axes) -> object:
+        grid = panel.get_subplotspec()
+        if grid is None:
+            return None
+        if which == "x":
+            return grid.colspan.start, panel.get_xlim()
+        return grid.rowspan.start, panel.get_ylim()
+
+    return [each for each in axes.get_figure().axes if each is not axes and place(each) == place(axes)]
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:
@@ -150,7 +185,7 @@ def _legend_words(figure: Figure) -> dict[str, str]:
     words = {}
     for legend in legends:
         for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
-            if hasattr(handle, "get_facecolor") and np.ndim(handle.get_facecolor()) == 1:
+            if isinstance(handle, Patch):
                 words[to_hex(handle.get_facecolor())] = label_text(text.get_text())
     return words
 

@@ -6,7 +6,8 @@ from functools import cache
 
 FORMULA = re.compile(r"\$(.+?)(?<!\\)\$")
 """A formula between dollars."""
-WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|dot|mathit)\s*(?:\{([^{}]*)\}|(\w))")
+DERIVATIVE = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
+WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
 """A command whose argument is the text: upright letters, and marks above a letter."""
 SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
@@ -23,6 +24,7 @@ def label_text(label: str) -> str:
 
 def _formula(tex: str) -> str:
     """A formula as text: indices stand behind their letter, powers behind a ^."""
+    tex = DERIVATIVE.sub(lambda found: rf"d{found[1] or found[2]}/dt\,", tex)
     previous = None
     while previous != tex:  # arguments may contain commands
         previous = tex

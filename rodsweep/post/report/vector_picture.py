@@ -1,4 +1,4 @@
-"""A matplotlib figure as SVG within a page: values under the pointer, greys that follow the page."""
+"""A matplotlib figure as SVG within a page: values under the pointer, colours that follow the page."""
 
 import re
 from dataclasses import dataclass
@@ -12,8 +12,7 @@ from .hover_points import hover_points
 
 SVG = "http://www.w3.org/2000/svg"
 XLINK = "http://www.w3.org/1999/xlink"
-GREY = re.compile(r"#([0-9a-f]{2})\1\1(?![0-9a-f])")
-"""A colour between black and white."""
+COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
 RADIUS = "4"
 """Radius, in points, of the place around a value that shows its text without a script."""
 
@@ -25,12 +24,12 @@ ElementTree.register_namespace("xlink", XLINK)
 class VectorPicture:
     """A figure as an SVG element.
 
-    greys: brightness, from 0 to 255, of the greys that the page may change; empty for a picture with colours
-    stored as an image, which need their paper.
+    colours: colours, as six hexadecimal digits, that the page may change; empty for a picture with colours
+    stored as an image, which needs white paper.
     """
 
     svg: str
-    greys: frozenset[int]
+    colours: frozenset[str]
     width: float
     """Natural width, in points."""
 
@@ -44,17 +43,17 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     root = ElementTree.fromstring(written.getvalue())
     for place in ("metadata", "defs/style"):
         _remove(root, place)
-    greys = frozenset[int]()
+    colours = frozenset[str]()
     has_image = next(root.iter(f"{{{SVG}}}image"), None) is not None
     if not has_image:
-        greys = _name_greys(root)
-        root.set("fill", "var(--g00, #000000)")
+        colours = _name_colours(root)
+        root.set("fill", "var(--c000000, #000000)")
     root.attrib.pop("height", None)
     width = float(root.attrib.pop("width").removesuffix("pt"))
     root.set("role", "img")
     root.set("aria-label", caption)
     _add_texts(root, figure)
-    return VectorPicture(ElementTree.tostring(root, encoding="unicode"), greys, width)
+    return VectorPicture(ElementTree.tostring(root, encoding="unicode"), colours, width)
 
 
 def _remove(root: ElementTree.Element, place: str) -> None:
@@ -65,14 +64,14 @@ def _remove(root: ElementTree.Element, place: str) -> None:
         parent.remove(found)
 
 
-def _name_greys(root: ElementTree.Element) -> frozenset[int]:
-    """Replaces the greys of all styles by variables of the page; returns their brightnesses."""
-    found = {0}
+def _name_colours(root: ElementTree.Element) -> frozenset[str]:
+    """Replaces the colours of all elements by variables of the page; returns the colours."""
+    found = {"000000"}
     for element in root.iter():
         for attribute in ("style", "fill", "stroke"):
             if text := element.get(attribute):
-                found |= {int(pair, 16) for pair in GREY.findall(text)}
-                element.set(attribute, GREY.sub(r"var(--g\1, \g<0>)", text))
+                found |= set(COLOUR.findall(text))
+                element.set(attribute, COLOUR.sub(r"var(--c\1, \g<0>)", text))
     return frozenset(found)
 
 
