@@ -176,7 +176,9 @@ def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
             return grid.colspan.start, panel.get_xlim()
         return grid.rowspan.start, panel.get_ylim()
 
-    return [each for each in axes.get_figure().axes if each is not axes and place(each) == place(axes)]
+    figure = axes.get_figure()
+    panels = [] if figure is None else figure.axes
+    return [each for each in panels if each is not axes and place(each) == place(axes)]
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:
