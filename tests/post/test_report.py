@@ -94,21 +94,16 @@ def test_the_values_under_the_pointer_are_those_in_the_file(command):
     read = [float(lines[1].rpartition(" = ")[2]) for lines in words]
     assert np.sort(read) == pytest.approx(np.sort(forces), rel=1e-7)
     maps = [lines for lines in page.values() if len(lines) == 3]
-    assert sorted(float(lines[0].rpartition(": ")[2]) for lines in maps) == pytest.approx(
-        np.sort(forces), rel=1e-7
-    )
+    mapped = sorted(float(lines[0].rpartition(": ")[2]) for lines in maps)
+    assert mapped == pytest.approx(np.sort(forces), rel=1e-7)
     rods = {(float(a.rpartition(" = ")[2]), float(b.rpartition(" = ")[2])) for _, a, b in maps}
     assert rods == {(200, 100), (200, 1e4), (1e4, 100), (1e4, 1e4)}
 
 
 def test_a_map_of_spectra_has_the_growth_rates_under_the_pointer(command):
-    command.write(
-        "c.yaml",
-        "task: spectrum\nparameters: {F: [10, 20, 45], k1: {start: 100, stop: 2.0e4, num: 7, spacing: log}, "
-        "k2: 1.0e4, gamma3: 1.0e-4}\nspectrum: {modes: 2}\n".replace(
-            "[10, 20, 45]", "{start: 5, stop: 45, num: 7}"
-        ),
-    )
+    axes = "{F: {start: 5, stop: 45, num: 7}, k1: {start: 100, stop: 2.0e4, num: 7, spacing: log}"
+    rest = "k2: 1.0e4, gamma3: 1.0e-4}"
+    command.write("c.yaml", f"task: spectrum\nparameters: {axes}, {rest}\nspectrum: {{modes: 2}}\n")
     command.solved("c.yaml")
     assert command("report", "c.h5").returncode == 0
     rates = [float(v[0].rpartition(": ")[2]) for v in read_page(command.directory / "c.html").values()]
@@ -117,9 +112,8 @@ def test_a_map_of_spectra_has_the_growth_rates_under_the_pointer(command):
 
 
 def test_a_title_and_a_config_cannot_bring_markup(command):
-    command.write(
-        "c.yaml", f"title: \"{NASTY}\"\n# <img src='http://example.org/x.png'>\n" + CONFIGS["thresholds"]
-    )
+    comment = "# <img src='http://example.org/x.png'>"
+    command.write("c.yaml", f'title: "{NASTY}"\n{comment}\n{CONFIGS["thresholds"]}')
     command.solved("c.yaml")
     assert command("report", "c.h5", "-o", "p.html").returncode == 0
     page = read_page(command.directory / "p.html")
@@ -192,9 +186,8 @@ def test_the_page_names_no_machine(command):
     hosts = read_view(command.directory / "thresholds.h5").attributes["hosts"]
     text = (command.directory / "thresholds.html").read_text()
     assert str(command.directory) not in text
-    assert not re.search(
-        rf"\b{re.escape(str(hosts))}\b", re.sub(r"<svg.*?</svg>|<style.*?</style>", "", text, flags=re.DOTALL)
-    )
+    words = re.sub(r"<svg.*?</svg>|<style.*?</style>", "", text, flags=re.DOTALL)
+    assert not re.search(rf"\b{re.escape(str(hosts))}\b", words)
 
 
 @pytest.mark.skipif(not shutil.which("chromium"), reason="chromium is not installed")
@@ -202,21 +195,9 @@ def test_the_script_of_the_page_runs_in_a_browser(command):
     """The script takes over the texts of the figures, so that none is left for the browser to show twice."""
     page = reported(command, "thresholds")
     assert page.values()
-    argv = [
-        "chromium",
-        "--headless=new",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--enable-logging=stderr",
-        "--dump-dom",
-    ]
-    run = subprocess.run(
-        [*argv, f"file://{command.directory / 'thresholds.html'}"],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
-    )
+    argv = "chromium --headless=new --no-sandbox --disable-gpu --enable-logging=stderr --dump-dom".split()
+    address = f"file://{command.directory / 'thresholds.html'}"
+    run = subprocess.run([*argv, address], capture_output=True, text=True, timeout=120, check=True)
     assert "<circle" in run.stdout
     assert not re.search(r"<circle[^>]*><title>", run.stdout)
     assert "CONSOLE" not in run.stderr
@@ -239,8 +220,10 @@ def test_labels_become_plain_text(label, text):
 
 
 def test_centres_of_cells_are_the_values_that_made_the_edges():
-    values = np.array([1.0, 2.0, 5.0, 5.5, 20.0])
-    assert cell_centres(cell_edges(values)) == pytest.approx(values, rel=1e-14)
+    even = np.array([1.0, 2.0, 5.0, 5.5, 8.0])
+    assert cell_centres(cell_edges(even)) == pytest.approx(even, rel=1e-14)
+    logarithmic = np.array([1.0, 2.0, 50.0, 1e4])
+    assert cell_centres(np.log(cell_edges(logarithmic))) == pytest.approx(np.log(logarithmic), abs=1e-14)
 
 
 @pytest.mark.parametrize("colour", ["0072b2", "6a3d9a", "440154", "d55e00", "ffff00", "000000", "000001"])

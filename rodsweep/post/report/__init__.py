@@ -85,4 +85,4 @@ def page_text(results: Sequence[Reported], together: Pictures) -> str:
 
 def _with_code(text: str) -> Markup:
     """A sentence as HTML, its words in backquotes as code."""
-    return Markup(QUOTED.sub(r"<code>\1</code>", escape(text)))
+    return Markup(QUOTED.sub(r"<code>\1</code>", str(escape(text))))
