@@ -195,9 +195,11 @@ def test_the_script_of_the_page_runs_in_a_browser(command):
     """The script takes over the texts of the figures, so that none is left for the browser to show twice."""
     page = reported(command, "thresholds")
     assert page.values()
-    argv = "chromium --headless=new --no-sandbox --disable-gpu --enable-logging=stderr --dump-dom".split()
+    switches = ("--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom")
     address = f"file://{command.directory / 'thresholds.html'}"
-    run = subprocess.run([*argv, address], capture_output=True, text=True, timeout=120, check=True)
+    run = subprocess.run(
+        ["chromium", *switches, address], capture_output=True, text=True, timeout=120, check=True
+    )
     assert "<circle" in run.stdout
     assert not re.search(r"<circle[^>]*><title>", run.stdout)
     assert "CONSOLE" not in run.stderr
