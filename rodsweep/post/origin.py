@@ -10,7 +10,7 @@ from ..wording import counted, duration, plural
 
 
 def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about the time that the points took; empty without a computed point."""
+    """Lines about the time of the points in `done`, a mask of any shape; empty without a computed point."""
     if not done.any():
         return []
     seconds = view.variables["seconds"][done]
