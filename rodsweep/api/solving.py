@@ -9,6 +9,7 @@ import xarray as xr
 
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
+from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
@@ -51,7 +52,9 @@ def solve_here(
         shown(0)
         try:
             values, messages = _solved(job, solver, plan, shown)
-            joint = _joint(solver.together, view_in_memory(job, plan, values), shown) if solver.together else ()
+            joint = (
+                _joint(solver.together, view_in_memory(job, plan, values), shown) if solver.together else ()
+            )
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             forget_all()
             raise

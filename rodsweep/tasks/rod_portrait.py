@@ -1,4 +1,4 @@
-"""Everything about one rod, for its portrait: thresholds, criticality, branches, modes at onset, three cycles."""
+"""Everything about one rod, for its portrait: thresholds, criticality, branches, modes, three cycles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

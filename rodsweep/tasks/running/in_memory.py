@@ -21,7 +21,7 @@ from .plan import plan_of
 
 @solving
 def solved_view(job: Job) -> View:
-    """The solved points of a job without chains and joint variables, in the form in which `show` reads a file.
+    """The solved points of a job without chains and joint variables, as `show` reads them from a file.
 
     Raises EnvironmentIncomplete if this process cannot solve.
     """
@@ -30,15 +30,15 @@ def solved_view(job: Job) -> View:
     solver = job.solver()
     plan = plan_of(job, solver, Shard(), blas_kernels())
     solver.warm_up()
-    records = []
+    count = job.points.count
+    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
-        for index in range(job.points.count):
-            records.append(solver.record(index, solver.solve(index)))
+        for index in range(count):
+            record = solver.record(index, solver.solve(index))
+            for name, array in flat.items():
+                array[index] = record[name]
     shape = job.points.shape
-    values = {}
-    for name, fill in plan.layout.empty_point.items():
-        column = np.stack([np.asarray(record.get(name, fill), fill.dtype) for record in records])
-        values[name] = column.reshape(*shape, *fill.shape)
+    values = {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}
     return view_in_memory(job, plan, values, {"started": started, "finished": now()})
 
 
