@@ -2,13 +2,10 @@
 
 import socket
 from collections.abc import Iterator, Sequence
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from threadpoolctl import ThreadpoolController
 
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
@@ -20,6 +17,7 @@ from ..solve.exclusive import solving
 from ..sweep.listener import RankListener
 from ..sweep.points.shards import Shard
 from ..tasks.protocol import AllPoints, Arrays, Solver
+from ..tasks.running.in_memory import blas, blas_kernels, view_in_memory
 from ..tasks.running.job import Job
 from ..tasks.running.plan import plan_of
 from ..tasks.running.unforeseen import Note, guarded
@@ -46,15 +44,17 @@ def solve_here(
     solver, started = job.solver(), now()
     if note is not None:
         solver = guarded(solver, job.layout, note)
-    plan = plan_of(job, solver, Shard(), _kernels())
+    plan = plan_of(job, solver, Shard(), blas_kernels())
     if job.config.task not in _warm:
         solver.warm_up()
         _warm.add(job.config.task)
-    with _blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
+    with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
         shown(0)
         try:
             values, messages = _solved(job, solver, plan, shown)
-            joint = _joint(solver.together, _view(job, plan, values), shown) if solver.together else ()
+            joint = (
+                _joint(solver.together, view_in_memory(job, plan, values), shown) if solver.together else ()
+            )
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             forget_all()
             raise
@@ -118,33 +118,3 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
                 outcome, state = solve_from(index, state)
             done += 1
             yield index, outcome
-
-
-def _view(job: Job, plan: Plan, values: dict[str, np.ndarray]) -> View:
-    """The solved points in the form in which `show` reads a file."""
-    columns = dict(job.points.axes) if job.points.axes else {"point": job.points.columns[0]}
-    columns |= plan.coordinates
-    columns |= {variable.name: array for variable, array in plan.quantities}
-    return View(
-        Path(job.name),
-        plan.attributes,
-        columns | values,
-        plan.layout.parameters,
-        dict(plan.flags),
-        journalled=0,
-        over=plan.layout.over,
-        typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
-    )
-
-
-@cache
-def _kernels() -> str:
-    from ..solve.backend.blas_kernel import blas
-
-    return blas()
-
-
-@cache
-def _blas() -> ThreadpoolController:
-    """The BLAS libraries of this process; call it after PETSc has loaded a BLAS."""
-    return ThreadpoolController()

@@ -1,4 +1,4 @@
-"""The command `rodsweep`: run, merge, snapshot, check, show, plot, export, schema, arm, bench.
+"""The command `rodsweep`: run, merge, snapshot, check, show, plot, report, export, schema, arm, bench.
 
 It joins the packages and reads the arguments and environment variables.
 

@@ -1,7 +1,6 @@
 """Export of a table as CSV: one row for each item, words for flags, empty cells for missing values."""
 
 import csv
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
@@ -11,6 +10,7 @@ from ..errors import InputError
 from ..results.file.view import View
 from ..wording import counted
 from .tables import Table, Tables
+from .whole_file import written_whole
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Separator of the columns, by the suffix of the file."""
@@ -40,14 +40,8 @@ def export(view: View, output: Path, request: Request) -> str:
     if output.exists() and not request.replace:
         raise InputError(f"{output} exists already; --replace overwrites it, -o names another file")
     table = Tables(view).table(request.table, request.columns)
-    # Written under another name first: a kill leaves no half table under the final name.
-    partial = output.with_name(f".{output.name}.partial")
-    try:
-        with partial.open("w", newline="", encoding="utf-8") as stream:
-            _write(table, SEPARATORS[output.suffix], request.units, stream)
-        os.replace(partial, output)
-    finally:
-        partial.unlink(missing_ok=True)
+    with written_whole(output) as stream:
+        _write(table, SEPARATORS[output.suffix], request.units, stream)
     return _sentence(table, view)
 
 

@@ -67,21 +67,14 @@ def draw_branch(request: FigureRequest) -> str:
     upper, lower, *third = figure.subplots(2 + beside, 1)
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
-    marked: dict[str, Line2D] = {}
-    for number, curve in enumerate(curves):
-        colour = colours[number % len(colours)]
-        _draw(upper, lower, curve, colour)
-        _mark(upper, lower, curve, marked)
-    straight = straight_ranges(view, drawn[0], _shown(view, drawn[0], curves)) if alone else ([], [])
-    for stable, ranges in zip((1, 0), straight, strict=True):
-        for low, high in ranges:
-            upper.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
+    marked = draw_curves(upper, lower, curves, colours)
+    if alone:
+        draw_straight_rod(upper, view, drawn[0], curves)
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[along], yscale="log")
     for axes in third:
         marked["predicted"] = _compare_prediction(axes, curves, colours, along)
-    shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
-    handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(shown)[::-1]]
+    handles = stability_entries(curves)
     shared, own = shared_and_own_of_points(view, [rod + 1 for rod in drawn])
     handles += [
         Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
@@ -91,6 +84,31 @@ def draw_branch(request: FigureRequest) -> str:
     return request.write(
         figure, f"{counted(len(curves), 'branch')} of cycles over {along}{_left_out(view, drawn, beating)}"
     )
+
+
+def draw_curves(
+    upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
+) -> dict[str, Line2D]:
+    """Draws branches into the panels of the largest y and of the period; returns legend entries by kind."""
+    marked: dict[str, Line2D] = {}
+    for number, curve in enumerate(curves):
+        _draw(upper, lower, curve, colours[number % len(colours)])
+        _mark(upper, lower, curve, marked)
+    return marked
+
+
+def draw_straight_rod(axes: Axes, view: View, rod: int, curves: Sequence[StoredBranch]) -> None:
+    """Draws the straight rod, y = 0, with a line style for its stability."""
+    straight = straight_ranges(view, rod, _shown(view, rod, curves))
+    for stable, ranges in zip((1, 0), straight, strict=True):
+        for low, high in ranges:
+            axes.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
+
+
+def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
+    """Legend entries for the line styles of the branches and of the straight rod."""
+    shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
+    return [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(shown)[::-1]]
 
 
 def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
@@ -108,10 +126,11 @@ def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
     )
 
 
-def _shown(view: View, rod: int, curves: list[StoredBranch]) -> Range:
+def _shown(view: View, rod: int, curves: Sequence[StoredBranch]) -> Range:
     """Range in which the straight rod is drawn: where it is not crushed, and not far beyond all cycles."""
     low, high = ends_of(view)
-    high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in curves))
+    if curves:
+        high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in curves))
     force, stiffness = CRUSHING
     columns = {name: float(values[rod]) for name, values in view.point_columns.items()}
     if followed_parameter(view) == force:

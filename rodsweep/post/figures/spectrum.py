@@ -5,6 +5,7 @@ from dataclasses import replace
 import matplotlib.cm
 import matplotlib.colors
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...errors import InputError
@@ -25,6 +26,8 @@ MAX_LINE_PANELS = 6
 """Largest number of values of a parameter that get a panel each; for more values a map interpolates."""
 SMALLEST_SHADE = 1e-4
 """Growth rate, in units of the largest, below which the colour scale is linear."""
+
+GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 
 def draw_spectrum(request: FigureRequest) -> str:
@@ -128,8 +131,17 @@ def _map(view: View, names: list[str]) -> Figure:
     scale(axes, "y", y)
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
-    figure.colorbar(colours, ax=axes, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
+    figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
+    _note_points(axes, view.axes[horizontal], view.axes[vertical], growth)
     figure.suptitle(
         heading(view, fixed_text(view, *names), "black: zero growth, interpolated between the points")
     )
     return figure
+
+
+def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
+    """Adds an invisible scatter of the points of a map, from which `rodsweep report` reads their values."""
+    limits = axes.axis()
+    across, up = np.meshgrid(x, y, indexing="ij")
+    axes.scatter(across.ravel(), up.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
+    axes.axis(limits)

@@ -1,7 +1,6 @@
-"""Summary printed by `rodsweep show`: the answer, the reliability, further results, and the provenance."""
+"""Summary of a result, for `rodsweep show` and `rodsweep report`: answer, reliability, details, origin."""
 
 from collections.abc import Callable, Iterable
-from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -12,11 +11,11 @@ from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import written_in
-from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.variables import DIMENSIONS, MISSING
-from ...wording import counted, duration, is_or_are, plural
+from ...wording import counted, is_or_are, plural
+from ..origin import origin_lines, rank_lines, time_lines
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
 from .branch import branch_summary
@@ -24,9 +23,8 @@ from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
 from .modes import modes_summary
 from .phase_diagram import phase_diagram_summary
-from .ranges import span
 from .spectrum import spectrum_summary
-from .summary_lines import SummaryLines
+from .summary_lines import Summary, SummaryLines, TextTable
 from .thresholds import thresholds_summary
 
 SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
@@ -43,35 +41,48 @@ NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diag
 """Name of a point of each task, where it is not "point"."""
 
 
+def summary_of(view: View, every_status: bool = False) -> Summary:
+    """The summary of a result file; every_status: whether statuses of no point are listed as well."""
+    view = view.listed
+    status = view.variables["status"]
+    done = status != MISSING
+    noun = NOUNS.get(view.task, "point")
+    rods = done & (status < NOT_SLENDER)
+    nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])
+    lines = SUMMARIES[view.task](view, rods) if rods.any() else nothing
+    a = view.attributes
+    return Summary(
+        answer=_answer(view, done, lines),
+        trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust],
+        statuses=TextTable(("status", plural(noun), "meaning"), tuple(_statuses(view, status, every_status))),
+        details=lines.details,
+        axes=TextTable(("parameter", "values", "from", "to", "unit"), tuple(_axes(view))),
+        origin=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
+    )
+
+
 def show_summary(view: View, every_status: bool = False) -> None:
     """Prints a summary of a result file; every_status: whether statuses of no point are listed as well.
 
     The answer comes first, for an arm also in the arm's units. Then follow the reliability of the answer,
     further results, and last the provenance.
     """
-    view = view.listed
     console = Console(highlight=False, markup=False)
-    a = view.attributes
-    status = view.variables["status"]
-    done = status != MISSING
-    noun = NOUNS.get(view.task, "point")
-    rods = done & (status < NOT_SLENDER)
-    nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])
-    summary = SUMMARIES[view.task](view, rods) if rods.any() else nothing
-    console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
-    for line in _answer(view, done, summary):
-        console.print(line, soft_wrap=True)
-    console.print()
-    for line in [*_unfinished(view, int((~done).sum()), noun), *summary.trust]:
-        console.print(line, soft_wrap=True)
-    console.print(_table(("status", plural(noun), "meaning"), _statuses(view, status, every_status)))
-    console.print()
-    for line in summary.details:
-        console.print(line, soft_wrap=True)
-    console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
-    console.print()
-    for line in [*_times(view, done, noun), *_ranks(a, noun), *_origin(a)]:
-        console.print(line, soft_wrap=True)
+    summary = summary_of(view, every_status)
+    title = view.attributes.get("title", "")
+    console.print(f"{printable(str(view.path))}: {title}, task {view.task}", soft_wrap=True)
+    for lines, table in (
+        (summary.answer, None),
+        (summary.trust, summary.statuses),
+        (summary.details, summary.axes),
+        (summary.origin, None),
+    ):
+        for line in lines:
+            console.print(line, soft_wrap=True)
+        if table is not None:
+            console.print(_printed(table))
+        if lines is not summary.origin:
+            console.print()
 
 
 def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
@@ -108,64 +119,12 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     return lines
 
 
-def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about the time that the points took; empty without a computed point."""
-    if not done.any():
-        return []
-    seconds = view.variables["seconds"][done]
-    if done.sum() == 1:
-        return [f"time of the {noun}: {duration(float(seconds.max()))}"]
-    return [
-        f"time a {noun}: median {duration(float(np.median(seconds)))}, longest "
-        f"{duration(float(seconds.max()))}, all together {duration(float(seconds.sum()))}"
-    ]
-
-
-def _origin(a: dict[str, Any]) -> list[str]:
-    """Lines about the time, the versions and the BLAS kernels of the computation."""
-    return [
-        f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
-        f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
-        f"BLAS: {'; '.join(kernels_of(a))}",
-    ]
-
-
-def _when(a: dict[str, Any]) -> str:
-    """Period in which a file was computed; for a shard, also whether the run is complete."""
-    if "started" not in a:
-        return "not finished yet"
-    if "finished" in a:
-        return f"{a['started']} to {a['finished']}"
-    whole = a.get("shard") and not a.get("stopped")
-    return f"from {a['started']} on, all points of shard {a['shard']}" if whole else "not finished yet"
-
-
-def _ranks(a: dict[str, Any], noun: str) -> list[str]:
-    """Lines about the ranks of the last run: busy time and numbers of points."""
-    if RANK_SHARES[0] not in a:
-        return []
-    points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)
-    share = 100 * busy / np.maximum(busy + idle, 1e-9)
-    least = int(share.argmin())
-    ranks = counted(int(a["ranks"]), "rank")
-    hosts = counted(len(str(a["hosts"]).split()), "host")
-    text = f"last run: {ranks} on {hosts}, {counted(int(points.sum()), noun)}"
-    text += f"; shard {a['shard']}" if a.get("shard") else ""
-    text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
-    if int(a["ranks"]) == 1:
-        return [text, f"the rank was busy {share[0]:.1f} % of its time"]
-    solved = f"{np.median(share):.1f} % of its time (median; least {share[least]:.1f} %, rank {least})"
-    each = span(points)
-    things = noun if each == "1" else plural(noun)
-    return [text, f"a rank was busy {solved} and finished {each} {things}"]
-
-
-def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
-    """Table without borders."""
-    table = Table(*headings, box=None, pad_edge=False)
-    for row in rows:
-        table.add_row(*map(Text, row))
-    return table
+def _printed(table: TextTable) -> Table:
+    """Table for the terminal, without borders."""
+    printed = Table(*table.headings, box=None, pad_edge=False)
+    for row in table.rows:
+        printed.add_row(*map(Text, row))
+    return printed
 
 
 def _axes(view: View) -> Iterable[tuple[str, ...]]:

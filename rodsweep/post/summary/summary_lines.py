@@ -1,4 +1,4 @@
-"""Lines of the summary of a task, in the order of printing."""
+"""Lines and tables of the summary of a result, in the order of printing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,6 +22,31 @@ class SummaryLines:
     trust: Sequence[str] = ()
     details: Sequence[str] = ()
     of_arm: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TextTable:
+    """Table of texts: its headings, and rows of as many cells."""
+
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Everything that `rodsweep show` prints about a file, in the order of printing.
+
+    answer: the results asked for. trust: unfinished work, accuracy and proved completeness. statuses: number
+    of points and meaning of every status. details: further results. axes: ranges of the parameters. origin:
+    computing time, ranks, dates and versions.
+    """
+
+    answer: Sequence[str]
+    trust: Sequence[str]
+    statuses: TextTable
+    details: Sequence[str]
+    axes: TextTable
+    origin: Sequence[str]
 
 
 def varied(view: View) -> dict[str, np.ndarray]:

@@ -91,3 +91,12 @@ def cell_edges(values: Array) -> Array:
     centres, back = in_its_scale(values)
     inner = (centres[1:] + centres[:-1]) / 2
     return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))
+
+
+def cell_centres(edges: Array) -> Array:
+    """The values, (n,), from which `cell_edges` makes these edges, (n + 1,); both as places on the axis."""
+    centres = np.empty(len(edges) - 1)
+    centres[0] = (edges[0] + edges[1]) / 2
+    for place in range(1, len(centres)):
+        centres[place] = 2 * edges[place] - centres[place - 1]
+    return centres

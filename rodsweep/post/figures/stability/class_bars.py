@@ -62,13 +62,9 @@ def draw_class_bars(view: View) -> Figure:
     axes = figure.subplots()
     seen = set[str]()
     for rod in range(count):
-        seen |= _bar(axes, view, rod, upright=count > 1)
-    handles: list = [
-        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word)
-        for word, colour in CLASS_COLOURS.items()
-        if word in seen
-    ]
-    handles += _mark(axes, view, upright=count > 1)
+        seen |= draw_class_bar(axes, view, rod, upright=count > 1)
+    handles: list = class_entries(seen)
+    handles += mark_thresholds_on_bars(axes, view, upright=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:
         axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=LABELS["F"])
@@ -79,6 +75,15 @@ def draw_class_bars(view: View) -> Figure:
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
+
+
+def class_entries(seen: set[str]) -> list[Patch]:
+    """Legend entries of the drawn classes."""
+    return [
+        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word)
+        for word, colour in CLASS_COLOURS.items()
+        if word in seen
+    ]
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
@@ -125,7 +130,7 @@ def _class_beyond(kind: int, unstable: int) -> str:
     return stable if unstable == 0 else "undecided"
 
 
-def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
+def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
     """Draws the bar of a rod; returns its classes."""
     pieces = list(classes_over_force(view, rod))
     from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
@@ -139,7 +144,7 @@ def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
     return {word for *_, word in pieces}
 
 
-def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
+def mark_thresholds_on_bars(axes: Axes, view: View, upright: bool) -> list[Line2D]:
     """Marks the thresholds; returns legend entries, for a single rod with the forces."""
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")

@@ -1,0 +1,62 @@
+"""Lines about the cost and the origin of a result: computing time, ranks, dates, versions, BLAS kernels."""
+
+from typing import Any
+
+import numpy as np
+
+from ..results.file.provenance import RANK_SHARES, kernels_of
+from ..results.file.view import View
+from ..wording import counted, duration, plural
+
+
+def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
+    """Lines about the time of the points in `done`, a mask of any shape; empty without a computed point."""
+    if not done.any():
+        return []
+    seconds = view.variables["seconds"][done]
+    if done.sum() == 1:
+        return [f"time of the {noun}: {duration(float(seconds.max()))}"]
+    return [
+        f"time a {noun}: median {duration(float(np.median(seconds)))}, longest "
+        f"{duration(float(seconds.max()))}, all together {duration(float(seconds.sum()))}"
+    ]
+
+
+def origin_lines(a: dict[str, Any]) -> list[str]:
+    """Lines about the time, the versions and the BLAS kernels of the computation."""
+    return [
+        f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
+        f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
+        f"BLAS: {'; '.join(kernels_of(a))}",
+    ]
+
+
+def _when(a: dict[str, Any]) -> str:
+    """Period in which a file was computed; for a shard, also whether the run is complete."""
+    if "started" not in a:
+        return "not finished yet"
+    if "finished" in a:
+        return f"{a['started']} to {a['finished']}"
+    whole = a.get("shard") and not a.get("stopped")
+    return f"from {a['started']} on, all points of shard {a['shard']}" if whole else "not finished yet"
+
+
+def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
+    """Lines about the ranks of the last run: busy time and numbers of points."""
+    if RANK_SHARES[0] not in a:
+        return []
+    points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)
+    share = 100 * busy / np.maximum(busy + idle, 1e-9)
+    least = int(share.argmin())
+    ranks = counted(int(a["ranks"]), "rank")
+    hosts = counted(len(str(a["hosts"]).split()), "host")
+    text = f"last run: {ranks} on {hosts}, {counted(int(points.sum()), noun)}"
+    text += f"; shard {a['shard']}" if a.get("shard") else ""
+    text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
+    if int(a["ranks"]) == 1:
+        return [text, f"the rank was busy {share[0]:.1f} % of its time"]
+    solved = f"{np.median(share):.1f} % of its time (median; least {share[least]:.1f} %, rank {least})"
+    ends = dict.fromkeys(f"{number:.6g}" for number in (points.min(), points.max()))
+    each = " to ".join(ends)
+    things = noun if each == "1" else plural(noun)
+    return [text, f"a rank was busy {solved} and finished {each} {things}"]

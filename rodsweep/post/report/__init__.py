@@ -1,0 +1,88 @@
+"""One HTML page about results, to be sent and opened without a network: `rodsweep report`.
+
+The page has the answer and the tables of `rodsweep show`, the figures of `rodsweep plot` with their values
+under the pointer, the tables of `rodsweep export`, the config and the provenance. Fonts, images and scripts
+from elsewhere are forbidden by the page itself.
+"""
+
+import re
+from collections.abc import Sequence
+from itertools import count
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from ... import __version__
+from ...errors import InputError
+from ...results.file.provenance import now
+from ...results.file.view import View
+from ...wording import counted
+from ..figures.request import Shapes
+from ..whole_file import written_whole
+from .dark_colours import in_the_dark
+from .page_tables import MAX_ROWS
+from .pictures import Pictures, pictures_of
+from .reported import Reported, reported
+
+QUOTED = re.compile("`([^`]*)`")
+"""A command or a key in a sentence."""
+
+
+def require_page(output: Path, inputs: Sequence[Path]) -> None:
+    """Raises InputError unless a page can be written under this name; inputs: files to report."""
+    if output.suffix != ".html":
+        raise InputError(f"--output {output}: the name must end in .html")
+    if not output.parent.is_dir():
+        raise InputError(f"--output {output}: there is no directory {output.parent}")
+    if output.exists() and not output.is_file():
+        raise InputError(f"--output {output} is not a name for a page; choose another")
+    if output.exists() and any(output.samefile(path) for path in inputs if path.exists()):
+        raise InputError(f"--output {output} is a file to report and would be overwritten; choose another")
+
+
+def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = None) -> str:
+    """Writes the page about results and returns a sentence.
+
+    shapes: solves cycles whose shapes are not stored, for the figure of limit cycles. Raises InputError for a
+    name that is no name for a page.
+    """
+    require_page(output, [view.path for view in views])
+    numbers = count(1)
+    results = [reported(view, pictures_of([view], shapes, numbers)) for view in views]
+    together = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())
+    text = page_text(results, together)
+    with written_whole(output) as stream:
+        stream.write(text)
+    pictures = sum(len(result.pictures.shown) for result in results) + len(together.shown)
+    return f"wrote {output}: {counted(len(views), 'result')}, {counted(pictures, 'figure')}"
+
+
+def page_text(results: Sequence[Reported], together: Pictures) -> str:
+    """The page as HTML; together: figures that show several results."""
+    environment = Environment(
+        loader=PackageLoader(__name__),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["svg"] = Markup  # made here from numbers and escaped texts
+    environment.filters["with_code"] = _with_code
+    pictures = [each.picture for result in results for each in result.pictures.shown]
+    pictures += [each.picture for each in together.shown]
+    colours = sorted(set[str]().union(*(picture.colours for picture in pictures)))
+    return environment.get_template("page.html").render(
+        results=results,
+        together=together,
+        colours=[(colour, in_the_dark(colour)) for colour in colours],
+        max_rows=MAX_ROWS,
+        version=__version__,
+        written=now(),
+    )
+
+
+def _with_code(text: str) -> Markup:
+    """A sentence as HTML, its words in backquotes as code."""
+    return Markup(QUOTED.sub(r"<code>\1</code>", str(escape(text))))

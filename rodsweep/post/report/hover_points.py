@@ -1,0 +1,212 @@
+"""Values of a drawn figure with their places, for the text under the pointer.
+
+It reads lines, scattered points, bars and coloured cells from matplotlib's figure, so that the modules that
+draw need not know of pages.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection, QuadMesh
+from matplotlib.colors import to_hex
+from matplotlib.container import BarContainer
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...arrays import Array
+from ..figures.cycle.point_map import cell_centres
+from .label_text import label_text
+
+MAX_POINTS = 2500
+"""Largest number of values of a figure with a text; of longer curves every n-th point has one. A value takes
+some 100 bytes on the page."""
+ALWAYS = 24
+"""Number of points up to which a curve keeps all its texts."""
+DIGITS = 8
+"""Number of digits of a value under the pointer."""
+POINTS_PER_INCH = 72
+"""Unit of matplotlib's SVG."""
+MARGIN = 1.0
+"""Distance beyond the frame of a panel, in points, within which a value still belongs to the panel."""
+
+
+@dataclass(frozen=True, slots=True)
+class HoverPoint:
+    """A drawn value: its place from the upper left corner of the figure, in points, and its text."""
+
+    x: float
+    y: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Values drawn together: places in pixels from the lower left corner, (n, 2), and n texts."""
+
+    places: Array
+    texts: Sequence[str]
+
+
+def hover_points(figure: Figure) -> list[HoverPoint]:
+    """The values of a figure whose layout is final, in the order of drawing."""
+    words = _legend_words(figure)
+    found = [series for axes in figure.axes for series in _of_panel(axes, words)]
+    long = sum(len(series.texts) for series in found if len(series.texts) > ALWAYS)
+    step = max(1, ceil(long / MAX_POINTS))
+    height = figure.get_size_inches()[1] * POINTS_PER_INCH
+    scale = POINTS_PER_INCH / figure.dpi
+    points = []
+    for series in found:
+        every = step if len(series.texts) > ALWAYS else 1
+        for (x, y), text in zip(series.places[::every], series.texts[::every], strict=True):
+            points.append(HoverPoint(float(scale * x), float(height - scale * y), text))
+    return points
+
+
+def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[Series]:
+    """Yields the values of a panel that lie within its frame; words: of the legend, by colour."""
+    if axes.get_label() == "<colorbar>" or not axes.get_visible():
+        return
+    names = (axis_name(axes, "x"), axis_name(axes, "y"))
+    found = [*_cells(axes, names, words), *_bars(axes, names, words)]
+    for line in axes.lines:
+        if line.get_visible():
+            found.append(_line(axes, line, names))
+    found += [_scatter(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
+    frame = axes.bbox.padded(MARGIN)
+    for series in found:
+        inside = np.isfinite(series.places).all(axis=1)
+        inside[inside] = [frame.contains(x, y) for x, y in series.places[inside]]
+        yield Series(series.places[inside], [series.texts[i] for i in np.flatnonzero(inside)])
+
+
+def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> Series:
+    """Vertices of a line; of a line across the whole panel, such as a threshold, the middle and the name."""
+    data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
+    with np.errstate(all="ignore"):  # a logarithmic axis has no place for zero
+        places = line.get_transform().transform(data)
+    label = _series_name(line.get_label())
+    if line.get_transform() == axes.transData:
+        return Series(places, _texts(names, data, label))
+    # A line across the whole panel: a threshold has a name, and an axis at zero needs no text.
+    return Series(places.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
+
+
+def _scatter(dots: PathCollection, names: tuple[str, str]) -> Series:
+    """Scattered points, by their colours' values if there are any.
+
+    An invisible scatter holds the points from which filled contours are drawn.
+    """
+    data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
+    places = dots.get_offset_transform().transform(data)
+    texts = _texts(names, data, _series_name(dots.get_label()))
+    values = dots.get_array()
+    if values is None:
+        return Series(places, texts)
+    name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
+    name = name or _series_name(dots.get_label())
+    return Series(
+        places,
+        [
+            f"{name}: {_number(value)}\n{_text(names, at)}" if name else text
+            for value, at, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
+        ],
+    )
+
+
+def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
+    """Yields the values of coloured cells, by the colour bar or by the legend."""
+    for mesh in axes.collections:
+        if not isinstance(mesh, QuadMesh):
+            continue
+        corners = np.asarray(mesh.get_coordinates(), float)
+        edges = axes.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)
+        across = cell_centres(edges[0, :, 0])
+        up = cell_centres(edges[:, 0, 1])
+        places = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 2)
+        values = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
+        name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
+        kept = np.flatnonzero(~np.ma.getmaskarray(values))
+        texts = []
+        for at, value in zip(
+            axes.transData.inverted().transform(places[kept]).reshape(-1, 2), values[kept], strict=True
+        ):
+            word = f"{name}: {_number(value)}" if name else words.get(to_hex(mesh.to_rgba(value)), "")
+            texts.append("\n".join(filter(None, (word, _text(names, at)))))
+        yield Series(places[kept], texts)
+
+
+def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
+    """Yields the middles of bars, with the ends of each."""
+    for bars in axes.containers:
+        if not isinstance(bars, BarContainer):
+            continue
+        along = 0 if bars.orientation == "horizontal" else 1
+        for bar in bars.patches:
+            low, high = bar.get_bbox().get_points()[:, along]
+            word = words.get(to_hex(bar.get_facecolor()), "")
+            ends = f"{names[along]} from {_number(low)} to {_number(high)}"
+            middle = axes.transData.transform(bar.get_bbox().get_points().mean(axis=0))
+            yield Series(middle[None], ["\n".join(filter(None, (word, ends)))])
+
+
+def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
+    """Name of an axis as plain text, from the panel or from a panel that shares the axis."""
+    shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
+    for each in (axes, *shared.get_siblings(axes), *_beside(axes, which)):
+        label = each.get_xlabel() if which == "x" else each.get_ylabel()
+        if label:
+            return label_text(label)
+    return which
+
+
+def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
+    """Panels in the same column, or for y in the same row, with the same limits of the axis."""
+
+    def place(panel: Axes) -> object:
+        grid = panel.get_subplotspec()
+        if grid is None:
+            return None
+        if which == "x":
+            return grid.colspan.start, panel.get_xlim()
+        return grid.rowspan.start, panel.get_ylim()
+
+    figure = axes.get_figure()
+    panels = [] if figure is None else figure.axes
+    return [each for each in panels if each is not axes and place(each) == place(axes)]
+
+
+def _legend_words(figure: Figure) -> dict[str, str]:
+    """Words of the legends by the colour of their patches."""
+    legends = [*figure.legends, *(legend for axes in figure.axes if (legend := axes.get_legend()))]
+    words = {}
+    for legend in legends:
+        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
+            if isinstance(handle, Patch):
+                words[to_hex(handle.get_facecolor())] = label_text(text.get_text())
+    return words
+
+
+def _series_name(label: object) -> str:
+    """Name of a curve in the legend; empty for a curve without an entry."""
+    text = str(label)
+    return "" if text.startswith("_") else label_text(text)
+
+
+def _texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
+    """Texts of points in units of the axes, (n, 2)."""
+    return ["\n".join(filter(None, (series, _text(names, at)))) for at in data]
+
+
+def _text(names: tuple[str, str], at: Array) -> str:
+    """Values of a point in units of the axes, (2,), a line each."""
+    return "\n".join(f"{name} = {_number(value)}" for name, value in zip(names, at, strict=True))
+
+
+def _number(value: float) -> str:
+    return f"{value:.{DIGITS}g}"

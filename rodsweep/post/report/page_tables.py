@@ -1,0 +1,94 @@
+"""Tables of a result on its page: rounded numbers with all digits under the pointer, no empty columns."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...results.file.view import View
+from ..tables import Table, Tables
+from ..tables.columns import Column
+from ..tables.contents import FIRST, POINTS
+
+MAX_ROWS = 60
+"""Largest number of rows of a table on the page; `rodsweep export` writes all."""
+DIGITS = 6
+"""Number of digits of a number in a table; the number under the pointer has all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A value: the rounded text, and the value in full where it is longer."""
+
+    text: str
+    full: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PageTable:
+    """A table on the page.
+
+    heads: (name, unit, meaning) of every column. rows: cells of every row. total: number of rows of the whole
+    table. constant: (name, cell, unit, meaning) of columns with one value in all rows.
+    """
+
+    name: str
+    heads: tuple[tuple[str, str, str], ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    total: int
+    constant: tuple[tuple[str, Cell, str, str], ...]
+
+
+def page_tables(view: View) -> Iterator[PageTable]:
+    """Yields the tables of a result that have a row: the task's own table, the points, all further lists."""
+    tables = Tables(view)
+    names = dict.fromkeys((FIRST[view.task], POINTS, *tables.contents.tables))
+    for name in names:
+        if name in tables.contents.tables:
+            table = tables.table(name)
+            if table.rows:
+                yield _shown(table)
+
+
+def _shown(table: Table) -> PageTable:
+    """A table without empty columns; columns with one value are listed beside it."""
+    filled = [column for column in table.columns if not column.absent.all()]
+    alike = [column for column in filled if table.rows > 1 and _is_constant(column)]
+    shown = [column for column in filled if column not in alike]
+    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in shown]
+    return PageTable(
+        name=table.name,
+        heads=tuple((column.name, _unit(column), column.meaning) for column in shown),
+        rows=tuple(zip(*cells, strict=True)),
+        total=table.rows,
+        constant=tuple(
+            (column.name, _cells(column.rows(slice(0, 1)))[0], _unit(column), column.meaning)
+            for column in alike
+        ),
+    )
+
+
+def _is_constant(column: Column) -> bool:
+    """Whether every row has the same value; a status is shown in every row."""
+    if column.name == "status" or column.absent.any():
+        return False
+    return len(np.unique(column.values)) == 1
+
+
+def _cells(column: Column) -> list[Cell]:
+    """Cells of a column."""
+    return [_cell(column, text, value) for text, value in zip(column.text(), column.values, strict=True)]
+
+
+def _cell(column: Column, text: str, value: float) -> Cell:
+    """A value as a cell; text: the value in full, empty if it is missing."""
+    is_number = column.values.dtype.kind == "f" and not column.words and not column.is_estimate
+    if not text or not is_number:
+        return Cell(text)
+    short = f"{value:.{DIGITS}g}"
+    return Cell(short, text) if len(short) < len(text) else Cell(text)
+
+
+def _unit(column: Column) -> str:
+    """Unit of a column; empty for a number without unit."""
+    return "" if column.unit == "1" else column.unit

@@ -1,0 +1,64 @@
+"""The figures of a result on its page: those of `rodsweep plot` that its content allows."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from ...errors import InputError
+from ...results.file.view import View
+from ..figures import draw
+from ..figures.request import KINDS_OF_TASK, Shapes
+from .vector_picture import VectorPicture, vector_picture
+
+FILM = "animation"
+"""The kind of figure that is no single picture."""
+UNWRITTEN = Path("figure.svg")
+"""Name of a figure that goes into a page instead of a file; its ending chooses the kind of figure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Captioned:
+    """A picture with its caption."""
+
+    caption: str
+    picture: VectorPicture
+
+
+@dataclass(frozen=True, slots=True)
+class Pictures:
+    """Pictures of a result; refusal: why there are none, or empty."""
+
+    shown: tuple[Captioned, ...]
+    refusal: str = ""
+
+
+def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[int]") -> Pictures:
+    """Every kind of figure of the results, the one that `rodsweep plot` draws first.
+
+    shapes: solves the cycles of the first figure whose shapes are not stored. numbers: of the pictures of the
+    page.
+    """
+    # Without its folders, so that no sentence on the page names them.
+    views = [replace(view, path=Path(view.path.name)) for view in views]
+    kinds = [kind for kind in KINDS_OF_TASK.get(views[0].task, ()) if kind != FILM]
+    found: dict[str, Captioned] = {}
+    refusal = ""
+    for kind in (None, *kinds):
+        kept: list[Figure] = []
+        wanted = shapes if kind is None else None
+
+        def keep(figure: Figure, kept: list[Figure] = kept) -> None:
+            kept.append(figure)
+
+        try:
+            sentence = draw(views, UNWRITTEN, what=kind, shapes=wanted, keep=keep)
+        except InputError as error:
+            refusal = refusal or str(error)
+            continue
+        caption = sentence.removeprefix(f"wrote {UNWRITTEN}: ")
+        if caption not in found:
+            found[caption] = Captioned(caption, vector_picture(kept[0], next(numbers), caption))
+    return Pictures(tuple(found.values()), "" if found else refusal)

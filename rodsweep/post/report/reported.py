@@ -1,0 +1,86 @@
+"""Contents of the page about one result: texts and tables, without any HTML."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...config.document.reading import yaml_of
+from ...config.values import printable
+from ...results.file.view import View
+from ..summary import summary_of
+from ..summary.summary_lines import Summary, TextTable, region
+from .page_tables import PageTable, page_tables
+from .pictures import Pictures
+
+VERSIONS = {
+    "rodsweep_version": "rodsweep",
+    "git_commit": "commit",
+    "format": "format of the file",
+    "python_version": "Python",
+    "numpy_version": "NumPy",
+    "numba_version": "numba",
+    "petsc_version": "PETSc",
+    "petsc4py_version": "petsc4py",
+    "slepc_version": "SLEPc",
+    "slepc4py_version": "slepc4py",
+    "mpi4py_version": "mpi4py",
+    "h5py_version": "h5py",
+    "hdf5_version": "HDF5",
+    "petsc_options": "options of PETSc",
+    "started": "started",
+    "finished": "finished",
+    "fingerprint": "fingerprint of the config",
+}
+"""Attributes of the file on the page with their words; none names a machine or a user."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reported:
+    """Contents of the page about one result.
+
+    name: of the file. title: of the config, or the file's name. config: as typed. complete: with all
+    defaults. versions: (word, value). pictures: figures.
+    """
+
+    name: str
+    title: str
+    task: str
+    summary: Summary
+    statuses: TextTable
+    pictures: Pictures
+    tables: Sequence[PageTable]
+    config: str
+    complete: str
+    versions: Sequence[tuple[str, str]]
+
+
+def reported(view: View, pictures: Pictures) -> Reported:
+    """Contents of the page about a result."""
+    a = view.attributes
+    summary = summary_of(view)
+    name = printable(view.path.name)
+    return Reported(
+        name=name,
+        title=str(a.get("title", "")) or name,
+        task=view.task,
+        summary=summary,
+        statuses=_with_places(view, summary.statuses),
+        pictures=pictures,
+        tables=list(page_tables(view)),
+        config=str(a.get("config", "")).strip("\n"),
+        complete=yaml_of(view.config).strip("\n"),
+        versions=[(word, str(a[key])) for key, word in VERSIONS.items() if str(a.get(key, ""))],
+    )
+
+
+def _with_places(view: View, statuses: TextTable) -> TextTable:
+    """The table of statuses; of several statuses with the ranges of the parameters in which each is found."""
+    if len(statuses.rows) == 1:
+        return statuses
+    values = {word: value for value, word in view.flags.items()}
+    status = view.listed.variables["status"]
+    rows = []
+    for word, count, meaning in statuses.rows:
+        where = region(view.listed, status == values[word]) if word in values else ""
+        rows.append((word, count, where, meaning))
+    first, second, last = statuses.headings
+    return TextTable((first, second, "where", last), tuple(rows))

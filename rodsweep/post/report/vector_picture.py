@@ -1,0 +1,84 @@
+"""A matplotlib figure as SVG within a page: values under the pointer, colours that follow the page."""
+
+import re
+from dataclasses import dataclass
+from io import BytesIO
+from xml.etree import ElementTree
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from .hover_points import hover_points
+
+SVG = "http://www.w3.org/2000/svg"
+XLINK = "http://www.w3.org/1999/xlink"
+COLOUR = re.compile(r"#([0-9a-f]{6})(?![0-9a-f])")
+RADIUS = "4"
+"""Radius, in points, of the place around a value that shows its text without a script."""
+
+ElementTree.register_namespace("", SVG)
+ElementTree.register_namespace("xlink", XLINK)
+
+
+@dataclass(frozen=True, slots=True)
+class VectorPicture:
+    """A figure as an SVG element.
+
+    colours: colours, as six hexadecimal digits, that the page may change; empty for a picture with colours
+    stored as an image, which needs white paper.
+    """
+
+    svg: str
+    colours: frozenset[str]
+    width: float
+    """Natural width, in points."""
+
+
+def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
+    """The figure as SVG; number: of the picture on its page, caption: for readers who do not see it."""
+    written = BytesIO()
+    # Pictures of a page must not share the names of their clipping paths.
+    with matplotlib.rc_context({"svg.hashsalt": f"picture {number}", "svg.fonttype": "path"}):
+        figure.savefig(written, format="svg", transparent=False, metadata={"Date": None})
+    root = ElementTree.fromstring(written.getvalue())
+    for place in ("metadata", "defs/style"):
+        _remove(root, place)
+    colours = frozenset[str]()
+    has_image = next(root.iter(f"{{{SVG}}}image"), None) is not None
+    if not has_image:
+        colours = _name_colours(root)
+        root.set("fill", "var(--c000000, #000000)")
+    root.attrib.pop("height", None)
+    width = float(root.attrib.pop("width").removesuffix("pt"))
+    root.set("role", "img")
+    root.set("aria-label", caption)
+    _add_texts(root, figure)
+    return VectorPicture(ElementTree.tostring(root, encoding="unicode"), colours, width)
+
+
+def _remove(root: ElementTree.Element, place: str) -> None:
+    """Removes the first element at a place, given by names below the root."""
+    *above, name = place.split("/")
+    parent = root.find("/".join(f"{{{SVG}}}{each}" for each in above)) if above else root
+    if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
+        parent.remove(found)
+
+
+def _name_colours(root: ElementTree.Element) -> frozenset[str]:
+    """Replaces the colours of all elements by variables of the page; returns the colours."""
+    found = {"000000"}
+    for element in root.iter():
+        for attribute in ("style", "fill", "stroke"):
+            if text := element.get(attribute):
+                found |= set(COLOUR.findall(text))
+                element.set(attribute, COLOUR.sub(r"var(--c\1, \g<0>)", text))
+    return frozenset(found)
+
+
+def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
+    """Adds an invisible circle with a title at every value of the figure."""
+    group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
+    for point in hover_points(figure):
+        place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": RADIUS}
+        circle = ElementTree.SubElement(group, f"{{{SVG}}}circle", place)
+        ElementTree.SubElement(circle, f"{{{SVG}}}title").text = point.text

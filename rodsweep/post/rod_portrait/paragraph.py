@@ -1,0 +1,156 @@
+"""The portrait of a rod in words: thresholds, criticality, branches, coexistence, cycles, missing results."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...results.file.view import View
+from ...results.layouts.thresholds import CROSSING_KINDS
+from ...wording import counted
+from ..branch_curves import count_incomplete_branches, curves_of
+from ..figures.cycle.selection import CYCLE_WORDS, outcomes
+from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
+from ..summary.criticality import SIDES
+from ..summary.ranges import listed, rounded
+from .results import RodResults
+
+SAME_FORCE = 1e-6
+"""Largest relative distance of a Hopf point of one task from the same Hopf point of another."""
+EVENTS = {
+    "onset": "it starts to oscillate at F = {F}",
+    "hopf": "a pair of modes becomes unstable at F = {F}",
+    "hopf_reverse": "a pair becomes stable at F = {F}, where other modes stay unstable",
+    "restabilization": "it is stable again from F = {F} on",
+    "real_again": "it stops oscillating as it decays at F = {F}",
+    "real_leads": "a real eigenvalue takes the lead at F = {F}",
+    "pair_leads": "a complex pair takes the lead at F = {F}",
+}
+"""Clauses on the straight rod at a threshold, by kind."""
+SUCCEEDED = "ok"
+"""Status of thresholds, criticality and branches without reservation."""
+
+
+def paragraph(results: RodResults) -> str:
+    """Everything about the rod, in one paragraph."""
+    rod = ", ".join(f"{name} = {value:g}" for name, value in results.parameters.items() if name != "F")
+    sentences = [
+        f"The rod with {rod} was searched up to F = {results.F_max:g}.",
+        *_thresholds(results),
+        *_branches(results),
+        *_cycles(results),
+        *_missing(results),
+    ]
+    return " ".join(sentences)
+
+
+def _thresholds(results: RodResults) -> Iterator[str]:
+    """Yields sentences on the thresholds of the straight rod, with the criticality of Hopf points."""
+    view = results.views["thresholds"]
+    v = view.of_point(0)
+    places = np.flatnonzero(v["crossing_kind"] > 0)
+    clauses = []
+    for i in places:
+        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
+        clause = EVENTS[kind].format(F=rounded(v["crossing_F"][i], v["crossing_error"][i]))
+        if frequency := float(v["crossing_frequency"][i]):
+            clause += f" (frequency {frequency:.6g} rad/tau2{_side(results, float(v['crossing_F'][i]))})"
+        clauses.append(clause)
+    if clauses:
+        yield f"Straight, {'; '.join(clauses)}."
+    elif v["crossing_count"] == 0:
+        yield "Straight, it has no threshold in this range."
+    if v["crossing_count"] >= 0:
+        yield f"This list of thresholds is {'proved complete' if v['certified'] else 'not proved complete'}."
+
+
+def _side(results: RodResults, F: float) -> str:
+    """Clause on the criticality of the Hopf point at a force; empty for another threshold."""
+    view = results.views.get("criticality")
+    if view is None:
+        return ""
+    v = view.of_point(0)
+    same = np.abs(v["crossing_F"] - F) <= SAME_FORCE * abs(F)
+    sides = v["criticality"][same & np.isfinite(v["criticality"])]
+    if not sides.size:
+        return ""
+    a = float(v["amplitude_coefficient"][same][0])
+    return f"; {SIDES[int(sides[0])]}, its cycles are at F {'above' if a > 0 else 'below'} it"
+
+
+def _branches(results: RodResults) -> Iterator[str]:
+    """Yields sentences on the branches of cycles, their special points and ranges of stability."""
+    view = results.views.get("branch")
+    if view is None:
+        return
+    curves = curves_of(view, 0)
+    hidden = count_incomplete_branches(view, 0)
+    if hidden:
+        yield f"Of {hidden} of its branches of cycles the special points are not stored; they are not drawn."
+    if not curves:
+        yield "No branch of cycles begins at a Hopf point in this range."
+        return
+    cycles = sum(int(curve.cycles.sum()) for curve in curves)
+    special = [
+        f"{counted(len(at), word)} at F = {', '.join(at)}"
+        for kind, word in SPECIAL_WORDS.items()
+        if (at := _special(view, kind))
+    ]
+    number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
+    verb = "begins" if len(curves) == 1 else "begin"
+    end = f"with {' and '.join(special)}" if special else "without a fold or another change of stability"
+    yield f"{number} {verb} at its Hopf points, {end}."
+    errors = errors_of(curves)
+    stable = [piece for curve in curves for piece in curve.stable_ranges]
+    yield f"Stable cycles: {f'F = {listed(stable, errors)}' if stable else 'none'}."
+    if not hidden:
+        beside = coexistence(view, 0)
+        where = f"at F = {listed(beside, errors)}" if beside else "nowhere in this range"
+        yield f"A stable cycle exists beside the stable straight rod {where}."
+        if pairs := two_cycles(view, 0):
+            yield f"Two different cycles are stable at F = {listed(pairs, errors)}."
+
+
+def _special(view: View, kind: str) -> list[str]:
+    """Forces of the special points of a kind, each point once."""
+    found = {
+        rounded(special.at, special.error): None
+        for curve in curves_of(view, 0)
+        for special in curve.special
+        if special.kind == kind
+    }
+    return list(found)
+
+
+def _cycles(results: RodResults) -> Iterator[str]:
+    """Yields a sentence on the cycles that are drawn, and on forces at which none was found."""
+    view = results.views.get("limit_cycle")
+    if view is None:
+        return
+    words = outcomes(view)
+    clauses = []
+    for number, F in enumerate(view.point_columns["F"]):
+        v = view.of_point(number)
+        if words[number] not in CYCLE_WORDS:
+            clauses.append(f"at F = {F:.6g} no cycle is drawn ({words[number]})")
+            continue
+        period, y = (
+            rounded(float(v[name]), float(v[name] * v[error]))
+            for name, error in (("period", "period_error"), ("tip_y_max", "amplitude_error"))
+        )
+        clauses.append(f"at F = {F:.6g} its period is {period} tau2 and the largest y of its tip {y} L")
+    yield f"Beating, {'; '.join(clauses)}."
+
+
+def _missing(results: RodResults) -> Iterator[str]:
+    """Yields sentences on results that are missing or have a reservation."""
+    for task, reason in results.missing.items():
+        yield f"Not solved ({task.replace('_', ' ')}): {reason}."
+    for task in ("thresholds", "criticality", "branch"):
+        if (view := results.views.get(task)) and (word := str(outcomes(view)[0])) != SUCCEEDED:
+            yield f"Reservation ({task}, {word.replace('_', ' ')}): {status_meaning(view, word)}."
+
+
+def status_meaning(view: View, word: str) -> str:
+    """Meaning of a status, as the view's attributes give it."""
+    lines = str(view.attributes.get("status_sentences", "")).splitlines()
+    return dict(line.split(": ", 1) for line in lines if ": " in line).get(word, word)

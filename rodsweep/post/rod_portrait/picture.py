@@ -1,0 +1,174 @@
+"""The portrait of a rod as a figure: thresholds along F, branches of cycles, modes at onset, three cycles."""
+
+import textwrap
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ...results.file.view import View
+from ..branch_curves import count_incomplete_branches, curves_of
+from ..figures import style
+from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
+from ..figures.cycle.portrait import LIGHTEST, clamp, force_arrow
+from ..figures.cycle.selection import CYCLE_WORDS, outcomes
+from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
+from ..summary.branch import coexistence, two_cycles
+from ..summary.ranges import rounded
+from .paragraph import paragraph, status_meaning
+from .results import RodResults
+
+SIZE = (10.0, 10.4)
+"""Width and height of the picture, in inches."""
+HEIGHTS = (0.4, 2.4, 1.5, 2.2)
+"""Relative heights of the thresholds, the largest y, the periods, and the modes with the cycles."""
+LINE_WIDTH = 150
+"""Characters in a line of the paragraph."""
+PANEL_WIDTH = 26
+"""Characters in a line of a sentence in place of a mode or a cycle."""
+CYCLES = 3
+"""Number of cycles of a portrait."""
+BESIDE_STRAIGHT = ("#009E73", "stable cycle beside a stable straight rod")
+TWO_CYCLES = ("#CC79A7", "two stable cycles")
+MODE_TITLES = {"onset": r"mode at ${symbol}_* = {F}$", "hopf": r"mode at ${symbol}_{{**}} = {F}$"}
+"""Titles of the panels of modes, by the kind of their threshold."""
+
+
+def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
+    """The portrait; with_words: whether the paragraph stands above the panels.
+
+    A result that is missing has its reason in its place.
+    """
+    with matplotlib.rc_context(style.STYLE):
+        figure = Figure(figsize=SIZE, layout="constrained")
+        modes = list(results.mode_forces) or [""]
+        grid = figure.add_gridspec(4, len(modes) + CYCLES, height_ratios=HEIGHTS)
+        bar = figure.add_subplot(grid[0, :])
+        upper = figure.add_subplot(grid[1, :], sharex=bar)
+        lower = figure.add_subplot(grid[2, :], sharex=bar)
+        handles = _draw_thresholds(bar, results.views["thresholds"], results.F_max)
+        handles += _draw_branches(upper, lower, results)
+        for place, kind in enumerate(modes):
+            _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
+        panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLES)]
+        _draw_cycles(panels, results)
+        style.legend_below(figure, handles, columns=4)
+        if with_words:
+            text = textwrap.fill(paragraph(results), LINE_WIDTH)
+            figure.suptitle(style.plain(text), x=0.01, ha="left", fontsize=8)
+        return figure
+
+
+def _draw_thresholds(axes: Axes, view: View, F_max: float) -> list[Artist]:
+    """Draws the behaviour of the straight rod along F, with its thresholds; returns legend entries."""
+    v = view.of_point(0)
+    axes.set(xlim=(0, F_max), ylim=(-0.6, 0.6), yticks=[])
+    axes.spines["left"].set_visible(False)
+    axes.tick_params(labelbottom=False)
+    if not np.isfinite(v["F_end"]):
+        word = str(outcomes(view)[0])
+        _say(axes, f"thresholds: {status_meaning(view, word)}", LINE_WIDTH)
+        return []
+    seen = draw_class_bar(axes, view, 0, upright=False)
+    return [*class_entries(seen), *mark_thresholds_on_bars(axes, view, upright=False)]
+
+
+def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
+    """Draws the branches and ranges with two stable states; returns legend entries."""
+    view = results.views.get("branch")
+    curves = [] if view is None else curves_of(view, 0)
+    if view is None or not curves:
+        lower.set_axis_off()
+        _say(upper, results.missing.get("branch", "no branch of cycles begins in this range"), LINE_WIDTH)
+        return []
+    handles: list[Artist] = [
+        *stability_entries(curves),
+        *draw_curves(upper, lower, curves, COLOURS).values(),
+    ]
+    draw_straight_rod(upper, view, 0, curves)
+    if not count_incomplete_branches(view, 0):
+        for ranges, (colour, word) in (
+            (coexistence(view, 0), BESIDE_STRAIGHT),
+            (two_cycles(view, 0), TWO_CYCLES),
+        ):
+            bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
+            handles += bands[:1]
+    handles += _mark_cycles(upper, lower, results.views.get("limit_cycle"))
+    upper.tick_params(labelbottom=False)
+    upper.set_ylabel("largest $y/L$ of the tip")
+    lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS["F"], yscale="log")
+    return handles
+
+
+def _mark_cycles(upper: Axes, lower: Axes, view: View | None) -> list[Line2D]:
+    """Marks the cycles whose shapes are drawn; returns a legend entry."""
+    if view is None:
+        return []
+    beats = np.isin(outcomes(view), CYCLE_WORDS)
+    F = view.point_columns["F"][beats]
+    handles: list[Line2D] = []
+    for axes, name in ((upper, "tip_y_max"), (lower, "period")):
+        values = view.by_point(name)[beats]
+        handles = axes.plot(F, values, "*", color="k", ms=9, mec="white", mew=0.6, label="cycle drawn below")
+    return handles if beats.any() else []
+
+
+def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
+    """Draws the deflection of the leading mode at a threshold."""
+    view = results.views.get("modes")
+    if view is None:
+        _say(axes, f"no mode: {results.missing['modes']}", PANEL_WIDTH)
+        return
+    F = results.mode_forces[kind]
+    v = view.of_point(int(np.argmin(np.abs(view.point_columns["F"] - F))))
+    title = MODE_TITLES[kind].replace("{symbol}", style.SYMBOLS["F"]).replace("{F}", f"{F:.6g}")
+    axes.set_title(title.replace("{{", "{").replace("}}", "}"))
+    if not np.isfinite(v["Y_real"][0]).all():
+        word = view.flags[int(v["status"])]
+        _say(axes, f"no mode: {status_meaning(view, word)}", PANEL_WIDTH)
+        return
+    u = view.variables["u"]
+    for part, line, label in (("real", "-", "real part"), ("imag", ":", "imaginary part")):
+        values = v[f"Y_{part}"][0]
+        if part == "real" or np.abs(values).max() > 0:
+            axes.plot(u, values, line, color=style.FIRST, lw=1.5, label=label)
+    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
+    axes.legend(frameon=False)
+
+
+def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
+    """Draws the shapes of three cycles, later ones darker."""
+    view = results.views.get("limit_cycle")
+    if view is None:
+        for axes in panels[1:]:
+            axes.set_axis_off()
+        _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_WIDTH)
+        return
+    words = outcomes(view)
+    for number, axes in enumerate(panels):
+        v = view.of_point(number)
+        F = view.point_columns["F"][number]
+        if words[number] not in CYCLE_WORDS:
+            axes.set_title(rf"${style.SYMBOLS['F']} = {F:.6g}$")
+            _say(axes, f"no cycle: {status_meaning(view, str(words[number]))}", PANEL_WIDTH)
+            continue
+        shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(v["shape_x"])))
+        clamp(axes, 1.0)
+        for x, y, theta, shade in zip(v["shape_x"], v["shape_y"], v["shape_theta"], shades, strict=True):
+            axes.plot(x, y, color=shade, lw=1.3)
+            force_arrow(axes, x, y, theta, shade, 1.0)
+        period = rounded(float(v["period"]), float(v["period"] * v["period_error"]))
+        axes.set_title(rf"${style.SYMBOLS['F']} = {F:.6g}$, $T = {period}\,\tau_2$")
+        axes.set(xlabel="$x/L$", ylabel="$y/L$" if number == 0 else "", aspect="equal")
+
+
+def _say(axes: Axes, sentence: str, width: int) -> None:
+    """Writes a sentence in the place of a drawing."""
+    axes.set_axis_off()
+    text = style.plain(textwrap.fill(f"{sentence[:1].upper()}{sentence[1:]}.", width))
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=8)

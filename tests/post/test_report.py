@@ -1,0 +1,238 @@
+"""`rodsweep report`: one page that needs no network and says what the file holds, whatever the task."""
+
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from faults import small
+from pages import read_page
+
+from rodsweep.post.figures.cycle.point_map import cell_centres, cell_edges
+from rodsweep.post.report import write_report
+from rodsweep.post.report.dark_colours import MIN_CONTRAST, _contrast, in_the_dark
+from rodsweep.post.report.label_text import label_text
+from rodsweep.post.summary import summary_of
+from rodsweep.results.file.view import read_view
+from rodsweep.tasks import TASKS
+
+ROD = "k1: 1.0e4, k2: 1.0e2, gamma3: 1.0e-2"
+CONFIGS = small.CONFIGS | {
+    "criticality": f"task: criticality\nparameters: {{{ROD.replace('1.0e4', '[200, 1.0e4]')}}}\n",
+    "branch": f"task: branch\nparameters: {{{ROD}}}\nbranch: {{start: 20, stop: 40}}\naccuracy: 1.0e-3\n",
+}
+NASTY = "<script>alert('title')</script> & {{ 7 * 7 }} $x_1$"
+
+
+def solved(command, name):
+    command.write("points.csv", small.POINTS)
+    command.write(f"{name}.yaml", CONFIGS[name])
+    return command.solved(f"{name}.yaml")
+
+
+def reported(command, name):
+    """The page of a small file."""
+    solved(command, name)
+    run = command("report", f"{name}.h5")
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.startswith(f"wrote {name}.html: 1 result, ")
+    return read_page(command.directory / f"{name}.html")
+
+
+def test_there_is_a_small_file_of_every_task():
+    assert CONFIGS.keys() >= TASKS.keys()
+
+
+@pytest.mark.parametrize("name", CONFIGS)
+def test_a_page_of_every_task_is_whole_and_needs_no_network(command, name):
+    page = reported(command, name)
+    assert page.asked_for() == []
+    assert len(page.texts("script")) == len(page.texts("style")) == 1
+    assert page.texts("svg", role="img")
+    assert page.texts("circle")
+    headings = ["Figures", "Reliability", "Tables", "Config", "Provenance"]
+    assert [h for h in page.texts("h2") if h != "Further results"] == headings
+
+
+@pytest.mark.parametrize("name", CONFIGS)
+def test_the_page_says_what_show_says(command, name):
+    page = reported(command, name)
+    shown = " ".join(command("show", f"{name}.h5").stdout.split())
+    (lead,) = page.texts("p", class_="lead")
+    answer = " ".join(shown.split(f"task {read_view(command.directory / f'{name}.h5').task} ", 1)[1].split())
+    assert answer.startswith(lead)
+    summary = summary_of(read_view(command.directory / f"{name}.h5"))
+    paragraphs = page.texts("p")
+    for line in [*summary.answer, *summary.trust, *summary.details, *summary.origin]:
+        assert " ".join(line.replace("`", "").split()) in ["", *paragraphs]
+    for row in summary.statuses.rows:
+        assert {row[0], row[1], row[2].replace("`", "")} <= set(page.texts("td"))
+
+
+def test_no_label_on_a_page_is_left_in_tex(command):
+    for name in CONFIGS:
+        for value in reported(command, name).values():
+            assert not re.search(r"[$\\{}]", " ".join(value)), value
+
+
+def test_the_numbers_in_tables_are_those_in_the_file(command):
+    page = reported(command, "thresholds")
+    rows = page.table("points")
+    v = read_view(command.directory / "thresholds.h5").variables
+    for name in ("F_onset", "F_hopf", "hopf_frequency"):
+        assert [float(row[name]) for row in rows] == v[name].ravel().tolist()
+    assert {row["status"] for row in rows} == {"ok"}
+
+
+def test_the_values_under_the_pointer_are_those_in_the_file(command):
+    page = reported(command, "thresholds")
+    v = read_view(command.directory / "thresholds.h5").variables
+    forces = np.concatenate([v["F_onset"].ravel(), v["F_hopf"].ravel()])
+    words = [lines for lines in page.values() if len(lines) == 2]
+    read = [float(lines[1].rpartition(" = ")[2]) for lines in words]
+    assert np.sort(read) == pytest.approx(np.sort(forces), rel=1e-7)
+    maps = [lines for lines in page.values() if len(lines) == 3]
+    mapped = sorted(float(lines[0].rpartition(": ")[2]) for lines in maps)
+    assert mapped == pytest.approx(np.sort(forces), rel=1e-7)
+    rods = {(float(a.rpartition(" = ")[2]), float(b.rpartition(" = ")[2])) for _, a, b in maps}
+    assert rods == {(200, 100), (200, 1e4), (1e4, 100), (1e4, 1e4)}
+
+
+def test_a_map_of_spectra_has_the_growth_rates_under_the_pointer(command):
+    axes = "{F: {start: 5, stop: 45, num: 7}, k1: {start: 100, stop: 2.0e4, num: 7, spacing: log}"
+    rest = "k2: 1.0e4, gamma3: 1.0e-4}"
+    command.write("c.yaml", f"task: spectrum\nparameters: {axes}, {rest}\nspectrum: {{modes: 2}}\n")
+    command.solved("c.yaml")
+    assert command("report", "c.h5").returncode == 0
+    rates = [float(v[0].rpartition(": ")[2]) for v in read_page(command.directory / "c.html").values()]
+    stored = read_view(command.directory / "c.h5").variables["growth_rate"][..., 0].ravel()
+    assert rates == pytest.approx(stored.tolist(), rel=1e-7)
+
+
+def test_a_title_and_a_config_cannot_bring_markup(command):
+    comment = "# <img src='http://example.org/x.png'>"
+    command.write("c.yaml", f'title: "{NASTY}"\n{comment}\n{CONFIGS["thresholds"]}')
+    command.solved("c.yaml")
+    assert command("report", "c.h5", "-o", "p.html").returncode == 0
+    page = read_page(command.directory / "p.html")
+    assert page.texts("h1") == [NASTY]
+    assert page.texts("title")[0] == NASTY
+    assert len(page.texts("script")) == 1
+    assert "alert" not in page.texts("script")[0]
+    assert not page.texts("img")
+    assert page.asked_for() == []
+
+
+def test_a_page_of_a_part_says_what_is_missing(command):
+    command.write("c.yaml", CONFIGS["thresholds"])
+    assert command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5").returncode == 0
+    assert command("report", "c.h5").returncode == 0
+    page = read_page(command.directory / "c.html")
+    (told,) = [text for text in page.texts("p") if text.startswith("2 rods are not here")]
+    assert "rodsweep merge" in told
+    assert {"missing", "not computed yet"} <= set(page.texts("td"))
+    assert [row["status"] for row in page.table("points")].count("missing") == 2
+
+
+def test_a_page_without_a_computed_point_says_so(command):
+    view = read_view(solved(command, "thresholds"))
+    variables = dict(view.variables)
+    for name, values in view.variables.items():
+        if (
+            values.shape[:1] == view.variables["status"].shape[:1]
+            and values.dtype.kind == "f"
+            and values.ndim > 1
+        ):
+            variables[name] = np.full_like(values, np.nan)
+    variables["status"] = np.full_like(view.variables["status"], -1)
+    write_report([replace(view, variables=variables)], command.directory / "p.html")
+    page = read_page(command.directory / "p.html")
+    assert page.texts("p", class_="lead") == ["no rod is computed yet"]
+    assert any(text.startswith("No figure: thresholds.h5 holds no") for text in page.texts("p"))
+
+
+def test_points_that_failed_are_counted_with_their_reason_and_place(command):
+    view = read_view(solved(command, "spectrum"))
+    failed = next(value for value, word in view.flags.items() if word == "failed")
+    status = view.variables["status"].copy()
+    status[3:, 1] = failed
+    write_report(
+        [replace(view, variables=dict(view.variables) | {"status": status})], command.directory / "p.html"
+    )
+    page = read_page(command.directory / "p.html")
+    cells = page.texts("td")
+    place = cells.index("failed")
+    assert cells[place + 1 : place + 3] == ["2", "F = 45 to 60, k1 = 10000"]
+    assert len(cells[place + 3]) > 20
+    assert sum(row["status"] == "failed" for row in page.table("points")) == 2
+
+
+def test_several_files_make_one_page(command):
+    solved(command, "thresholds")
+    solved(command, "modes")
+    run = command("report", "thresholds.h5", "modes.h5", "-o", "both.html")
+    assert run.returncode == 0
+    page = read_page(command.directory / "both.html")
+    assert page.texts("h1") == ["thresholds", "modes"]
+    links = [a["href"] for name, a, _ in page.elements if name == "a"]
+    assert links == ["#result-1", "#result-2"]
+    assert [a.get("id") for name, a, _ in page.elements if name == "article"] == ["result-1", "result-2"]
+
+
+def test_the_page_names_no_machine(command):
+    reported(command, "thresholds")
+    hosts = read_view(command.directory / "thresholds.h5").attributes["hosts"]
+    text = (command.directory / "thresholds.html").read_text()
+    assert str(command.directory) not in text
+    words = re.sub(r"<svg.*?</svg>|<style.*?</style>", "", text, flags=re.DOTALL)
+    assert not re.search(rf"\b{re.escape(str(hosts))}\b", words)
+
+
+@pytest.mark.skipif(not shutil.which("chromium"), reason="chromium is not installed")
+def test_the_script_of_the_page_runs_in_a_browser(command):
+    """The script takes over the texts of the figures, so that none is left for the browser to show twice."""
+    page = reported(command, "thresholds")
+    assert page.values()
+    switches = ("--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom")
+    address = f"file://{command.directory / 'thresholds.html'}"
+    run = subprocess.run(
+        ["chromium", *switches, address], capture_output=True, text=True, timeout=120, check=True
+    )
+    assert "<circle" in run.stdout
+    assert not re.search(r"<circle[^>]*><title>", run.stdout)
+    assert "CONSOLE" not in run.stderr
+
+
+@pytest.mark.parametrize(
+    ("label", "text"),
+    [
+        (r"follower force $\tilde F$", "follower force F"),
+        (r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$", "largest growth rate Re ω1 τ2"),
+        (r"onset $\tilde F_*$ in $k_3/L^2$", "onset F* in k3/L^2"),
+        (r"$\Theta_1^\dagger$", "Θ1†"),
+        (r"$\tilde k_1 = 2.5\times10^{-4}$, 5 \$", "k1 = 2.5×10^-4, 5 $"),
+        (r"$\dot U L$", "dU/dt L"),
+        ("energy\n$U L/k_3$", "energy U L/k3"),
+    ],
+)
+def test_labels_become_plain_text(label, text):
+    assert label_text(label) == text
+
+
+def test_centres_of_cells_are_the_values_that_made_the_edges():
+    even = np.array([1.0, 2.0, 5.0, 5.5, 8.0])
+    assert cell_centres(cell_edges(even)) == pytest.approx(even, rel=1e-14)
+    logarithmic = np.array([1.0, 2.0, 50.0, 1e4])
+    assert cell_centres(np.log(cell_edges(logarithmic))) == pytest.approx(np.log(logarithmic), abs=1e-14)
+
+
+@pytest.mark.parametrize("colour", ["0072b2", "6a3d9a", "440154", "d55e00", "ffff00", "000000", "000001"])
+def test_colours_are_lightened_until_they_stand_out_on_a_dark_page(colour):
+    found = in_the_dark(colour)
+    assert _contrast([int(found[place : place + 2], 16) for place in (0, 2, 4)]) >= MIN_CONTRAST
+
+
+def test_white_paper_becomes_the_dark_page():
+    assert in_the_dark("ffffff") == "1b1b1b"
