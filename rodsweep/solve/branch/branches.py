@@ -24,6 +24,8 @@ from .work import shares_of_branches
 
 SHORT_OF_CRUSHED = 1e-4
 """How far below k1 a branch along F ends, relatively: beyond, the rod is all but crushed at rest."""
+TAPER_DIGITS = 1e-9
+"""Relative accuracy of the smallest taper whose tip is not crushed."""
 
 
 class BranchStatus(PointStatus):
@@ -114,7 +116,7 @@ def warm_up() -> None:
 def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
     low, high, crushed = _range(rod, request)
     if not low < high:
-        why = "F is not below k1 anywhere in the range"
+        why = "the force crushes the rod everywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
     path = Path(rod.changed(**{request.along: low}), request.along)
     found = pair_crossings(path, low, high, request.certify)
@@ -144,11 +146,29 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     """(lowest value, highest value, which of the two is where the rod is crushed, -1 for none)."""
     low, high = request.start, request.stop
-    if request.along == "F" and high > (1 - SHORT_OF_CRUSHED) * rod.k1:
-        return low, (1 - SHORT_OF_CRUSHED) * rod.k1, 1
-    if request.along == "k1" and low < rod.F * (1 + SHORT_OF_CRUSHED):
-        return rod.F * (1 + SHORT_OF_CRUSHED), high, 0
+    share = rod.build.crushing_share(rod.taper)
+    if request.along == "F" and high > (1 - SHORT_OF_CRUSHED) * share * rod.k1:
+        return low, (1 - SHORT_OF_CRUSHED) * share * rod.k1, 1
+    if request.along == "k1" and low < rod.F / share * (1 + SHORT_OF_CRUSHED):
+        return rod.F / share * (1 + SHORT_OF_CRUSHED), high, 0
+    if request.along == "taper":
+        thinnest = _thinnest(rod, low, high)
+        return thinnest, high, 0 if thinnest > low else -1
     return low, high, -1
+
+
+def _thinnest(rod: Rod, low: float, high: float) -> float:
+    """The smallest taper from `low` to `high` whose tip the force of a rod does not crush."""
+
+    def holds(taper: float) -> bool:
+        return rod.F < (1 - SHORT_OF_CRUSHED) * rod.build.crushing_share(taper) * rod.k1
+
+    if holds(low) or not holds(high):
+        return low if holds(low) else high
+    while high - low > TAPER_DIGITS * high:
+        middle = (low + high) / 2
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return high
 
 
 def _followed(course: Course, name: str) -> list[BranchCurve]:

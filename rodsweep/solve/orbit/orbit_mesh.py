@@ -26,6 +26,8 @@ COARSER_ORDER, COARSER_SHARE = 2, 0.6
 """Difference in order, and ratio of intervals, of the coarser mesh, with about ten times larger errors."""
 LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
 """Smallest order of a chosen mesh, and its smallest and largest number of intervals."""
+HALVED_ORDER = 0.6
+"""Order after all elements are halved, in units of the order before, at equal errors."""
 MOST_STATE_UNKNOWNS = 400
 """Largest number of unknowns of a state; a Newton step for a larger state would take more than a second."""
 
@@ -77,7 +79,14 @@ class OrbitMesh:
     @property
     def finer(self) -> "OrbitMesh":
         """Finer mesh for a new attempt without an error estimate."""
-        return replace(self, order=self.order + 2, intervals=self.intervals * 6 // 5 + 1)
+        return replace(self.finer_in_space, intervals=self.intervals * 6 // 5 + 1)
+
+    @property
+    def finer_in_space(self) -> "OrbitMesh":
+        """Mesh of a higher order, or of twice as many elements where the order is the largest."""
+        if self.order + 2 <= LARGEST_ORDER:
+            return replace(self, order=self.order + 2)
+        return replace(self, edges=halved(self.edges), order=ceil(HALVED_ORDER * self.order))
 
     @property
     def allowed(self) -> bool:
@@ -114,7 +123,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     order = present.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / present.elements)
     edges = present.edges
     while order > LARGEST_ORDER:
-        order = ceil(0.6 * order)
+        order = ceil(HALVED_ORDER * order)
         edges = halved(edges)
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
     tail = max(tails.time, 1e-15) ** (stages / present.stages)
@@ -132,4 +141,4 @@ def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
     finer = replace(wanted, order=order, intervals=intervals, stages=stages)
     if finer != mesh:
         return finer
-    return replace(mesh, order=mesh.order + 2, intervals=ceil(1.2 * mesh.intervals))
+    return replace(mesh.finer_in_space, intervals=ceil(1.2 * mesh.intervals))
