@@ -131,9 +131,10 @@ class Config(Strict):
     @model_validator(mode="after")
     def _arms_only_where_solved(self) -> "Config":
         if self.of_cycles and self.build.law != LINEAR.law and not self.build.continuous:
+            where = "material.profile" if self.material is not None else "parameters.arm.segments"
             raise ValueError(
-                f"material.profile has a jump and material.law is {self.build.law}, but the task {self.task} "
-                "solves jumps of linear material only; remove the jump or set law: linear"
+                f"{where} has a jump and the law is {self.build.law}, but the task {self.task} solves jumps "
+                "of linear material only; remove the jump or set law: linear"
             )
         if self.takes_arms:
             return self

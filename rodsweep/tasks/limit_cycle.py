@@ -3,7 +3,6 @@ rod.
 """
 
 from dataclasses import dataclass
-from functools import partial
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -149,14 +148,13 @@ class LimitCycleTask(Task):
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
-        restored = partial(Neighbour.from_arrays, build=self.config.build)
         chains = self.chains
         return Solver(
             statuses=tuple(CycleStatus),
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=ChainedWork(chains, solve_from, restored) if chains else None,
+            chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
         )
 
     def _request(self) -> "CycleRequest":

@@ -14,12 +14,12 @@ def shape_words(arm: SlenderArm) -> str:
 
 
 def no_cycles(arm: SlenderArm) -> list[str]:
-    """Sentence on what is not computed; empty for a uniform arm of linear material."""
-    if arm.standard:
+    """Sentence on what no task computes; empty where cycles are known."""
+    if arm.law == LINEAR.law or arm.build.continuous:
         return []
     return [
-        f"How far and how fast {shape_words(arm)} beats beyond flutter is not computed: cycles are known for "
-        "uniform arms of linear material only."
+        f"How far and how fast {shape_words(arm)} beats beyond flutter is not computed: cycles of segments "
+        "are known for linear material only."
     ]
 
 

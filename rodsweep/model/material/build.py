@@ -1,5 +1,6 @@
 """Build of an arm: constitutive law and profile, and the coefficients along u that follow."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -64,6 +65,21 @@ class Build:
     def constitutive_law(self) -> Law:
         """The law that `law` and `section` name."""
         return law_of(self.law, self.section)
+
+    @property
+    def text(self) -> str:
+        """All that `from_text` needs to make the build again."""
+        profile = None if self.profile is None else [self.profile.u, self.profile.rows]
+        return json.dumps([self.law, self.section, profile])
+
+    @classmethod
+    def from_text(cls, text: str) -> "Build":
+        """The build of a `text`."""
+        law, section, profile = json.loads(text)
+        if profile is None:
+            return cls(law, section)
+        u, rows = profile
+        return cls(law, section, Profile(tuple(u), tuple(map(tuple, rows))))
 
     @property
     def law_number(self) -> int:

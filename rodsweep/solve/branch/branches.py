@@ -161,7 +161,7 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
     """The smallest taper from `low` to `high` whose tip the force of a rod does not crush."""
 
     def holds(taper: float) -> bool:
-        return rod.F < (1 - SHORT_OF_CRUSHED) * rod.build.crushing_share(taper) * rod.k1
+        return (1 - SHORT_OF_CRUSHED) * rod.build.crushing_share(taper) * rod.k1 > rod.F
 
     if holds(low) or not holds(high):
         return low if holds(low) else high

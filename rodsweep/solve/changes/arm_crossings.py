@@ -10,13 +10,15 @@ from dataclasses import dataclass
 
 from ...arrays import Complex
 from ..point import Unsolvable
-from ..spectrum.search import SpectrumRequest
+from ..spectrum.search import Spectrum, SpectrumRequest
 from .anchors import EXPLAINED, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
 MODES = 4
 """Leading eigenvalues known at a place, at least; two more than are unstable."""
+MOST_MODES = 40
+"""Largest number of modes known at a place."""
 ACCURACY = 1e-6
 """Accuracy of these eigenvalues; Newton's method on D does the rest."""
 CLOSEST = 1e-6
@@ -63,8 +65,8 @@ class CrossingSearch:
         if p not in self.places:
             modes = MODES
             found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
-            while found.unstable_count >= 0 and modes < found.unstable_count + 2:
-                modes = found.unstable_count + 2
+            while modes < _needed(found) <= MOST_MODES:
+                modes = _needed(found)
                 found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
@@ -147,6 +149,12 @@ class CrossingSearch:
         error_of_p = max(blur, abs(w.real / slope.real))
         at, error = self.problem.path.value(p, error_of_p)
         return Crossing(at, kind, w.imag, 0.0, error, frequency_error=abs(slope.imag) * error_of_p)
+
+
+def _needed(found: Spectrum) -> int:
+    """Number of modes beyond all unstable ones; without a count they may be more than those found."""
+    growing = int((found.eigenvalues.real > 0).sum())
+    return 2 + max(found.unstable_count, growing)
 
 
 def hidden(left: AxisPlace, right: AxisPlace) -> float:

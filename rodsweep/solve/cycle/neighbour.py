@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.stress.form import StressForm
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -75,6 +75,7 @@ class Neighbour:
         orbit = branch.orbit
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
+            "build": np.frombuffer(orbit.form.rod.build.text.encode(), np.uint8),
             "symmetric": np.array(orbit.symmetric),
             "mesh": mesh_of(orbit).numbers,
             "orbit": orbit.values,
@@ -86,12 +87,12 @@ class Neighbour:
         } | self.calibration.arrays()
 
     @classmethod
-    def from_arrays(cls, arrays: Arrays, build: Build = STANDARD) -> "Neighbour":
-        """The neighbour from stored `arrays`, with the shapes given there, of a rod of this build."""
+    def from_arrays(cls, arrays: Arrays) -> "Neighbour":
+        """The neighbour from stored `arrays`, with the shapes given there."""
         mesh = OrbitMesh.from_numbers(arrays["mesh"])
         next_mesh = OrbitMesh.from_numbers(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
-        rod = Rod(**parameters, build=build)
+        rod = Rod(**parameters, build=Build.from_text(bytes(arrays["build"]).decode()))
         symmetry = REFLECTION if arrays["symmetric"] else NONE
         form = StressForm(rod, mesh.grid)
         orbit = Orbit(form, symmetry, mesh.intervals, mesh.stages, arrays["orbit"])
@@ -133,6 +134,8 @@ def followed_cycle(
 
     form: the rod, on any mesh. name: the parameter. workspace: memory of the matrices.
     """
+    if form.rod.build != neighbour.branch.orbit.form.rod.build:
+        raise Unsolvable("the neighbour varies otherwise along its length")
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
         raise Unsolvable(
             "the neighbour has other unknowns: Omega is an unknown only at small rotational drag"

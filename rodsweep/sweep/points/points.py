@@ -114,6 +114,14 @@ class Points:
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 
+    @property
+    def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
+        """(different builds, number of the one of each rod of `of_rods`, (rods,)), of a list of rods."""
+        different = list(dict.fromkeys(self.builds)) or [self.build]
+        of_arms = np.array([different.index(build) for build in self.builds] or [0])
+        numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]
+        return different, numbers if self.covered is None else numbers[self.covered == SLENDER]
+
     def build_of(self, index: int) -> Build:
         """Law and profile of the rod at a flat index."""
         return self.builds[index * len(self.builds) // self.count] if self.builds else self.build

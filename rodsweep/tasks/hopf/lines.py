@@ -4,6 +4,7 @@ Hopf points depend on the config alone and are stored before any point is solved
 of the file after a run, an extension or a merge.
 """
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -69,23 +70,28 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
     """Lines over a parameter of points with at least two finite values of it; lines over F begin at 0.
 
-    Below the first force of the points the rod may already oscillate; such a Hopf point is stored too.
+    Below the first force of the points the rod may already oscillate; such a Hopf point is stored too. Arms
+    whose parameters are equal and whose profiles differ have no line: a file could not tell them apart.
     """
     columns = {n: points.of_rods[n] for n in names}
     others = [n for n in names if n != name]
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
-        ends = [_ends(columns[name])] * len(rods)
+        ends, builds = [_ends(columns[name])] * len(rods), [points.build] * len(rods)
     else:
-        table = np.stack([columns[n] for n in others], axis=-1)
-        rods, line = np.unique(table, axis=0, return_inverse=True)
+        different, numbers = points.builds_of_rods
+        table = np.stack([numbers, *(columns[n] for n in others)], axis=-1)
+        lines, line = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(line.ravel(), kind="stable")
         cuts = np.cumsum(np.bincount(line.ravel()))[:-1]
         ends = [_ends(values) for values in np.split(columns[name][order], cuts)]
-    for rod, (start, stop) in zip(rods.tolist(), ends, strict=True):
-        if start < stop:
+        rods = lines[:, 1:]
+        builds = [different[int(number)] for number in lines[:, 0]]
+    shared = Counter(map(tuple, rods.tolist()))
+    for rod, (start, stop), build in zip(map(tuple, rods.tolist()), ends, builds, strict=True):
+        if start < stop and shared[rod] == 1:
             first = min(start, 0.0) if name == "F" else start
-            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop, points.build)
+            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop, build)
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
