@@ -13,9 +13,9 @@ from .relative import FARTHEST
 
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
 """Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
-ENDS_OF_VARIED = (100.0, 300.0, FARTHEST)
+ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
 """Largest forces of the search for an arm that varies along its length, in k3/L^2 at its base, tried in turn:
-up to 100 the search takes a second a drag, up to FARTHEST twenty."""
+a search far beyond the first flutter, where many modes are unstable, takes up to half a minute a drag."""
 BEYOND_FLUTTER = 2.0
 """Least ratio of the end of the search to the first flutter, and to the load, of an arm that varies."""
 

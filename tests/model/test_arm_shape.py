@@ -214,6 +214,8 @@ SEGMENTS = {"radius": None, "length": None}
         ),
         ({"length": None}, "length is missing; write it as in '10 cm'"),
         ({"young": None}, "young is missing; write it as in '100 kPa'"),
+        ({"law": ["linear"]}, "law = \\['linear'\\] is no word"),
+        ({"section": 3}, "section = 3 is no word"),
         ({"law": "hooke"}, "law = hooke is none of the known laws; it must be linear or neo_hookean"),
         ({"section": "swelling"}, "section = swelling is not known for law = linear; it must be fixed"),
         (

@@ -39,6 +39,11 @@ def refuse_words(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
     if arm.drag not in DRAGS:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
+    for name, word in (("law", arm.law), ("section", arm.section)):
+        if not isinstance(word, str):
+            raise InputError(
+                f"{name} = {word!r:.60} is no word, as linear and neo_hookean, fixed and swelling are"
+            )
     try:
         law_of(arm.law, arm.section)
     except ValueError as error:

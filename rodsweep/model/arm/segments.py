@@ -45,6 +45,8 @@ def segment_texts(given: Any) -> tuple[str, ...]:
     """Every segment of an arm as text; InputError, beginning with "segments", for what is no segment."""
     if isinstance(given, str | Mapping):
         given = [given]
+    if hasattr(given, "tolist"):  # an array of texts
+        given = given.tolist()
     if not isinstance(given, Sequence) or not given:
         raise InputError(f"segments = {str(given):.60} is no list of segments; write each as in '{EXAMPLE}'")
     if len(given) > MAX_SEGMENTS:
