@@ -67,7 +67,7 @@ def special_points(
 ) -> tuple[list[SpecialPoint], bool]:
     """(the special points between two cycles, whether they explain all), in their order along the branch.
 
-    accuracy: of the branch. The step between the cycles is halved where more than one thing happens, and where
+    accuracy: of the branch. The step between the cycles is halved where more than one thing happens, or where
     a special point is not located: close to crushing a prediction over the whole step may leave the model.
     """
     kinds, explained = changes_between(here, there)
