@@ -62,8 +62,7 @@ MANY = 30
 ROUNDING = 1e-11
 """Relative error of an eigenvalue that is solved alone."""
 BETWEEN_NODES = 1e-3
-"""Error of the least stretch, in units of its distance from 1, beside that of the tip's extrema: it is taken
-at nodes."""
+"""Error of the least stretch, taken at nodes, in units of its distance from 1. It adds to that of extrema."""
 FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
 """Relative distances from a fold of a curve at which, and within which, changes are counted."""
 

@@ -270,3 +270,16 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     assert shares[0] < 0.1
     assert shares[-1] > 0.8
     assert 0.2 < np.interp(0.5 * len(done), work, shares) < 0.8
+
+
+def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
+    """A prediction over the whole step between the cycles beside it has F > k1."""
+    rod = Rod(F=0.0, k1=229.46018, k2=1e4, gamma3=1e-4, gamma1=0.5)
+    folds = []
+    for start in (0.0, 100.0):  # from the first Hopf point, and from the restabilization
+        found = solved(rod, start, stop=0.9998 * rod.k1)
+        assert found.status == BranchStatus.ok
+        folds += [only(curve, SpecialKind.fold) for curve in found.curves]
+    one, other = folds
+    assert abs(one.at - other.at) <= one.error + other.error
+    assert max(one.error, other.error) < 1e-7 * rod.k1

@@ -18,7 +18,7 @@ from .point import SpecialKind, SpecialPoint
 NEAR_ONE = 3e-3
 """Distance of a multiplier from 1 within which rounding may put it on the other side; a fold has two."""
 MOST_HALVINGS = 7
-"""Of a step between two cycles in which more than one thing happens."""
+"""Of a step between two cycles in which more than one thing happens, or a special point is not located."""
 
 Step = Callable[[ArcPoint, float], ArcPoint]
 """The point at a length from another one; raises Unsolvable."""
@@ -67,17 +67,18 @@ def special_points(
 ) -> tuple[list[SpecialPoint], bool]:
     """(the special points between two cycles, whether they explain all), in their order along the branch.
 
-    accuracy: of the branch.
+    accuracy: of the branch. The step between the cycles is halved where more than one thing happens, or where
+    a special point is not located: close to crushing a prediction over the whole step may leave the model.
     """
     kinds, explained = changes_between(here, there)
-    if not explained and depth < MOST_HALVINGS:
-        length = arc_between(here, there)
+    points = [located(kind, here, there, accuracy) for kind in kinds] if explained else []
+    if depth < MOST_HALVINGS and (not explained or any(point.message for point in points)):
         try:
-            middle = step(here, length / 2)
+            middle = step(here, arc_between(here, there) / 2)
         except Unsolvable:
             pass
         else:
-            first, known = special_points(here, middle, step, accuracy, depth + 1)
-            second, also = special_points(middle, there, step, accuracy, depth + 1)
-            return first + second, known and also
-    return [located(kind, here, there, accuracy) for kind in kinds], explained
+            first, first_explained = special_points(here, middle, step, accuracy, depth + 1)
+            second, second_explained = special_points(middle, there, step, accuracy, depth + 1)
+            return first + second, first_explained and second_explained
+    return points or [located(kind, here, there, accuracy) for kind in kinds], explained
