@@ -26,7 +26,9 @@ SIZE = (10.0, 10.4)
 """Width and height of the picture, in inches."""
 HEIGHTS = (0.4, 2.4, 1.5, 2.2)
 """Relative heights of the thresholds, the largest y, the periods, and the modes with the cycles."""
-LINE_WIDTH = 178
+MODE_WIDTH = 0.65
+"""Width of the panel of a mode, in units of the width of that of a cycle."""
+LINE_WIDTH = 162
 """Characters in a line of the paragraph."""
 PANEL_WIDTH = 26
 """Characters in a line of a sentence in place of a mode or a cycle."""
@@ -50,7 +52,8 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
     with matplotlib.rc_context(style.STYLE):
         figure = Figure(figsize=SIZE, layout="constrained")
         modes = list(results.modes) or [""]
-        grid = figure.add_gridspec(4, len(modes) + CYCLES, height_ratios=HEIGHTS)
+        widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLES
+        grid = figure.add_gridspec(4, len(widths), height_ratios=HEIGHTS, width_ratios=widths)
         bar = figure.add_subplot(grid[0, :])
         upper = figure.add_subplot(grid[1, :], sharex=bar)
         lower = figure.add_subplot(grid[2, :], sharex=bar)
@@ -144,7 +147,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
             axes.plot(view.variables["u"], parts[part], line, color=style.FIRST, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
-    axes.legend(frameon=False, loc="upper left")
+    axes.legend(frameon=False, loc="upper left", fontsize=7, handlelength=1.2, borderpad=0)
 
 
 def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
