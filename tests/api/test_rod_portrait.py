@@ -74,7 +74,7 @@ def test_the_picture_has_the_curves_of_the_branch(portrait):
     for y in branch["tip_y_max"]:
         assert np.abs(drawn - y).min() < 1e-12
     styles = {line.get_linestyle() for line in upper.lines if len(line.get_xdata()) > 2}
-    assert styles == {"-", "--"}  # stable up to the fold, unstable beyond
+    assert styles - {"None"} == {"-", "--"}  # stable up to the fold, unstable beyond
     stars = [line for line in lower.lines if line.get_marker() == "*"]
     assert stars[0].get_ydata() == pytest.approx([cycle.period for cycle in portrait.cycles.values()])
 
@@ -125,7 +125,7 @@ def test_a_cone_says_which_tasks_cannot_solve_it():
     assert len(portrait.figure().axes) > 3
 
 
-def test_bad_choices_are_refused(tmp_path):
+def test_bad_choices_are_refused():
     with pytest.raises(rs.InputError, match=r"F_max = -3 is not allowed"):
         FOLDED.portrait(F_max=-3)
     with pytest.raises(rs.InputError, match="did you mean F_max"):

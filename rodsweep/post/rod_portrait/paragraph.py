@@ -26,6 +26,8 @@ EVENTS = {
     "pair_leads": "a complex pair takes the lead at F = {F}",
 }
 """Clauses on the straight rod at a threshold, by kind."""
+SEARCHES = ("thresholds", "criticality", "branch")
+"""Tasks whose statuses are stated where they are not `SUCCEEDED`."""
 SUCCEEDED = "ok"
 """Status of thresholds, criticality and branches without reservation."""
 
@@ -143,7 +145,7 @@ def _missing(results: RodResults) -> Iterator[str]:
     """Yields sentences on results that are missing or have a reservation."""
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
-    for task in ("thresholds", "criticality", "branch"):
+    for task in SEARCHES:
         if (view := results.views.get(task)) and (word := str(outcomes(view)[0])) != SUCCEEDED:
             yield f"About {task}, {word.replace('_', ' ')}: {status_meaning(view, word)}."
 
