@@ -27,6 +27,9 @@ from .axes import plain
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
+if TYPE_CHECKING:
+    from .answers.rod_portrait import RodPortrait
+
 REQUIRED = tuple(name for name, p in PARAMETERS.items() if p.default is None and name != "F")
 """Parameters that every rod needs."""
 
@@ -129,6 +132,23 @@ class SoftRod:
     def branch(self, **options: Unpack[OfBranch]) -> Answer:
         """The branches of cycles, stable or not, followed in `along` from every Hopf point to their ends."""
         return self._answer("branch", options)
+
+    @in_sentences("rod.portrait(F_max=100)")
+    def portrait(
+        self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
+    ) -> "RodPortrait":
+        """Everything about the rod up to `F_max`, in one picture and one paragraph.
+
+        Thresholds, criticality, branches of cycles, ranges with two stable states, modes at the thresholds,
+        and three cycles. A result that cannot be solved has its reason in its place.
+        """
+        from ..tasks.rod_portrait import PortraitRequest
+        from .answers.rod_portrait import portrait_of
+
+        request = PortraitRequest(
+            parameters=self._values, F_max=F_max, accuracy=accuracy, material=self._given_material
+        )
+        return portrait_of(repr(self), request, progress)
 
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 

@@ -1,6 +1,6 @@
-"""The command `rodsweep`: run, merge, snapshot, check, show, plot, report, export, schema, arm, bench.
+"""The command `rodsweep`: it joins the packages and reads the arguments and environment variables.
 
-It joins the packages and reads the arguments and environment variables.
+Commands: run, merge, snapshot, check, show, plot, report, portrait, export, schema, arm, bench.
 
 Exit status: 0 if every point succeeded, 1 if the run is complete but some point failed, 2 for bad input, 3 if
 the machine lacks something, 70 for a bug, 75 if a run was asked to stop and can be continued.
@@ -24,8 +24,12 @@ from ..config.values import printable  # noqa: E402 - after the environment is s
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import speaks  # noqa: E402 - after the environment is set
+from .page_commands import portrait, report  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
+
+for _command in (portrait, report):
+    commands.add_command(_command)
 
 LONGEST_MESSAGE = 350
 """Maximum length of an error message, in characters."""

@@ -12,7 +12,6 @@ from ..errors import InputError
 from .arm_options import arm_options
 from .file_names import beside, followed, result_file
 from .launchers import rank_variables
-from .page_commands import report
 
 FILE = click.Path(path_type=Path)
 overrides_option = click.option(
@@ -28,9 +27,6 @@ def commands(context: click.Context) -> None:
     if context.invoked_subcommand is None:  # click's own help differs between its releases
         click.echo(context.get_help(), err=True)
         sys.exit(2)
-
-
-commands.add_command(report)
 
 
 @commands.command()

@@ -1,10 +1,11 @@
-"""Commands that write a page or a picture to be sent: `report`."""
+"""Commands that write a page or a picture to be sent: `report` and `portrait`."""
 
 from pathlib import Path
 
 import click
 
 from .file_names import beside, followed
+from .parameter_options import parameter_options
 
 FILE = click.Path(path_type=Path)
 
@@ -21,3 +22,25 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
     output = followed(output or beside(files[0], ".html"))
     require_page(output, files)
     click.echo(write_report([read_view(followed(file)) for file in files], output, with_shapes))
+
+
+@click.command()
+@parameter_options
+@click.option("--F-max", "F_max", type=float, default=200.0, show_default=True, help="Largest force.")
+@click.option("--accuracy", type=float, help="Relative accuracy; by default that of each task.")
+@click.option(
+    "-o", "--output", type=FILE, default=Path("portrait.png"), show_default=True,
+    help="A .png, .pdf or .svg file, or a .html page with tables.",
+)  # fmt: skip
+def portrait(F_max: float, accuracy: float | None, output: Path, **parameters: float | None) -> None:
+    """Solve everything about one rod, and draw it: thresholds, branches, modes, three cycles."""
+    from ..post.rod_portrait.paragraph import paragraph
+    from ..post.rod_portrait.writing import require_portrait, write_portrait
+    from ..tasks.rod_portrait import PortraitRequest, rod_results
+
+    output = followed(output)
+    require_portrait(output)
+    given = {name: value for name, value in parameters.items() if value is not None}
+    results = rod_results(PortraitRequest(parameters=given, F_max=F_max, accuracy=accuracy))
+    click.echo(paragraph(results))
+    click.echo(write_portrait(results, output))

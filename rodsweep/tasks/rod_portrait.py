@@ -22,6 +22,8 @@ PLACES = (0.1, 0.5, 0.9)
 """Forces of the three cycles, as fractions of the length of all ranges with a stable cycle."""
 SHAPES = 12
 """Times per period at which a shape is solved; more cannot be told apart in a small panel."""
+LARGE_START = 0.5
+"""Tip deflection, in L, of a start from which the rod comes to a cycle beside a stable straight rod."""
 MODE_KINDS = ("onset", "hopf")
 """Kinds of thresholds at whose first place the leading mode is solved."""
 F_MAX = 200.0
@@ -43,12 +45,11 @@ class PortraitRequest:
     accuracy: float | None = None
     material: Mapping[str, Any] = field(default_factory=dict)
 
-    def job(self, task: str, options: Mapping[str, Any], forces: Sequence[float] = ()) -> Job:
-        """Job of a task for this rod, at some forces if the task takes them."""
+    def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
+        """Job of a task for this rod, at a force if the task takes one."""
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
-        values: dict[str, Any] = {n: self.parameters[n] for n in names if n in self.parameters and n != "F"}
-        if forces:
-            values["F"] = list(forces)
+        values = {name: self.parameters[name] for name in names if name in self.parameters and name != "F"}
+        values |= {} if F is None else {"F": F}
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
         tree |= {"material": dict(self.material)} if self.material else {}
         tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
@@ -56,7 +57,7 @@ class PortraitRequest:
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
-    """Solves everything about a rod; solve: how the points of a job are solved.
+    """Solves everything about a rod; solve: how the only point of a job is solved.
 
     Raises InputError for parameters that are no rod. What cannot be solved of a rod has its reason in the
     result.
@@ -65,27 +66,47 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
     views = {"thresholds": solve(request.job("thresholds", F_max))}
     missing: dict[str, str] = {}
 
-    def add(task: str, options: Mapping[str, Any], forces: Sequence[float] = ()) -> None:
+    def solved(task: str, options: Mapping[str, Any], F: float | None = None) -> View | None:
         try:
-            views[task] = solve(request.job(task, options, forces))
+            return solve(request.job(task, options, F))
         except InputError as error:
-            missing[task] = str(error)
+            missing.setdefault(task, str(error))
+            return None
 
-    add("criticality", F_max)
-    add("branch", {"start": 0.0, "stop": request.F_max})
-    modes = mode_forces(views["thresholds"])
-    if modes:
-        add("modes", {}, sorted(set(modes.values())))
-    else:
-        missing["modes"] = f"no threshold up to F = {request.F_max:g}"
+    for task, options in (("criticality", F_max), ("branch", {"start": 0.0, "stop": request.F_max})):
+        if (view := solved(task, options)) is not None:
+            views[task] = view
+    modes = {
+        kind: (F, view)
+        for kind, F in mode_forces(views["thresholds"]).items()
+        if (view := solved("modes", {}, F)) is not None
+    }
     ranges = stable_ranges(views["branch"]) if "branch" in views else []
-    if ranges:
-        add("limit_cycle", {"start": "hopf", "shapes": SHAPES}, cycle_forces(ranges))
-    else:
-        missing["limit_cycle"] = missing.get("branch", "no stable cycle on a branch from a Hopf point")
+    cycles = [(F, view) for F in cycle_forces(ranges) if (view := _cycle(solved, F)) is not None]
+    if not modes:
+        missing.setdefault("modes", f"no threshold is known up to F = {request.F_max:g}")
+    if not cycles:
+        reason = missing.get("branch", "no stable cycle lies on a branch from a Hopf point")
+        missing.setdefault("limit_cycle", reason)
     return RodResults(
-        parameters=request.parameters, F_max=request.F_max, views=views, mode_forces=modes, missing=missing
+        parameters=request.parameters,
+        F_max=request.F_max,
+        views=views,
+        modes=modes,
+        cycles=cycles,
+        missing=missing,
     )
+
+
+def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
+    """The limit cycle at a force, from the Hopf point, or from a large start if that leads to none."""
+    found = None
+    for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_START}):
+        view = solved("limit_cycle", {**start, "shapes": SHAPES}, F)
+        if view is not None and np.isfinite(view.variables["period"]).all():
+            return view
+        found = found or view
+    return found
 
 
 def mode_forces(thresholds: View) -> dict[str, float]:
@@ -105,12 +126,20 @@ def stable_ranges(branch: View) -> list[Range]:
 
 
 def cycle_forces(ranges: Sequence[Range]) -> list[float]:
-    """Forces of the three cycles, increasing, spread evenly over ranges of the force with a stable cycle."""
+    """Forces of the three cycles, increasing, spread evenly over ranges of the force with a stable cycle.
+
+    Each is rounded to three digits if that is in its range; empty without a range.
+    """
+    if not ranges:
+        return []
     lengths = np.array([high - low for low, high in ranges])
     before = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
     for place in PLACES:
         along = place * before[-1]
         number = min(int(np.searchsorted(before, along, side="right")) - 1, len(ranges) - 1)
-        forces.append(float(ranges[number][0] + along - before[number]))
+        low, high = ranges[number]
+        force = float(low + along - before[number])
+        short = float(f"{force:.3g}")
+        forces.append(short if low < short < high else force)
     return forces

@@ -1,4 +1,4 @@
-"""`rodsweep report` refuses names in one sentence, and leaves what is there."""
+"""`rodsweep report` and `rodsweep portrait` refuse names in one sentence, and leave what is there."""
 
 import shutil
 
@@ -40,3 +40,41 @@ def test_a_report_is_refused_in_a_sentence(results, words, sentence):
 
 def test_a_report_needs_a_file(command):
     assert command("report").returncode == 2
+
+
+ROD = ("--k1", "1e4", "--k2", "1e2", "--gamma3", "1e-2")
+
+
+def test_a_portrait_is_drawn_and_said(command):
+    done = command("portrait", *ROD, "--F-max", "40", "--accuracy", "1e-3", "-o", "p.svg")
+    assert done.returncode == 0, done.stderr
+    told, wrote = done.stdout.splitlines()
+    assert "becomes unstable at F = 27.4272 (frequency 113.548 rad/tau2; supercritical" in told
+    assert wrote.startswith("wrote p.svg: ")
+    assert (command.directory / "p.svg").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ((*ROD, "-o", "p.txt"), "--output p.txt: the name must end in .png, .pdf, .svg, .html"),
+        ((*ROD, "-o", "no/p.png"), "--output no/p.png: there is no directory no"),
+        ((*ROD, "-o", "no/p.html"), "--output no/p.html: there is no directory no"),
+        ((*ROD, "-o", "folder.png"), "--output folder.png is not a name for a picture; choose another"),
+        (
+            (*ROD, "--F-max", "-1"),
+            "thresholds.F_max = -1.0 is not allowed; it should be a finite number above 0",
+        ),
+        (
+            ("--k1", "-3", "--k2", "1", "--gamma3", "1"),
+            "parameters.k1 = -3 is not allowed; it must be a number above 0, or inf for an inextensible rod",
+        ),
+        (("--k1", "x", "--k2", "1", "--gamma3", "1"), "Invalid value for '--k1': 'x' is not a valid float."),
+    ],
+)
+def test_a_portrait_is_refused_in_a_sentence(command, words, sentence):
+    (command.directory / "folder.png").mkdir()
+    done = command("portrait", *words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"rodsweep: {sentence}\n"
+    assert [path.name for path in command.directory.iterdir()] == ["folder.png"]

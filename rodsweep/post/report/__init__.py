@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
@@ -24,6 +25,7 @@ from .dark_colours import in_the_dark
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
 from .reported import Reported, reported
+from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")
 """A command or a key in a sentence."""
@@ -60,6 +62,14 @@ def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = No
 
 def page_text(results: Sequence[Reported], together: Pictures) -> str:
     """The page as HTML; together: figures that show several results."""
+    pictures = [each.picture for result in results for each in result.pictures.shown]
+    pictures += [each.picture for each in together.shown]
+    title = "; ".join(result.title for result in results)
+    return rendered("page.html", pictures, title=title, results=results, together=together)
+
+
+def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:
+    """A page from a template of this package; drawn: all pictures of the page."""
     environment = Environment(
         loader=PackageLoader(__name__),
         autoescape=True,
@@ -70,16 +80,13 @@ def page_text(results: Sequence[Reported], together: Pictures) -> str:
     )
     environment.filters["svg"] = Markup  # made here from numbers and escaped texts
     environment.filters["with_code"] = _with_code
-    pictures = [each.picture for result in results for each in result.pictures.shown]
-    pictures += [each.picture for each in together.shown]
-    colours = sorted(set[str]().union(*(picture.colours for picture in pictures)))
-    return environment.get_template("page.html").render(
-        results=results,
-        together=together,
+    colours = sorted(set[str]().union(*(picture.colours for picture in drawn)))
+    return environment.get_template(template).render(
         colours=[(colour, in_the_dark(colour)) for colour in colours],
         max_rows=MAX_ROWS,
         version=__version__,
         written=now(),
+        **contents,
     )
 
 

@@ -26,6 +26,8 @@ EVENTS = {
     "pair_leads": "a complex pair takes the lead at F = {F}",
 }
 """Clauses on the straight rod at a threshold, by kind."""
+SEARCHES = ("thresholds", "criticality", "branch")
+"""Tasks whose statuses are stated where they are not `SUCCEEDED`."""
 SUCCEEDED = "ok"
 """Status of thresholds, criticality and branches without reservation."""
 
@@ -79,7 +81,7 @@ def _side(results: RodResults, F: float) -> str:
 
 def _branches(results: RodResults) -> Iterator[str]:
     """Yields sentences on the branches of cycles, their special points and ranges of stability."""
-    view = results.views.get("branch")
+    view = results.branch
     if view is None:
         return
     curves = curves_of(view, 0)
@@ -123,31 +125,29 @@ def _special(view: View, kind: str) -> list[str]:
 
 def _cycles(results: RodResults) -> Iterator[str]:
     """Yields a sentence on the cycles that are drawn, and on forces at which none was found."""
-    view = results.views.get("limit_cycle")
-    if view is None:
-        return
-    words = outcomes(view)
     clauses = []
-    for number, F in enumerate(view.point_columns["F"]):
-        v = view.of_point(number)
-        if words[number] not in CYCLE_WORDS:
-            clauses.append(f"at F = {F:.6g} no cycle is drawn ({words[number]})")
+    for F, view in results.cycles:
+        v = view.of_point(0)
+        word = str(outcomes(view)[0])
+        if word not in CYCLE_WORDS:
+            clauses.append(f"at F = {F:.6g} no cycle is drawn ({word.replace('_', ' ')})")
             continue
         period, y = (
             rounded(float(v[name]), float(v[name] * v[error]))
             for name, error in (("period", "period_error"), ("tip_y_max", "amplitude_error"))
         )
         clauses.append(f"at F = {F:.6g} its period is {period} tau2 and the largest y of its tip {y} L")
-    yield f"Beating, {'; '.join(clauses)}."
+    if clauses:
+        yield f"Beating, {'; '.join(clauses)}."
 
 
 def _missing(results: RodResults) -> Iterator[str]:
     """Yields sentences on results that are missing or have a reservation."""
     for task, reason in results.missing.items():
-        yield f"Not solved ({task.replace('_', ' ')}): {reason}."
-    for task in ("thresholds", "criticality", "branch"):
+        yield f"Not solved, {task.replace('_', ' ')}: {reason}."
+    for task in SEARCHES:
         if (view := results.views.get(task)) and (word := str(outcomes(view)[0])) != SUCCEEDED:
-            yield f"Reservation ({task}, {word.replace('_', ' ')}): {status_meaning(view, word)}."
+            yield f"About {task}, {word.replace('_', ' ')}: {status_meaning(view, word)}."
 
 
 def status_meaning(view: View, word: str) -> str:

@@ -14,7 +14,7 @@ from ...results.file.view import View
 from ..branch_curves import count_incomplete_branches, curves_of
 from ..figures import style
 from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
-from ..figures.cycle.portrait import LIGHTEST, clamp, force_arrow
+from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST, clamp, force_arrow
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
 from ..summary.branch import coexistence, two_cycles
@@ -26,7 +26,9 @@ SIZE = (10.0, 10.4)
 """Width and height of the picture, in inches."""
 HEIGHTS = (0.4, 2.4, 1.5, 2.2)
 """Relative heights of the thresholds, the largest y, the periods, and the modes with the cycles."""
-LINE_WIDTH = 150
+MODE_WIDTH = 0.65
+"""Width of the panel of a mode, in units of the width of that of a cycle."""
+LINE_WIDTH = 162
 """Characters in a line of the paragraph."""
 PANEL_WIDTH = 26
 """Characters in a line of a sentence in place of a mode or a cycle."""
@@ -34,6 +36,10 @@ CYCLES = 3
 """Number of cycles of a portrait."""
 BESIDE_STRAIGHT = ("#009E73", "stable cycle beside a stable straight rod")
 TWO_CYCLES = ("#CC79A7", "two stable cycles")
+CYCLE_WORD = "cycle drawn below"
+FAINT_PART = 1e-3
+"""Fraction of a mode below which its imaginary part is not drawn: at a double eigenvalue half of the digits
+are rounding errors."""
 MODE_TITLES = {"onset": r"mode at ${symbol}_* = {F}$", "hopf": r"mode at ${symbol}_{{**}} = {F}$"}
 """Titles of the panels of modes, by the kind of their threshold."""
 
@@ -45,12 +51,13 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
     """
     with matplotlib.rc_context(style.STYLE):
         figure = Figure(figsize=SIZE, layout="constrained")
-        modes = list(results.mode_forces) or [""]
-        grid = figure.add_gridspec(4, len(modes) + CYCLES, height_ratios=HEIGHTS)
+        modes = list(results.modes) or [""]
+        widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLES
+        grid = figure.add_gridspec(4, len(widths), height_ratios=HEIGHTS, width_ratios=widths)
         bar = figure.add_subplot(grid[0, :])
         upper = figure.add_subplot(grid[1, :], sharex=bar)
         lower = figure.add_subplot(grid[2, :], sharex=bar)
-        handles = _draw_thresholds(bar, results.views["thresholds"], results.F_max)
+        handles = _draw_thresholds(bar, results.views["thresholds"])
         handles += _draw_branches(upper, lower, results)
         for place, kind in enumerate(modes):
             _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
@@ -63,23 +70,24 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         return figure
 
 
-def _draw_thresholds(axes: Axes, view: View, F_max: float) -> list[Artist]:
+def _draw_thresholds(axes: Axes, view: View) -> list[Artist]:
     """Draws the behaviour of the straight rod along F, with its thresholds; returns legend entries."""
     v = view.of_point(0)
-    axes.set(xlim=(0, F_max), ylim=(-0.6, 0.6), yticks=[])
+    axes.set(ylim=(-0.6, 0.6), yticks=[])
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
     if not np.isfinite(v["F_end"]):
         word = str(outcomes(view)[0])
         _say(axes, f"thresholds: {status_meaning(view, word)}", LINE_WIDTH)
         return []
+    axes.set_xlim(0, float(v["F_end"]))
     seen = draw_class_bar(axes, view, 0, upright=False)
     return [*class_entries(seen), *mark_thresholds_on_bars(axes, view, upright=False)]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
     """Draws the branches and ranges with two stable states; returns legend entries."""
-    view = results.views.get("branch")
+    view = results.branch
     curves = [] if view is None else curves_of(view, 0)
     if view is None or not curves:
         lower.set_axis_off()
@@ -97,65 +105,66 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
         ):
             bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
             handles += bands[:1]
-    handles += _mark_cycles(upper, lower, results.views.get("limit_cycle"))
+    handles += _mark_cycles(upper, lower, results)
     upper.tick_params(labelbottom=False)
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS["F"], yscale="log")
     return handles
 
 
-def _mark_cycles(upper: Axes, lower: Axes, view: View | None) -> list[Line2D]:
+def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """Marks the cycles whose shapes are drawn; returns a legend entry."""
-    if view is None:
-        return []
-    beats = np.isin(outcomes(view), CYCLE_WORDS)
-    F = view.point_columns["F"][beats]
+    beating = [(F, view.of_point(0)) for F, view in results.cycles if _is_cycle(view)]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
-        values = view.by_point(name)[beats]
-        handles = axes.plot(F, values, "*", color="k", ms=9, mec="white", mew=0.6, label="cycle drawn below")
-    return handles if beats.any() else []
+        values = [float(v[name]) for _, v in beating]
+        handles = axes.plot(
+            [F for F, _ in beating], values, "*", color="k", ms=9, mec="white", mew=0.6, label=CYCLE_WORD
+        )
+    return handles if beating else []
+
+
+def _is_cycle(view: View) -> bool:
+    """Whether the point of a view has a cycle, stable or unstable."""
+    return str(outcomes(view)[0]) in CYCLE_WORDS
 
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     """Draws the deflection of the leading mode at a threshold."""
-    view = results.views.get("modes")
-    if view is None:
+    if kind not in results.modes:
         _say(axes, f"no mode: {results.missing['modes']}", PANEL_WIDTH)
         return
-    F = results.mode_forces[kind]
-    v = view.of_point(int(np.argmin(np.abs(view.point_columns["F"] - F))))
-    title = MODE_TITLES[kind].replace("{symbol}", style.SYMBOLS["F"]).replace("{F}", f"{F:.6g}")
-    axes.set_title(title.replace("{{", "{").replace("}}", "}"))
+    F, view = results.modes[kind]
+    v = view.of_point(0)
+    axes.set_title(MODE_TITLES[kind].format(symbol=style.SYMBOLS["F"], F=f"{F:.6g}"))
     if not np.isfinite(v["Y_real"][0]).all():
         word = view.flags[int(v["status"])]
         _say(axes, f"no mode: {status_meaning(view, word)}", PANEL_WIDTH)
         return
-    u = view.variables["u"]
+    parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
     for part, line, label in (("real", "-", "real part"), ("imag", ":", "imaginary part")):
-        values = v[f"Y_{part}"][0]
-        if part == "real" or np.abs(values).max() > 0:
-            axes.plot(u, values, line, color=style.FIRST, lw=1.5, label=label)
+        if np.abs(parts[part]).max() > FAINT_PART * np.abs(parts["real"]).max():
+            axes.plot(view.variables["u"], parts[part], line, color=style.FIRST, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
-    axes.legend(frameon=False)
+    axes.legend(frameon=False, loc="upper left", fontsize=7, handlelength=1.2, borderpad=0)
 
 
 def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
-    """Draws the shapes of three cycles, later ones darker."""
-    view = results.views.get("limit_cycle")
-    if view is None:
+    """Draws the shapes of three cycles, later ones darker, on the same scale."""
+    if not results.cycles:
         for axes in panels[1:]:
             axes.set_axis_off()
         _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_WIDTH)
         return
-    words = outcomes(view)
-    for number, axes in enumerate(panels):
-        v = view.of_point(number)
-        F = view.point_columns["F"][number]
-        if words[number] not in CYCLE_WORDS:
-            axes.set_title(rf"${style.SYMBOLS['F']} = {F:.6g}$")
-            _say(axes, f"no cycle: {status_meaning(view, str(words[number]))}", PANEL_WIDTH)
+    drawn = [view.of_point(0) for _, view in results.cycles if _is_cycle(view)]
+    reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
+    for axes, (F, view) in zip(panels, results.cycles, strict=True):
+        v = view.of_point(0)
+        force = rf"${style.SYMBOLS['F']} = {F:.6g}$"
+        if not _is_cycle(view):
+            axes.set_title(force)
+            _say(axes, f"no cycle: {status_meaning(view, str(outcomes(view)[0]))}", PANEL_WIDTH)
             continue
         shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(v["shape_x"])))
         clamp(axes, 1.0)
@@ -163,8 +172,9 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.plot(x, y, color=shade, lw=1.3)
             force_arrow(axes, x, y, theta, shade, 1.0)
         period = rounded(float(v["period"]), float(v["period"] * v["period_error"]))
-        axes.set_title(rf"${style.SYMBOLS['F']} = {F:.6g}$, $T = {period}\,\tau_2$")
-        axes.set(xlabel="$x/L$", ylabel="$y/L$" if number == 0 else "", aspect="equal")
+        axes.set_title(rf"{force}" + "\n" + rf"$T = {period}\,\tau_2$")
+        axes.set(xlim=(-0.1, 1 + ARROW_LENGTH), ylim=(-reach, reach), aspect="equal")
+        axes.set(xlabel="$x/L$", ylabel="$y/L$" if axes is panels[0] else "")
 
 
 def _say(axes: Axes, sentence: str, width: int) -> None:

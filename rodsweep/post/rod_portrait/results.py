@@ -1,6 +1,6 @@
 """What a portrait is drawn from: the results of one rod, and the reasons where a result is missing."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ...results.file.view import View
@@ -8,15 +8,21 @@ from ...results.file.view import View
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RodResults:
-    """Results of one rod.
+    """Results of one rod, each a view of a single point.
 
-    parameters: of the rod, by name. F_max: largest force. views: results by task; modes are at the thresholds
-    of `mode_forces`, by kind, and limit cycles at some forces with stable cycles. missing: for every task
-    without a result, the reason in a sentence.
+    parameters: of the rod, by name. F_max: largest force asked for. views: thresholds, and criticality and
+    branch unless missing. modes: (force, modes there) at the first thresholds, by kind. cycles: (force, limit
+    cycle there), increasing. missing: for every task without a result, the reason in a sentence.
     """
 
     parameters: Mapping[str, float]
     F_max: float
     views: Mapping[str, View]
-    mode_forces: Mapping[str, float]
+    modes: Mapping[str, tuple[float, View]]
+    cycles: Sequence[tuple[float, View]]
     missing: Mapping[str, str]
+
+    @property
+    def branch(self) -> View | None:
+        """Branches of cycles; None if they are missing."""
+        return self.views.get("branch")

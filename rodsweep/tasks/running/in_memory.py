@@ -49,7 +49,8 @@ def view_in_memory(
 
     values: variables of the layout, shape (points, own dimensions). origin: further attributes.
     """
-    columns = dict(job.points.axes) if job.points.axes else {"point": job.points.columns[0]}
+    columns: dict[str, np.ndarray] = dict(job.points.axes) or {"point": job.points.columns[0]}
+    columns |= {name: np.arange(1, extent + 1) for name, extent in plan.layout.extents.items()}
     columns |= plan.coordinates
     columns |= {variable.name: array for variable, array in plan.quantities}
     resolved = {"config_resolved": json.dumps(plan.config)}

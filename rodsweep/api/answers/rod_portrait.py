@@ -1,0 +1,116 @@
+"""`rod.portrait()`: everything about one rod in one picture and one paragraph."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from ...config.document.call_arguments import in_sentences
+from ...post.figures.request import Drawing
+from ...post.rod_portrait.paragraph import paragraph
+from ...post.rod_portrait.picture import portrait_figure
+from ...post.rod_portrait.results import RodResults
+from ...post.rod_portrait.writing import require_portrait, write_portrait
+from ...results.file.view import View
+from ...solve.exclusive import one_at_a_time
+from ...tasks.rod_portrait import PortraitRequest, rod_results
+from ...tasks.running.job import Job
+from ..dataset import file_path, view_of
+from ..solving import solve_here
+from .answer import Answer
+
+EXAMPLE = 'rod.portrait().save("portrait.png")'
+
+
+@dataclass(frozen=True)
+class RodPortrait:
+    """Everything about one rod. Notebooks display the picture; `save` writes it, `paragraph` says it.
+
+    Every result behind the picture is an `Answer`: `thresholds`, and, None where the rod has none,
+    `criticality` and `branch`; `modes` by kind of threshold, and `cycles` by force. `missing` has the reason
+    for every result that could not be solved, by task.
+    """
+
+    rod: str
+    results: RodResults = field(repr=False)
+    answers: Mapping[str, Answer] = field(repr=False)
+    """Answers by the text of their configs."""
+
+    @cached_property
+    def paragraph(self) -> str:
+        """The rod in words: thresholds, criticality, branches, two states side by side, three cycles."""
+        return paragraph(self.results)
+
+    @property
+    def thresholds(self) -> Answer:
+        """Thresholds of the straight rod along F."""
+        return self._of(self.results.views["thresholds"])
+
+    @property
+    def criticality(self) -> Answer | None:
+        """Criticality of the Hopf points."""
+        return self._answer("criticality")
+
+    @property
+    def branch(self) -> Answer | None:
+        """Branches of cycles."""
+        return self._answer("branch")
+
+    @property
+    def modes(self) -> dict[str, Answer]:
+        """Leading modes at the first thresholds, by the kind of the threshold: onset, hopf."""
+        return {kind: self._of(view) for kind, (_, view) in self.results.modes.items()}
+
+    @property
+    def cycles(self) -> dict[float, Answer]:
+        """Limit cycles at three forces, by force; one that was not found has its status."""
+        return {F: self._of(view) for F, view in self.results.cycles}
+
+    @property
+    def missing(self) -> dict[str, str]:
+        """Reason for every missing result, by task."""
+        return dict(self.results.missing)
+
+    def _of(self, view: View) -> Answer:
+        return self.answers[view.attributes["config"]]
+
+    def _answer(self, task: str) -> Answer | None:
+        view = self.results.views.get(task)
+        return None if view is None else self._of(view)
+
+    @one_at_a_time
+    def figure(self) -> Drawing:
+        """The picture as a new `matplotlib.figure.Figure`, without the paragraph."""
+        return portrait_figure(self.results, with_words=False)
+
+    @one_at_a_time
+    @in_sentences(EXAMPLE)
+    def save(self, path: str | Path) -> str:
+        """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about it."""
+        output = file_path(path, EXAMPLE)
+        require_portrait(output)
+        return write_portrait(self.results, output)
+
+    def __repr__(self) -> str:
+        return f"{self.rod}, portrait\n{self.paragraph}"
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        image = BytesIO()
+        self.figure().savefig(image, format="png", dpi=110)
+        return {"image/png": image.getvalue(), "text/plain": repr(self)}
+
+
+def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
+    """Solves the portrait of a rod in this process; rod: its text. Raises InputError for bad choices."""
+    answers: dict[str, Answer] = {}
+
+    def solve(job: Job) -> View:
+        data, messages = solve_here(job, progress=progress)
+        view = view_of(data, Path(job.name))
+        answers[job.text] = Answer(rod, data, messages[0])
+        return view
+
+    results = rod_results(request, solve)
+    return RodPortrait(rod, results, answers)

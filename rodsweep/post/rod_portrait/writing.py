@@ -1,0 +1,62 @@
+"""The portrait of a rod as a file: an image with its paragraph, or a page with tables."""
+
+from pathlib import Path
+
+from ...errors import InputError
+from ..origin import origin_lines
+from ..report import rendered, require_page
+from ..report.page_tables import page_tables
+from ..report.pictures import Captioned, Pictures
+from ..report.vector_picture import vector_picture
+from ..whole_file import written_whole
+from .paragraph import paragraph
+from .picture import portrait_figure
+from .results import RodResults
+
+IMAGES = (".png", ".pdf", ".svg")
+PAGE = ".html"
+CAPTION = "thresholds, branches of cycles, modes at the thresholds and three cycles"
+HIDDEN = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
+"""Tables that the picture shows better."""
+
+
+def require_portrait(output: Path) -> None:
+    """Raises InputError unless a portrait can be written under this name."""
+    if output.suffix == PAGE:
+        require_page(output, [])
+        return
+    if output.suffix not in IMAGES:
+        raise InputError(f"--output {output}: the name must end in {', '.join((*IMAGES, PAGE))}")
+    if not output.parent.is_dir():
+        raise InputError(f"--output {output}: there is no directory {output.parent}")
+    if output.exists() and not output.is_file():
+        raise InputError(f"--output {output} is not a name for a picture; choose another")
+
+
+def write_portrait(results: RodResults, output: Path) -> str:
+    """Writes the portrait and returns a sentence; InputError for a name that is none for a portrait."""
+    require_portrait(output)
+    if output.suffix == PAGE:
+        with written_whole(output) as stream:
+            stream.write(portrait_page(results))
+    else:
+        portrait_figure(results).savefig(output)
+    return f"wrote {output}: {CAPTION}"
+
+
+def portrait_page(results: RodResults) -> str:
+    """The portrait as a page of HTML that needs no network."""
+    picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
+    views = [*results.views.items()]
+    views += [(f"modes at F = {F:.6g}", view) for F, view in results.modes.values()]
+    views += [(f"limit cycle at F = {F:.6g}", view) for F, view in results.cycles]
+    rod = ", ".join(f"{name} = {value:g}" for name, value in results.parameters.items() if name != "F")
+    return rendered(
+        "portrait.html",
+        [picture],
+        title=f"Rod with {rod}",
+        paragraph=paragraph(results),
+        pictures=Pictures((Captioned(CAPTION, picture),)),
+        tables=[(name, [t for t in page_tables(view) if t.name not in HIDDEN]) for name, view in views],
+        origin=origin_lines(results.views["thresholds"].attributes),
+    )

@@ -1,0 +1,139 @@
+"""`rod.portrait()` and `rodsweep portrait`: the numbers are the solver's, and what is missing is said."""
+
+import re
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from pages import read_page
+
+import rodsweep as rs
+from rodsweep.tasks.rod_portrait import cycle_forces
+
+FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
+"""Its branch of cycles passes a fold, beyond which straight rod and cycle are both stable."""
+ACCURACY = 1e-4
+
+
+@pytest.fixture(scope="module")
+def portrait():
+    return FOLDED.portrait(accuracy=ACCURACY)
+
+
+def numbers(text, before):
+    """Numbers that follow the words `before` in a text."""
+    return [float(found) for found in re.findall(rf"{re.escape(before)}([\d.]+\d)", text)]
+
+
+def test_thresholds_and_criticality_are_those_of_their_tasks(portrait):
+    crossings = FOLDED.thresholds().crossings
+    (onset, hopf, again) = crossings["crossing_F"]
+    text = portrait.paragraph
+    assert numbers(text, "starts to oscillate at F = ") == [pytest.approx(onset, rel=1e-5)]
+    assert numbers(text, "becomes unstable at F = ") == [pytest.approx(hopf, rel=1e-5)]
+    assert numbers(text, "stable again from F = ") == [pytest.approx(again, rel=1e-5)]
+    assert numbers(text, "(frequency ") == pytest.approx(
+        crossings["crossing_frequency"][1:].tolist(), rel=1e-5
+    )
+    assert portrait.thresholds.crossings.equals(crossings)
+    sides = FOLDED.criticality().crossings["criticality"].tolist()
+    assert re.findall(r"(supercritical|subcritical)", text) == sides == ["supercritical", "subcritical"]
+
+
+def test_ranges_with_two_states_are_those_of_the_branch(portrait):
+    special = FOLDED.branch(accuracy=ACCURACY).special_points
+    fold = float(special["special_at"][special["special_kind"] == "fold"].iloc[0])
+    again = float(FOLDED.thresholds().F_restabilization)
+    found = re.search(r"beside the stable straight rod at F = ([\d.]+) to ([\d.]+\d)", portrait.paragraph)
+    assert [float(end) for end in found.groups()] == pytest.approx([again, fold], rel=1e-8)
+
+
+def test_cycles_are_those_of_the_limit_cycle_task(portrait):
+    assert len(portrait.cycles) == 3
+    for F, cycle in portrait.cycles.items():
+        alone = FOLDED.replace(F=F).cycle(start="hopf", accuracy=ACCURACY)
+        assert cycle.status == "cycle"
+        assert cycle.period == alone.period
+        assert f"at F = {F:.6g} its period is " in portrait.paragraph
+    periods = numbers(portrait.paragraph, "its period is ")
+    assert periods == pytest.approx([cycle.period for cycle in portrait.cycles.values()], rel=1e-3)
+
+
+def test_modes_are_drawn_at_the_thresholds(portrait):
+    assert list(portrait.modes) == ["onset", "hopf"]
+    w = portrait.modes["hopf"].eigenvalues[0]
+    assert abs(w.real) < 1e-9 * abs(w.imag)
+    assert abs(w.imag) == pytest.approx(334.321465738, rel=1e-9)
+
+
+def test_the_picture_has_the_curves_of_the_branch(portrait):
+    bar, upper, lower, *small = portrait.figure().axes
+    assert len(small) == 5
+    branch = portrait.branch.cycles
+    drawn = np.concatenate([line.get_ydata() for line in upper.lines])
+    for y in branch["tip_y_max"]:
+        assert np.abs(drawn - y).min() < 1e-12
+    styles = {line.get_linestyle() for line in upper.lines if len(line.get_xdata()) > 2}
+    assert styles - {"None"} == {"-", "--"}  # stable up to the fold, unstable beyond
+    stars = [line for line in lower.lines if line.get_marker() == "*"]
+    assert stars[0].get_ydata() == pytest.approx([cycle.period for cycle in portrait.cycles.values()])
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf", "html"])
+def test_a_portrait_is_written_in_every_format(portrait, tmp_path, suffix):
+    path = tmp_path / f"p.{suffix}"
+    assert portrait.save(path).startswith(f"wrote {path}: ")
+    assert path.stat().st_size > 10_000
+
+
+def test_the_page_has_the_paragraph_and_the_numbers_of_the_solver(portrait, tmp_path):
+    portrait.save(tmp_path / "p.html")
+    page = read_page(tmp_path / "p.html")
+    assert portrait.paragraph in page.texts("p")
+    assert page.asked_for() == []
+    forces = [float(row["special_at"]) for row in page.table("special points")]
+    assert forces == portrait.branch.special_points["special_at"].tolist()
+    hover = [lines for lines in page.values() if lines[0].startswith("cycle drawn below")]
+    read = sorted(float(lines[-1].rpartition(" = ")[2]) for lines in hover)
+    cycles = portrait.cycles.values()
+    stored = sorted([*(c.tip_y_max for c in cycles), *(c.period for c in cycles)])
+    assert read == pytest.approx(stored, rel=1e-7)
+
+
+def test_a_notebook_shows_the_picture_and_a_terminal_the_paragraph(portrait):
+    bundle = portrait._repr_mimebundle_()
+    assert bundle["image/png"].startswith(b"\x89PNG")
+    assert portrait.paragraph in bundle["text/plain"] == repr(portrait)
+
+
+def test_a_rod_that_never_beats_has_the_reasons_in_the_places_of_the_drawings():
+    portrait = rs.Rod(k1=100, k2=1e4, gamma3=1e-4).portrait(accuracy=ACCURACY)
+    assert "No branch of cycles begins at a Hopf point in this range." in portrait.paragraph
+    assert portrait.cycles == {}
+    said = " ".join(
+        " ".join(text.get_text().split()) for axes in portrait.figure().axes for text in axes.findobj(Text)
+    )
+    assert "No branch of cycles begins in this range." in said
+    assert f"No cycle: {portrait.missing['limit_cycle']}." in said
+
+
+def test_a_cone_says_which_tasks_cannot_solve_it():
+    portrait = rs.Rod(k1=500, k2=1e4, gamma3=1e-4, taper=0.7).portrait(F_max=50)
+    assert portrait.branch is None
+    assert portrait.missing.keys() == {"criticality", "branch", "modes", "limit_cycle"}
+    assert "uniform arms of linear material only" in portrait.paragraph
+    assert len(portrait.figure().axes) > 3
+
+
+def test_bad_choices_are_refused():
+    with pytest.raises(rs.InputError, match=r"F_max = -3 is not allowed"):
+        FOLDED.portrait(F_max=-3)
+    with pytest.raises(rs.InputError, match="did you mean F_max"):
+        FOLDED.portrait(F_mx=3)
+
+
+def test_three_forces_are_spread_over_all_ranges():
+    assert cycle_forces([(10.0, 20.0), (50.0, 80.0)]) == [14.0, 60.0, 76.0]
+    assert cycle_forces([]) == []
+    for force in cycle_forces([(42.7219713, 42.7219719)]):
+        assert 42.7219713 < force < 42.7219719
