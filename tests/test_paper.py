@@ -13,6 +13,8 @@ import pytest
 import xarray as xr
 from conftest import ROOT
 
+import rodsweep as rs
+
 CONFIGS = ROOT / "configs"
 FILAMENT = 37.6954308403185779  # Fc, 27 digits in tests/reference/thresholds.json
 
@@ -230,6 +232,30 @@ def test_segments(command):
     with run(command, "segments", f"parameters.F=[{hopf * (1 - 1e-8)}, {hopf * (1 + 1e-8)}]") as file:
         assert file["unstable_count"][...].ravel().tolist() == [0, 2]
         assert file["certified"][...].all()
+
+
+def test_cone_cycles(command):
+    """Checked against strains marched in time, and dense eigenvalues of elements in displacements."""
+    numbers = stated("cone_cycles")
+    with run(command, "cone_cycles", "parameters.F=[16, 20]", "parameters.taper=[0.5, 1]") as file:
+        period, y = (file[name][1, 0, 0, 0, 0, 0] for name in ("period", "tip_y_max"))
+        assert [period, y] == pytest.approx(numbers[1:3], rel=2e-7)
+        first = file["hopf_F"][...][file["hopf_taper"][...] == 0.5].min()
+        assert first == pytest.approx(numbers[3], rel=1e-11)
+
+
+def test_rubber_branch(command):
+    """Its branch is born, and the straight rod stable again, where the comment says; a cycle alone agrees."""
+    born, stable_again, period, y = stated("rubber_branch")[:4]
+    with run(command, "rubber_branch", "branch.stop=235", "accuracy=1e-3") as file:
+        kinds, at = file["special_kind"][0, 0, 0, 0], file["special_at"][0, 0, 0, 0]
+        places = sorted(at[kinds == 1])
+        assert places == pytest.approx([born, stable_again], rel=1e-11)
+        F, outside = file["branch_F"][0, 0, 0, 0], file["unstable_multipliers"][0, 0, 0, 0]
+        assert ((stable_again < F) & (outside == 0)).any()
+    beating = rs.Rod(F=230, k1=400, k2=1e4, gamma3=1e-4, law="neo_hookean", section="swelling")
+    cycle = beating.cycle(accuracy=1e-5, amplitude=0.4)
+    assert [cycle.period, cycle.tip_y_max] == pytest.approx([period, y], rel=1e-5)
 
 
 def test_rubber(command):

@@ -227,7 +227,7 @@ REFUSED_BY_TASK = [
     (config("branch", "k1: 9, k2: 9, gamma3: 0", "start: 300"), "start = 300 is not below stop = 200"),
     (
         config("branch", "k1: 9, k2: 9, gamma3: 0", "along: gamma1"),
-        "along = 'gamma1' is not allowed; it should be F, k1, k2 or gamma3",
+        "along = 'gamma1' is not allowed; it should be F, k1, k2, gamma3 or taper",
     ),
     (config("criticality", "k1: 9, k2: 1, gamma3: 0, gamma1: 0"), "parameters.gamma1 = 0 is not allowed"),
     (thresholds("gamma1: 3, k1: 9"), "parameters.gamma1 is given but the task thresholds does not use it"),

@@ -187,3 +187,45 @@ def test_compression_is_judged_where_the_arm_is_weakest_and_not_for_rubber():
     assert found[1.0, "linear"] == ("compression", pytest.approx(share / 0.1))
     assert found[0.5, "linear"] == ("compression", pytest.approx(4 * share / 0.1))
     assert found[0.5, "neo_hookean"][0] != "compression"
+
+
+@pytest.mark.parametrize("task", ["limit_cycle", "criticality", "branch"])
+def test_jumps_of_rubber_are_refused_where_the_motion_is_solved(task):
+    profile = {"u": [0, 0.5, 0.5, 1], "k3": [1, 1, 2, 2]}
+    force = {"F": 30} if task == "limit_cycle" else {}
+    sentence = f"material.profile has a jump and the law is neo_hookean, but the task {task} solves jumps of"
+    with pytest.raises(InputError, match=sentence):
+        rs.sweep(task, k1=[1e3, 1e4], k2=1e4, gamma3=1e-4, law="neo_hookean", profile=profile, **force)
+
+
+def test_cycles_of_cones_are_stored_with_their_hopf_points(command):
+    rest = "material: {profile: steps.csv}\nlimit_cycle: {start: neighbour}\naccuracy: 1.0e-5"
+    (command.directory / "steps.csv").write_text(STEPPED)
+    parameters = "{F: [40, 44, 48], k1: 1.0e4, k2: 100, gamma3: 0.01, gamma1: 1, taper: [0.8, 1]}"
+    command.write("whole.yaml", f"task: limit_cycle\nparameters: {parameters}\n{rest}\n")
+    assert command("run", "whole.yaml").returncode == 0
+    with h5py.File(command.directory / "whole.h5") as whole:
+        assert whole["period"].shape == (3, 1, 1, 1, 1, 2)
+        assert set(whole["hopf_taper"][...].tolist()) > {0.8, 1.0}  # and one found along the taper
+        for F, taper in zip(whole["hopf_F"][...], whole["hopf_taper"][...], strict=True):
+            path = str(command.directory / "steps.csv")
+            rod = rs.Rod(F=F, k1=1e4, k2=100, gamma3=0.01, taper=taper, profile=path)
+            spectrum = rod.spectrum(modes=1)
+            assert abs(spectrum.growth_rate.item()) < 1e-7 * spectrum.frequency.item()
+    shown = command("show", "whole.h5").stdout
+    assert "is confirmed by counts of unstable modes on" in shown
+
+
+def test_branches_are_followed_in_the_taper():
+    branch = rs.Rod(F=30, k1=500, k2=1e4, gamma3=1e-3).branch(
+        along="taper", start=0.4, stop=1.5, accuracy=1e-6
+    )
+    assert branch.status == "ok"
+    hopf = branch.special_points.special_at.iloc[0]
+    edge = rs.Rod(F=30, k1=500, k2=1e4, gamma3=1e-3, taper=hopf).spectrum(modes=1)
+    assert abs(edge.growth_rate.item()) < 1e-9 * edge.frequency.item()
+    points = branch.cycles
+    middle = points.iloc[len(points) // 2]
+    alone = rs.Rod(F=30, k1=500, k2=1e4, gamma3=1e-3, taper=middle.branch_taper).cycle(accuracy=1e-8)
+    assert middle.period == pytest.approx(alone.period, rel=1e-6)
+    assert middle.tip_y_max == pytest.approx(alone.tip_y_max, rel=1e-6)

@@ -23,6 +23,7 @@ from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.marched import solve_by_integration
+from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
@@ -208,3 +209,16 @@ def test_a_cone_begins_to_beat_where_its_thresholds_say():
     assert hopf == pytest.approx(15.4627583986, rel=1e-11)  # physics: by collocation
     for distance, status in ((-1e-4, "straight"), (1e-4, "cycle")):
         assert solve_cycle(replace(rod, F=hopf * (1 + distance)), request(1e-6)).status.name == status
+
+
+def test_a_neighbour_is_restored_with_its_build():
+    """A chain that was interrupted goes on with the same data."""
+    rod = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.9, build=Build(profile=STEP))
+    neighbour = solve_cycle(rod, request(1e-5), None, "F").neighbour
+    again = Neighbour.from_arrays(neighbour.arrays())
+    assert again.branch.orbit.form.rod == rod
+    assert again.branch.orbit.form.mesh == neighbour.branch.orbit.form.mesh
+    assert again.next_mesh == neighbour.next_mesh
+    beside = replace(rod, F=51.0)
+    ends = [solve_cycle(beside, request(1e-5), each, "F").measures.period for each in (neighbour, again)]
+    assert ends[0] == ends[1]
