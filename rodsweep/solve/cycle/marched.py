@@ -1,9 +1,10 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
 ARKIMEX integrates the motion until it repeats. Neither collocation nor D takes part in it; D only gives the
-leading eigenvalue of the straight rod beside it. No Floquet multiplier is computed; a motion that settles shows that the cycle is stable in the plane. Period and extrema
-are measured on two settled motions, the second on a finer mesh with a smaller tolerance; their difference is
-the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
+leading eigenvalue of the straight rod beside it. No Floquet multiplier is computed; a motion that settles
+shows that the cycle is stable in the plane. Period and extrema are measured on two settled motions, the
+second on a finer mesh with a smaller tolerance; their difference is the error estimate. Near a Hopf point a
+motion may not settle within the allowed periods.
 """
 
 from collections import deque
