@@ -12,6 +12,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.cycle.status import MarchedStatus
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 ACCURACY = 1e-5
 MOST_NOT_SETTLED = 0.15
@@ -108,3 +109,11 @@ def test_samples_and_shapes_are_those_of_collocation():
     one, other = solve_cycle(rod, request(1e-8, **asked)), solve_by_integration(rod, request(1e-6, **asked))
     assert other.tip == pytest.approx(one.tip, abs=1e-5)
     assert other.shape == pytest.approx(one.shape, abs=1e-5)
+
+
+@pytest.mark.parametrize("k1", [448.955, np.inf])
+def test_the_straight_rod_beside_a_motion_is_not_that_of_its_mesh(k1):
+    rod = Rod(F=60.0, k1=k1, k2=193.709, gamma3=5e-4)
+    exact = solve_spectrum(rod, SpectrumRequest(1, 1e-12, True)).eigenvalues[0]
+    found = solve_by_integration(rod, request(1e-3))
+    assert complex(found.linear_growth_rate, found.linear_frequency) == pytest.approx(exact, rel=1e-9)
