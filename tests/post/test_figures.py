@@ -87,7 +87,7 @@ def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkey
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
-    filled, zero = drawn[0].axes[0].collections
+    filled, zero = (each for each in drawn[0].axes[0].collections if each.get_visible())
     assert 0.0 in filled.levels
     assert zero.levels.tolist() == [0.0]
     (line,) = (path.vertices for path in zero.get_paths())

@@ -190,18 +190,27 @@ def test_the_page_names_no_machine(command):
     assert not re.search(rf"\b{re.escape(str(hosts))}\b", words)
 
 
+POINT_AT_FIRST = """<script>
+addEventListener("load", () => {
+  const circle = document.querySelector(".values circle");
+  const place = circle.getBoundingClientRect();
+  const at = { clientX: place.x + place.width / 2, clientY: place.y + place.height / 2, bubbles: true };
+  circle.dispatchEvent(new PointerEvent("pointermove", at));
+});
+</script></body>"""
+"""Moves the pointer to the first value of a page."""
+
+
 @pytest.mark.skipif(not shutil.which("chromium"), reason="chromium is not installed")
-def test_the_script_of_the_page_runs_in_a_browser(command):
-    """The script takes over the texts of the figures, so that none is left for the browser to show twice."""
+def test_the_value_under_the_pointer_is_shown_in_a_browser(command):
     page = reported(command, "thresholds")
-    assert page.values()
+    path = command.directory / "pointed.html"
+    path.write_text(page.text.replace("</body>", POINT_AT_FIRST))
     switches = ("--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom")
-    address = f"file://{command.directory / 'thresholds.html'}"
-    run = subprocess.run(
-        ["chromium", *switches, address], capture_output=True, text=True, timeout=120, check=True
-    )
-    assert "<circle" in run.stdout
-    assert not re.search(r"<circle[^>]*><title>", run.stdout)
+    argv = ["chromium", *switches, f"file://{path}"]
+    run = subprocess.run(argv, capture_output=True, text=True, timeout=120, check=True)
+    assert re.search(r'<div id="value"[^>]*>([^<]*)</div>', run.stdout)[1].split("\n") == page.values()[0]
+    assert not re.search(r"<circle[^>]*><title>", run.stdout)  # or the browser would show the text as well
     assert "CONSOLE" not in run.stderr
 
 

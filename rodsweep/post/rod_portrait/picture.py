@@ -142,7 +142,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
         _say(axes, f"no mode: {status_meaning(view, word)}", PANEL_WIDTH)
         return
     parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
-    for part, line, label in (("real", "-", "real part"), ("imag", ":", "imaginary part")):
+    for part, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
         if np.abs(parts[part]).max() > FAINT_PART * np.abs(parts["real"]).max():
             axes.plot(view.variables["u"], parts[part], line, color=style.FIRST, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
@@ -175,6 +175,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.set_title(rf"{force}" + "\n" + rf"$T = {period}\,\tau_2$")
         axes.set(xlim=(-0.1, 1 + ARROW_LENGTH), ylim=(-reach, reach), aspect="equal")
         axes.set(xlabel="$x/L$", ylabel="$y/L$" if axes is panels[0] else "")
+        axes.tick_params(labelleft=axes is panels[0])
 
 
 def _say(axes: Axes, sentence: str, width: int) -> None:
