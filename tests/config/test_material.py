@@ -210,8 +210,8 @@ def test_cycles_of_cones_are_stored_with_their_hopf_points(command):
         for F, taper in zip(whole["hopf_F"][...], whole["hopf_taper"][...], strict=True):
             path = str(command.directory / "steps.csv")
             rod = rs.Rod(F=F, k1=1e4, k2=100, gamma3=0.01, taper=taper, profile=path)
-            spectrum = rod.spectrum(modes=1)
-            assert abs(spectrum.growth_rate.item()) < 1e-7 * spectrum.frequency.item()
+            spectrum = rod.spectrum(modes=6)
+            assert (abs(spectrum.growth_rate) < 1e-7 * spectrum.frequency).any()
     shown = command("show", "whole.h5").stdout
     assert "is confirmed by counts of unstable modes on" in shown
 
