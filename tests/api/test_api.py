@@ -49,6 +49,7 @@ METHODS = {
     "cycle",
     "criticality",
     "branch",
+    "portrait",
 }
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
