@@ -1,6 +1,7 @@
 """Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import attrgetter, methodcaller
 from typing import Any
 
 import numpy as np
@@ -39,11 +40,9 @@ def grid_of_arms(
     loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    table = {
-        name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms])
-        for name in (*all_but("F", NONLINEAR_PARAMETERS), *section.tapering)
-    }
-    units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
+    own = (*all_but("F", NONLINEAR_PARAMETERS), *section.tapering)
+    table = {name: _of_each(arms, methodcaller("parameter", name)) for name in own}
+    units = {name: _of_each(arms, attrgetter(name)) for name in ARM_UNITS}
     forces = [_force_of(section, arm, flutter) if arm else UNCOVERED for arm in arms]
     scale = np.array([force.F for force in forces])
     if section.load_axis in RELATIVE:
@@ -56,10 +55,8 @@ def grid_of_arms(
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        shares = [arm.crushing_force / arm.k1 if arm else np.nan for arm in arms] if builds else []
-        beside_arm = build.crushing_shares(table.get("taper", np.ones(1)))
-        crushing = table["k1"] * (_along(0, shares) if builds else beside_arm)
-        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * crushing, shape)
+        shares = _crushing_shares(arms) if builds else build.crushing_shares(table.get("taper", np.ones(1)))
+        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
         covered[(covered == SLENDER) & crushed] = CRUSHED
     if (covered != SLENDER).all():
         _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()), forces)
@@ -69,6 +66,16 @@ def grid_of_arms(
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes, failures = covered.astype(np.int8).ravel(), _failures(covered, forces)
     return Points(names, columns, False, over, at_points, builds=builds, covered=codes, failures=failures)
+
+
+def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
+    """A quantity of arms along their dimension, NaN for those that no rod covers."""
+    return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
+
+
+def _crushing_shares(arms: Sequence[SlenderArm | None]) -> Array:
+    """Forces that crush arms, in units of k1, along the dimension of arms."""
+    return _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
