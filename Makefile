@@ -45,7 +45,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
 	done
 	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability taper slender; do
+	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability taper slender cone_cycles rubber_branch; do
 	  $$draw results/$$name.h5 -o results/$$name.pdf
 	  $$draw results/$$name.h5 -o docs/$$name.png
 	done
