@@ -76,10 +76,8 @@ class StoredChanges:
         points = v["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth = v[growth].reshape(points, -1)[:, 0]
-        names = [
-            other for other in HOPF_ALONG if other not in OPTIONAL_PARAMETERS or other in view.point_columns
-        ]
-        self.others = [other for other in names if other != name]
+        absent = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
+        self.others = [other for other in HOPF_ALONG if other not in {name, *absent}]
         self.by_rod: dict[tuple[float, ...], list[LocatedChange]] = {}
         if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
             self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))

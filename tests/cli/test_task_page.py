@@ -41,7 +41,7 @@ def missing(said, come):
 
 def typed(text):
     """(command, lines that come) of a console block."""
-    command, *blocks = re.split(r"^\$ ", text, flags=re.MULTILINE)
+    command, *blocks = re.split(r"^\$ ", text.replace("\\\n", ""), flags=re.MULTILINE)
     assert command == ""
     for block in blocks:
         first, *rest = block.rstrip("\n").split("\n")

@@ -208,7 +208,7 @@ class Layout:
 
 def estimates_counts(config: Mapping[str, Any]) -> bool:
     """Whether a resolved config has rods that vary along their length, so that counts are estimated."""
-    taper = config["parameters"].get("taper")
+    taper = config.get("parameters", {}).get("taper")
     tapered = taper is not None and taper.get("values") != [1.0]
     followed = config.get("branch", {}).get("along") == "taper"
     return tapered or followed or "profile" in config.get("material", {})

@@ -62,7 +62,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
 def test_coarser_meshes_serve_those_that_are_a_little_finer(near):
     coarser = CoarserMeshes(FINE, near, ACCURACY, MEMORY)
     assert coarser.serve(FINE) and coarser.serve(replace(FINE, order=FINE.order + 2, intervals=20))
-    for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"elements": 2}, {"stages": 5}):
+    for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"edges": (0.0, 0.5, 1.0)}, {"stages": 5}):
         assert not coarser.serve(replace(FINE, **other))
 
 
