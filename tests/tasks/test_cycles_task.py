@@ -130,8 +130,8 @@ REFUSED = [
     (config("transient: -1"), "limit_cycle.transient = -1 is not allowed; it should be a whole number from"),
     (
         config(f"{NEIGHBOUR}, along: k3"),
-        "along = 'k3' is not allowed; it should be F, k1, k2, gamma3, gamma1, taper, pressure, force, poisson "
-        "or longest",
+        "along = 'k3' is not allowed; it should be F, k1, k2, gamma3, gamma1, taper, pressure, force, "
+        "poisson or longest",
     ),
     (config(f"{NEIGHBOUR}, direction: left"), "direction = 'left' is not allowed; it should be up or down"),
     (config("direction: down"), "limit_cycle.direction is given but not used; set limit_cycle.start"),
