@@ -44,7 +44,8 @@ class SpectrumTask(ProvedTask):
     def _varies(self) -> bool:
         """Whether some rod is not uniform, so that its D has no closed form."""
         tapers = self.points.by_name.get("taper", np.ones(1))
-        return self.config.build.profile is not None or bool((tapers != 1).any())
+        builds = (self.config.build, *self.points.builds)
+        return any(build.profile for build in builds) or bool((tapers != 1).any())
 
     @property
     def stretches(self) -> Stretches | None:
