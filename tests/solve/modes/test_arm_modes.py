@@ -21,6 +21,8 @@ from rodsweep.solve.spectrum.status import SpectrumStatus
 
 INF = float("inf")
 TIGHT = ModesRequest(modes=4, accuracy=1e-10, nodes=65, growth=True)
+NEAR = ModesRequest(modes=4, accuracy=1e-9, nodes=65, growth=True)
+"""Rounding leaves 2e-10 of the bending strain of the steepest of `ARMS`."""
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
 STEPS = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.3, 0.5, 0.2, 1.0, 1.5, 0.4), (1.0,) * 6))
 SWELLING = Build("neo_hookean", "swelling")
@@ -36,7 +38,7 @@ ARMS = [
     Rod(F=14.0, k1=500.0, k2=200.0, gamma3=1e-2, taper=0.6, build=SWELLING),
     Rod(F=12.0, k1=1e3, k2=1e3, gamma3=1e-3, build=Build(profile=STEPS)),
     Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=2.0, build=Build("neo_hookean", "fixed", STEPS)),
-    Rod(F=25.0, k1=50.0, k2=500.0, gamma3=1e-3, build=SWELLING),
+    Rod(F=25.0, k1=500.0, k2=500.0, gamma3=1e-3, build=SWELLING),
 ]
 
 
@@ -87,7 +89,7 @@ def reference_modes(rod, eigenvalues):
 
 @pytest.mark.parametrize("rod", ARMS, ids=str)
 def test_modes_and_growth_agree_with_another_discretisation(rod):
-    result = solve_modes(rod, TIGHT)
+    result = solve_modes(rod, NEAR)
     assert result.status == SpectrumStatus.ok
     right, left, condition = reference_modes(rod, result.spectrum.eigenvalues)
     assert result.vectors.condition == pytest.approx(condition, rel=1e-7)
@@ -100,7 +102,7 @@ def test_modes_and_growth_agree_with_another_discretisation(rod):
         assert relative(vectors.right, right) < 1e-7
         assert relative(vectors.left, left) < 1e-7
     if np.isfinite(growth.transient_growth):
-        assert growth.transient_growth > 1
+        assert growth.transient_growth > 1.001
         norms = {x: np.linalg.norm(expm(L * x * growth.transient_time), 2) for x in (0.9, 1.0, 1.1)}
         assert max(norms, key=norms.get) == 1.0
         assert norms[1.0] == pytest.approx(growth.transient_growth, rel=1e-6)
@@ -122,21 +124,19 @@ def test_conditions_and_abscissae_of_random_arms(seed):
 
 @pytest.mark.parametrize("rod", ARMS, ids=str)
 def test_strains_and_errors_are_those_of_a_finer_mesh(rod):
-    coarse, fine = (
-        solve_modes(rod, ModesRequest(4, accuracy, 65, growth=True)) for accuracy in (1e-4, 1e-10)
-    )
+    coarse, fine = (solve_modes(rod, ModesRequest(4, accuracy, 65, growth=True)) for accuracy in (1e-4, 1e-9))
     assert coarse.status == fine.status == SpectrumStatus.ok
     for name in ("right", "h2", "Pi", "left"):
         errors = abs(numbers(coarse)[name] - numbers(fine)[name]).max(axis=-1)
         sizes = abs(numbers(fine)[name]).max(axis=-1)
         each = errors.max(axis=0) / sizes.max(axis=0) if errors.ndim == 2 else errors / sizes
         assert (each <= 10 * coarse.vectors.mode_error + 1e-9).all(), name
-    for name, error in (
-        ("abscissa", coarse.growth.abscissa_error),
-        ("growth", 2 * coarse.growth.growth_error),
-    ):
-        if np.isfinite(numbers(fine)[name]):
-            assert abs(numbers(coarse)[name] - numbers(fine)[name]) <= 10 * error + 1e-9 * numbers(fine)[name]
+    abscissa = fine.growth.numerical_abscissa
+    off = abs(coarse.growth.numerical_abscissa - abscissa)
+    assert off <= 10 * coarse.growth.abscissa_error + 1e-9 * abs(abscissa)
+    if np.isfinite(fine.growth.transient_growth):
+        off = abs(coarse.growth.transient_growth / fine.growth.transient_growth - 1)
+        assert off <= coarse.growth.growth_error + 1e-9
 
 
 def test_the_bending_strain_jumps_with_the_stiffness_and_the_moment_does_not():
@@ -184,16 +184,19 @@ SLAVED = [
 
 @pytest.mark.parametrize("rod", SLAVED, ids=str)
 def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
-    """T' = c3 - (g nu/c2) T^2, T(0) = 0, integrated from break to break."""
+    """T' = c3 - (g nu/c2) T^2, T(0) = 0, from break to break; of T = tan(phi) where T has poles."""
 
     def slope(u, T):
         at = rod.local(np.clip(u, start + 1e-12, end - 1e-12))
-        return at.c3 - at.g * at.nu / at.c2 * T**2
+        foundation = at.g * at.nu / at.c2
+        if poles:
+            return at.c3 * np.cos(T) ** 2 - foundation * np.sin(T) ** 2
+        return at.c3 - foundation * T**2
 
-    T, breaks = np.zeros(1), rod.build.breaks
+    T, breaks, poles = np.zeros(1), rod.build.breaks, rod.F < 0
     for start, end in zip(breaks[:-1], breaks[1:], strict=True):
         T = solve_ivp(slope, (start, end), T, method="Radau", rtol=1e-11, atol=1e-14).y[:, -1]
-    assert slaving_of(rod) == pytest.approx(T[0], rel=1e-8)
+    assert slaving_of(rod) == pytest.approx(np.tan(T[0]) if poles else T[0], rel=1e-8)
 
 
 @pytest.mark.parametrize("k2", [30.0, 1e4, 1e9])
