@@ -53,6 +53,13 @@ class ProvedTask(Task):
         asked, proof = ProvedTask.certificate(self)
         return asked, f"{proof}, estimated in part" if asked and self.varies else proof
 
+    def certificate_of_lines(self) -> tuple[bool, str]:
+        """`ProvedTask.certificate` of modes that are counted along lines of rods."""
+        asked, proof = ProvedTask.certificate(self)
+        if asked and not self.config.standard:
+            return True, f"{proof} at some rods, estimated in part; between them slopes of the eigenvalues"
+        return asked, proof
+
     def parts(self) -> list[Part]:
         what, why = self.left_out
         return [
