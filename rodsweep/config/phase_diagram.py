@@ -158,11 +158,11 @@ class PhaseDiagramConfig(LinearConfig):
                 f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
                 f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters beside the arm"
             )
-        long = self.plane
+        long, names = self.plane, words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
         if len(long) != 2:
             raise ValueError(
                 f"parameters has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-                f"phase diagram needs exactly two of {words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), 'and')}"
+                f"phase diagram needs exactly two of {names}"
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
