@@ -99,7 +99,7 @@ class Plane:
         return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
-        """((place, weight) of each value in a difference along an axis, the step that places are in units of)."""
+        """((place, weight) of each value in a difference along an axis, its step): places are in steps."""
         h = self.small_step(x, y, which, SMALL_STEP)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (STENCIL if self.holds(*back) else ONE_SIDED), h

@@ -90,9 +90,8 @@ class DiagramCurves:
         (line, row), options = self.task.config.plane, self.task.config.phase_diagram
         names = (line, row)
         found, limit = self._boundaries(plane, view, self.task.points.by_name[row]), {}
-        if (
-            names == CRUSHING and self.task.config.standard
-        ):  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
+        if names == CRUSHING and self.task.config.standard:
+            # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_hopf
 
             Fc = filament_hopf()
