@@ -136,7 +136,7 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the plane is that of F and k1 and its rods are crushed at F = k1; arms are elsewhere or never."""
+    """Whether the plane is that of F and k1, with rods that are crushed at F = k1, as arms are not."""
     return (line, row) == CRUSHING and has_covering(view.config)
 
 

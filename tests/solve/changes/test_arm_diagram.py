@@ -70,7 +70,7 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
 
 
 def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
-    axes = PlaneAxis("F", 10.0, 560.0), PlaneAxis("taper", 0.8, 1.2)
+    axes = PlaneAxis("F", 40.0, 560.0), PlaneAxis("taper", 1.1, 1.8)
     (fold,) = (f for f in traced(SWELLING, Kind.hopf, axes, k1=500.0).folds if f.axis == 1)
     taper = fold.values[1]
     numbers = []
@@ -92,7 +92,7 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
     cone = row("F", [5.0, 20.0, 49.0, 51.0, 60.0], Rod(F=0.0, k1=200.0, **ROD, taper=0.5))
     assert cone.motion.tolist()[3:] == [Motion.crushed] * 2
     assert Motion.crushed not in cone.motion.tolist()[:3]
-    assert cone.changes.end == pytest.approx(50.0)
+    assert cone.changes.end == pytest.approx(50.0, rel=2e-6)
     along_k1 = row("k1", [20.0, 39.0, 41.0, 200.0], Rod(F=10.0, k1=np.inf, **ROD, taper=0.5))
     assert (along_k1.motion == Motion.crushed).tolist() == [True, True, False, False]
 
