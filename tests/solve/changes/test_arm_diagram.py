@@ -124,3 +124,17 @@ def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
     assert "partial beam" not in said
     assert "crushed" not in said
     assert command("plot", "rubber.h5").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("k1", [2e2, 1e7]), ("k2", [1e2, 1e7]), ("gamma3", [0.0, 1e-2]), ("k1", [160.001, 1e3])],
+)
+def test_rows_begin_and_end_at_the_limits_of_the_model(name, values):
+    """Slopes by a compliance or a drag next to 0, and next to the force that crushes the tip."""
+    rod = {"F": 40.0, "k1": 1e4, **ROD, "taper": 0.5} | {name: values[0]}
+    request = RowRequest(name, np.array(values), accuracy=1e-9, certify=True, crossings=16)
+    row = solve_row(Rod(**rod), request)
+    assert row.status == ThresholdStatus.ok
+    for value, unstable in zip(values, row.unstable_count, strict=True):
+        assert rs.Rod(**{**rod, name: value}).spectrum(modes=4).unstable_count == unstable
