@@ -1,6 +1,6 @@
 """Config of the task modes."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -28,6 +28,8 @@ class ModesConfig(LinearConfig):
 
     task: Literal["modes"]
     modes: ModesOptions = ModesOptions()
+
+    takes_arms: ClassVar[bool] = True
 
     @model_validator(mode="after")
     def _whole_points(self) -> "ModesConfig":

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..model.arm.quantities import RELATIVE
-from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
+from ..model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from .arm.axes import AXIS_OF, FLUID
 from .axes import DEFAULTS, DiagramParameters, LinearAxes, words
 from .schema import Crossings, LinearConfig
@@ -70,6 +70,7 @@ class PhaseDiagramConfig(LinearConfig):
     parameters: DiagramParameters
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
+    takes_arms: ClassVar[bool] = True
     into_crushed: ClassVar[bool] = True
     of_several_rods: ClassVar[bool] = True
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
@@ -77,13 +78,13 @@ class PhaseDiagramConfig(LinearConfig):
     @property
     def plane(self) -> tuple[str, ...]:
         """(line axis, row axis): the parameters with more than one value, in the order of
-        LINEAR_PARAMETERS.
+        LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
         """
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
     @property
     def names(self) -> tuple[str, ...]:
-        return all_but(self.plane[0])
+        return tuple(name for name in super().names if name != self.plane[0])
 
     @property
     def gamma1(self) -> float:
@@ -157,11 +158,11 @@ class PhaseDiagramConfig(LinearConfig):
                 f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
                 f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters beside the arm"
             )
-        long = self.plane
+        long, names = self.plane, words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
         if len(long) != 2:
             raise ValueError(
                 f"parameters has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-                f"phase diagram needs exactly two of {every}"
+                f"phase diagram needs exactly two of {names}"
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
@@ -171,6 +172,17 @@ class PhaseDiagramConfig(LinearConfig):
                 f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"
             )
         return self
+
+    @model_validator(mode="after")
+    def _more_than_curves_of_uniform_arms_only(self) -> "PhaseDiagramConfig":
+        options = self.phase_diagram
+        if self.standard or not (options.criticality or options.cycles):
+            return self
+        asked = "phase_diagram.criticality" if options.criticality else "phase_diagram.cycles"
+        raise ValueError(
+            f"{asked} is true, but a phase diagram has Hopf points with their criticality and cycles of "
+            "uniform arms of linear material only; remove it and use the task criticality or branch"
+        )
 
     @model_validator(mode="after")
     def _third_beside_the_plane(self) -> "PhaseDiagramConfig":

@@ -13,13 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .parameter_plane import Plane, ValueOnPlane
+from .parameter_plane import SMALL_STEP, STENCIL, Plane
 
 MOST_CORRECTIONS = 12
-SMALL_STEP = 1e-3
-STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
-ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
-"""Step and weights of the differences, of fourth order, in the Jacobian of D_w; beside a limit, one-sided."""
 
 
 class OnBoundary(NamedTuple):
@@ -92,25 +88,25 @@ class Boundary:
 
     def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`equations` of (D, w D_w) at w = sign exp(h), where D is real."""
-        w, here = self._real(v)
+        w = self._real(v)
+        here = self.plane.determinant(w, v[0], v[1])
         slope = (w * here.D_w).real  # w D_w = dD/dh
         jacobian = np.empty((2, 3))
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
-            h = self.plane.small_step(v[0], v[1], i, SMALL_STEP) if i < 2 else SMALL_STEP
+            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (STENCIL, SMALL_STEP)
             jacobian[1, i] = 0.0
-            back = v.copy()
-            back[i] -= 2 * h
-            for places, weight in STENCIL if self.plane.holds(back[0], back[1]) else ONE_SIDED:
+            for places, weight in stencil:
                 step = np.zeros(3)
                 step[i] = places * h
-                w, there = self._real(v + step)
+                beside = v + step
+                w = self._real(beside)
+                there = self.plane.value(w, beside[0], beside[1])
                 jacobian[1, i] += weight * (w * there.D_w).real * math.exp(there.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
         return residual, jacobian / scale[:, None], float(here.blur / scale.min())
 
-    def _real(self, v: Array) -> tuple[complex, ValueOnPlane]:
-        """(w, D there) at w = sign exp(h)."""
-        w = complex(self.sign * math.exp(v[2]), 0.0)
-        return w, self.plane.determinant(w, v[0], v[1])
+    def _real(self, v: Array) -> complex:
+        """w = sign exp(h)."""
+        return complex(self.sign * math.exp(v[2]), 0.0)

@@ -30,6 +30,10 @@ difference d = theta - theta+ solves c2 d'' = g nu d alone, which gives the Herm
 
 a layer of thickness 1/kappa that no mesh has to resolve. So the numerical abscissa jumps down by a finite
 amount as gamma3 becomes 0 at c2 > 0: for any gamma3 > 0 theta may start where it likes.
+
+All of this holds for c2(u), c3(u), nu(u), gamma2(u) and gamma3(u), since the force is the same all along
+the arm: with m = theta'/c3 in place of theta', weights gamma2 and gamma3 in the inner product, and
+T = d(1)/m_d(1) of d' = c3 m_d, m_d' = (g nu/c2) d, d(0) = 0.
 """
 
 from math import sqrt, tan, tanh
@@ -41,7 +45,7 @@ SERIES_BELOW = 1e-4
 
 
 def slaving_layer(rod: Rod) -> float:
-    """T = tanh(kappa)/kappa of the layer in which a rod without rotational drag slaves theta; else 0."""
+    """T = tanh(kappa)/kappa of the layer in which a uniform rod slaves theta; 0 with rotational drag."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     square = rod.g * rod.nu / rod.c2
@@ -51,9 +55,10 @@ def slaving_layer(rod: Rod) -> float:
     return tanh(kappa) / kappa if square > 0 else tan(kappa) / kappa
 
 
-def hermitian_tip(rod: Rod) -> tuple[float, float]:
+def hermitian_tip(F: float, layer: float) -> tuple[float, float]:
     """(p, r) of the term p (a theta - b y) - r a y at u = 1 that makes the weak form of L that of (L + L+)/2.
 
-    p = F/2 in k3/L^2 and r = (F^2/4) T in k3/L^3, for test functions (a, b) and the fields (y, theta).
+    p = F/2 in k3/L^2 and r = (F^2/4) T in k3/L^3, for test functions (a, b) and the fields (y, theta);
+    layer: T.
     """
-    return rod.F / 2, rod.F**2 / 4 * slaving_layer(rod)
+    return F / 2, F**2 / 4 * layer

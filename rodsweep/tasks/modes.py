@@ -37,8 +37,8 @@ class ModesTask(ProvedTask):
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change their stability."""
-        return force_changes(self.points, values)
+        """Forces at which the rods change their stability; not searched for arms that are not uniform."""
+        return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
         options = self.config.modes
@@ -52,6 +52,9 @@ class ModesTask(ProvedTask):
             ("transient growth, numerical abscissa", growth, why),
             ("longitudinal modes", False, "they decouple; the task spectrum has them"),
         ]
+
+    def certificate(self) -> tuple[bool, str]:
+        return self.certificate_of_counts()
 
     def cost(self) -> Estimate:
         options = self.config.modes

@@ -42,6 +42,24 @@ class ProvedTask(Task):
             return True, "winding number of D"
         return False, f"{task}.certify: false; {self.not_proved}"
 
+    @property
+    def varies(self) -> bool:
+        """Whether some rod is not uniform, so that its D has no closed form."""
+        tapers = self.points.by_name.get("taper", np.ones(1))
+        return self.config.build.profile is not None or bool((tapers != 1).any())
+
+    def certificate_of_counts(self) -> tuple[bool, str]:
+        """`ProvedTask.certificate` of modes that are counted at every point."""
+        asked, proof = ProvedTask.certificate(self)
+        return asked, f"{proof}, estimated in part" if asked and self.varies else proof
+
+    def certificate_of_lines(self) -> tuple[bool, str]:
+        """`ProvedTask.certificate` of modes that are counted along lines of rods."""
+        asked, proof = ProvedTask.certificate(self)
+        if asked and not self.config.standard:
+            return True, f"{proof} at some rods, estimated in part; between them slopes of the eigenvalues"
+        return asked, proof
+
     def parts(self) -> list[Part]:
         what, why = self.left_out
         return [

@@ -10,7 +10,7 @@ from ..model.rod import Rod
 from ..results.layouts.phase_diagram import (
     MAX_CYCLE_SPECIAL,
 )
-from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_lines, estimate_lines_of_arms
 from .diagram.curves import DiagramCurves
 from .diagram.cycles import cycles_record
 from .parts import ProvedTask
@@ -69,6 +69,9 @@ class PhaseDiagramTask(ProvedTask):
             ("stable states, with cycles", options.cycles, cycles),
         ]
 
+    def certificate(self) -> tuple[bool, str]:
+        return self.certificate_of_lines()
+
     def parts(self) -> list[Part]:
         """Parts of a linear task; with cycles, the nonlinear motion too."""
         linear = ProvedTask.parts(self)
@@ -79,7 +82,9 @@ class PhaseDiagramTask(ProvedTask):
 
     def cost(self) -> Estimate:
         options, rows = self.config.phase_diagram, self.points.count
-        lines = estimate_lines(rows, options.certify)
+        lines = (
+            estimate_lines(rows, options.certify) if self.config.standard else estimate_lines_of_arms(rows)
+        )
         if not options.cycles:
             return lines
         reach = (float(self.line[0]), float(self.line[-1]))

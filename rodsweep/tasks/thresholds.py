@@ -44,10 +44,7 @@ class ThresholdsTask(ProvedTask):
         ]
 
     def certificate(self) -> tuple[bool, str]:
-        asked, proof = ProvedTask.certificate(self)
-        if asked and not self.config.standard:
-            return True, f"{proof} at some forces, estimated in part; between them slopes of the eigenvalues"
-        return asked, proof
+        return self.certificate_of_lines()
 
     def cost(self) -> Estimate:
         if not self.config.standard:

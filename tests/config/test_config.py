@@ -237,7 +237,11 @@ REFUSED_BY_TASK = [
         "parameters.k1 = -9 is not allowed; it must be a number above 0",
     ),
     (thresholds("points: p.csv, k1: 9"), "parameters.points and parameters.k1 are both given"),
-    (diagram(F="1"), f"has 1 axes with more than one value (k2); a phase diagram needs exactly two of {ALL}"),
+    (
+        diagram(F="1"),
+        "has 1 axes with more than one value (k2); a phase diagram needs exactly two of F, k1, k2, gamma3 "
+        "and taper",
+    ),
     (diagram(k1="[9, 10]"), "has 3 axes with more than one value (F, k1, k2); a phase diagram needs exactly"),
     (diagram(more="points: p.csv"), "parameters.points is given but the task phase_diagram needs axes"),
     (diagram(more="gamma3: null"), f"parameters.gamma3 is missing; give {ALL}"),

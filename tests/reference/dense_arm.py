@@ -36,8 +36,15 @@ def edges_of(rod, per_length):
     return np.array(edges)
 
 
-def eigenvalues(rod, per_length=4, p=20):
-    """All eigenvalues of an arm with shear, by descending real part."""
+def nodes(rod, per_length=4, p=20):
+    """u of all nodes, the clamp included."""
+    edges = edges_of(rod, per_length)
+    inner = (_lobatto(p)[0][1:] + 1) / 2
+    return np.append(0.0, (edges[:-1, None] + np.diff(edges)[:, None] * inner).ravel())
+
+
+def matrices(rod, per_length=4, p=20):
+    """(A, diagonal of M) of A x = w M x in the values of y and theta at all nodes but the clamp."""
     x, w = _lobatto(p)
     g, wg = legendre.leggauss(p)
     value, slope = _basis(x, g)
@@ -60,5 +67,18 @@ def eigenvalues(rod, per_length=4, p=20):
         M[t] += w * (b - a) / 2 * at_nodes.gamma3
     A[n - 1, 2 * n - 1] -= rod.F
     kept = np.r_[1:n, n + 1 : 2 * n]
-    found = np.linalg.eigvals(A[np.ix_(kept, kept)] / M[kept][:, None])
+    return A[np.ix_(kept, kept)], M[kept]
+
+
+def eigenvalues(rod, per_length=4, p=20):
+    """All eigenvalues of an arm with shear, by descending real part."""
+    A, M = matrices(rod, per_length, p)
+    found = np.linalg.eigvals(A / M[:, None])
     return found[np.argsort(-found.real)]
+
+
+def in_energy_norm(rod, per_length=4, p=20):
+    """L in coordinates in which the norm of the dissipation is Euclidean, (n, n), of an arm with shear."""
+    A, M = matrices(rod, per_length, p)
+    root = np.sqrt(M)
+    return A / root[:, None] / root

@@ -13,6 +13,12 @@ from ..value import ROUND_OFF, Value
 from .determinant import ArmDeterminant, arm_determinant
 from .roots import refined, root_error, second_derivative
 
+CENTRAL = ((1, 0.5), (-1, -0.5))
+FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
+"""(place, weight) of differences of second order, in units of their step."""
+MAX_SHORTENINGS = 20
+"""Largest number of times that a step is divided by 4: to 1e-12 of its first length."""
+
 
 class ArmAlongPath:
     """D of the arms of one path; p: the path variable."""
@@ -33,9 +39,12 @@ class ArmAlongPath:
 
     def derivative(self, w: complex, p: float, S: float) -> complex:
         """dD/dp exp(-S) at w and p."""
-        h = self._step(p)
-        after, before = self.determinant(p + h).value(w), self.determinant(p - h).value(w)
-        return (after.D * math.exp(after.S - S) - before.D * math.exp(before.S - S)) / (2 * h)
+        places, h = self._stencil(p, math.inf)
+        slope = 0j
+        for place, weight in places:
+            there = self.determinant(p + place * h).value(w)
+            slope += weight * there.D * math.exp(there.S - S)
+        return slope / h
 
     def double(self, x: float, p: float, reach: float) -> Zero:
         """The double real eigenvalue near (x, p): D = D_w = 0, p at most `reach` away."""
@@ -45,9 +54,9 @@ class ArmAlongPath:
             value = here.value(complex(x, 0.0))
             D, D_w, S, noise = value.D.real, value.D_w.real, value.S, value.noise
             D_ww = second_derivative(complex(x, 0.0), S, here).real
-            k = min(JACOBIAN_STEP * reach, self._step(p))
-            after, before = self._real(x, p + k, S), self._real(x, p - k, S)
-            D_p, D_wp = ((a - b) / (2 * k) for a, b in zip(after, before, strict=True))
+            places, k = self._stencil(p, JACOBIAN_STEP * reach)
+            beside = [(weight, self._real(x, p + place * k, S)) for place, weight in places]
+            D_p, D_wp = (sum(weight * value[i] for weight, value in beside) / k for i in range(2))
             cross = D_w * D_wp - D_p * D_ww
             if cross == 0 or not math.isfinite(cross):
                 return FAILED
@@ -71,9 +80,25 @@ class ArmAlongPath:
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 
-    def _step(self, p: float) -> float:
-        """Step of a difference by p; no arm within it is crushed."""
-        step = JACOBIAN_STEP * max(abs(p), 1.0)
-        if self.path.name == "F":
-            step = min(step, (self.path.rod.crushing_force - p) / 4)
-        return step
+    def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
+        """((place, weight) of each arm in a difference by p, its step), the step at most `largest`.
+
+        The step is shortened until both neighbours exist: none is crushed, and no compliance or drag is
+        negative. Where a compliance or a drag is 0 the difference is one-sided.
+        """
+        step = min(JACOBIAN_STEP * max(abs(p), 1.0), largest)
+        if p == 0 and self.path.name != "F":
+            return FORWARD, step
+        for _ in range(MAX_SHORTENINGS):
+            if self._exists(p + step) and self._exists(p - step):
+                break
+            step /= 4
+        return CENTRAL, step
+
+    def _exists(self, p: float) -> bool:
+        """Whether the model has an arm at p."""
+        try:
+            self.path.at(p)
+        except ValueError:
+            return False
+        return True

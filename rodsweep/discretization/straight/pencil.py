@@ -88,12 +88,17 @@ class Pencil(Elements):
         B[self.nodes : 2 * self.nodes] = rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
         return B
 
+    def scale(self, rod: Rod) -> Array:
+        """What y and theta at the nodes are in units of the unknowns, (2, nodes)."""
+        push = 1 / np.sqrt(self.mass)
+        return np.stack([push, push / angle_weight(rod.rotational_drag)])
+
     def fields(self, vectors: Complex, rod: Rod) -> tuple[NDArray, NDArray]:
         """(y, theta) at all nodes, the clamp included, shape (nodes + 1, k), from k eigenvectors."""
-        scale = 1 / np.sqrt(self.mass)[:, None]
+        push, turn = self.scale(rod)[:, :, None]
         clamp = np.zeros((1, vectors.shape[1]))
-        y = vectors[: self.nodes] * scale
-        theta = vectors[self.nodes : 2 * self.nodes] * scale / angle_weight(rod.rotational_drag)
+        y = vectors[: self.nodes] * push
+        theta = vectors[self.nodes : 2 * self.nodes] * turn
         return np.vstack([clamp, y]), np.vstack([clamp, theta])
 
 
@@ -108,24 +113,25 @@ def tip_scale(y: Complex, theta: Complex) -> Complex:
     return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
 
 
-def shear_force(pencil: Pencil, vectors: Complex, points: Array) -> Complex:
+def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """s of the vectors at `points`, from its own unknowns at the Gauss nodes; shape (points, k)."""
-    nodes, weights = gauss(pencil.order)
-    mass = np.tile(weights / (2 * pencil.elements), pencil.elements) * SHEAR_WEIGHT**2
-    values = vectors[2 * pencil.nodes :] / np.sqrt(mass)[:, None]
+    nodes, weights = gauss(mesh.order)
+    mass = (weights * mesh.lengths[:, None] / 2).ravel() * SHEAR_WEIGHT**2
+    values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
-    for first, here, local in pencil.by_element(points):
-        result[here] = interpolation(nodes, local) @ values[first : first + pencil.order]
+    for first, here, local in mesh.by_element(points):
+        result[here] = interpolation(nodes, local) @ values[first : first + mesh.order]
     return result
 
 
-def slope(pencil: Pencil, values: Complex, points: Array) -> Complex:
+def slope(mesh: Elements, values: Complex, points: Array) -> Complex:
     """The derivative at `points` of fields given at all nodes, shape (nodes + 1, k); shape (points, k)."""
-    nodes, _ = gauss_lobatto(pencil.order)
-    derivative = 2 * pencil.elements * differentiation(nodes)
+    nodes, _ = gauss_lobatto(mesh.order)
+    derivative = 2 * differentiation(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
-    for first, here, local in pencil.by_element(points):
-        result[here] = interpolation(nodes, local) @ (derivative @ values[first : first + pencil.order + 1])
+    for first, here, local in mesh.by_element(points):
+        changes = derivative @ values[first : first + mesh.order + 1] / mesh.lengths[first // mesh.order]
+        result[here] = interpolation(nodes, local) @ changes
     return result
 
 

@@ -16,6 +16,7 @@ from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ...results.layouts.variables import has_covering
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_between_crossings
@@ -108,7 +109,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colours_of_numbers)
     scale(axes, "x", x)
     scale(axes, "y", y)
-    edge = _draw_crushing(axes, x, y) if (line, row) == CRUSHING else []
+    edge = _draw_crushing(axes, x, y) if _crushed_at_k1(view, line, row) else []
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
     handles: list = palette.patches(table)
     if "curve_number" in view.variables:
@@ -132,6 +133,11 @@ def _fixed(view: View, line: str, row: str) -> str:
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
         fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULTS["gamma1"]))
     return parameter_text(fixed)
+
+
+def _crushed_at_k1(view: View, line: str, row: str) -> bool:
+    """Whether the plane is that of F and k1, with rods that are crushed at F = k1, as arms are not."""
+    return (line, row) == CRUSHING and has_covering(view.config)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
@@ -175,7 +181,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
-    known = (table != palette.crushed) | ((line, row) != CRUSHING)
+    known = (table != palette.crushed) | (not _crushed_at_k1(view, line, row))
     computed = ClassifiedPoints(plane.unit(columns[known], rows[known]), table[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
@@ -187,7 +193,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
         if f"{kind}_number" in view.variables
         for one in _each_curve(view, kind, double=palette is CLASS_PALETTE)
     ]
-    if (line, row) == CRUSHING:
+    if _crushed_at_k1(view, line, row):
         edge = np.linspace(plane.y[0], plane.y[-1], 1000)
         curves += [plane.unit(share * edge, edge) for share in BESIDE_CRUSHING]
     return coloured(computed, further, curves)

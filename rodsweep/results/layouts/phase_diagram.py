@@ -2,12 +2,22 @@
 
 from typing import Any
 
-from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
+from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
 from .criticality import LANDAU, SLOPE, side
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, NEEDS_NO_SOLVE, Layout, Variable, integer, real, word
+from .variables import (
+    ANGULAR,
+    NEEDS_NEW_SOLVE,
+    NEEDS_NO_SOLVE,
+    Layout,
+    Variable,
+    confirmed,
+    integer,
+    real,
+    word,
+)
 
 CLASSES = (
     (-1, "missing"),
@@ -62,7 +72,8 @@ INCREASES = {
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     """((parameter along a row, parameter across the rows), number of values of every parameter)."""
     axes = config["parameters"]
-    sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in LINEAR_PARAMETERS}
+    names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)
+    sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
     line, row = (name for name, size in sizes.items() if size > 1)
     return (line, row), sizes
 
@@ -90,6 +101,7 @@ def layout(config: dict[str, Any]) -> Layout:
     if options["cycles"]:
         variables += cycle_variables(line)
         extents[CYCLE_SPECIAL] = MAX_CYCLE_SPECIAL
+    variables = confirmed(variables, config, "crossings")
     return Layout(variables, extents, all_but(line), needs_all_points=options["curves"])
 
 

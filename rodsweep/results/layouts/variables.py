@@ -206,24 +206,20 @@ class Layout:
         return tuple(self.extents[d] for d in variable.extra)
 
 
-SHAPES = ("tip_radius", "segments")
-"""Keys of an arm that varies along its length."""
-
-
 def estimates_counts(config: Mapping[str, Any]) -> bool:
     """Whether a resolved config has rods that vary along their length, so that counts are estimated."""
     parameters = config.get("parameters", {})
-    taper = parameters.get("taper")
-    tapered = taper is not None and taper.get("values") != [1.0]
-    shaped = any(name in parameters.get("arm", {}) for name in SHAPES)
+    arm, taper = parameters.get("arm", {}), parameters.get("taper")
+    tapered = "tip_radius" in arm if taper is None else taper.get("values") != [1.0]
     followed = config.get("branch", {}).get("along") == "taper"
-    return tapered or shaped or followed or "profile" in config.get("material", {})
+    return tapered or followed or "segments" in arm or "profile" in config.get("material", {})
 
 
 def has_covering(config: Mapping[str, Any]) -> bool:
     """Whether a covering proves the crossings of all rods: those that are uniform and of linear material."""
-    laws = {**config.get("parameters", {}).get("arm", {}), **config.get("material", {})}
-    return laws.get("law", "linear") == "linear" and not estimates_counts(config)
+    stated = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
+    linear = all(each.get("law", "linear") == "linear" for each in stated)
+    return linear and not estimates_counts(config)
 
 
 def confirmed(

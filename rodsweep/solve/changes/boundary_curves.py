@@ -27,8 +27,9 @@ COINCIDENT = 1e-9
 """Distance of two points of a curve that are one, as where it starts on the border of the plane."""
 FOLD_ACCURACY = 1e-13
 """Component of the tangent, or share of the step, that counts as none."""
-HOPF_TANGENT, DOUBLE_TANGENT = 1e-12, 1e-11
-"""Uncertainty of a tangent: from rounding, and from the differences in the Jacobian of D_w."""
+HOPF_TANGENT, DOUBLE_TANGENT, ARM_TANGENT = 1e-12, 1e-11, 3e-10
+"""Uncertainty of a tangent: from rounding, from the differences in the Jacobian of D_w, and from those of D
+of arms: those of uniform rods differ by up to 8e-11 from the closed form."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +171,7 @@ def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
 
 def _fold(curve: _Trace, a: _Passed, b: _Passed, axis: int) -> Fold | None:
     """The point between two of a curve where the tangent has no component along an axis; None if lost."""
-    boundary, noise = curve.boundary, DOUBLE_TANGENT if curve.boundary.sign else HOPF_TANGENT
+    boundary, noise = curve.boundary, _tangent_noise(curve.boundary)
     chord, found = b.v - a.v, dict[float, OnBoundary]()
     size = float(np.linalg.norm(chord))
 
@@ -185,6 +186,13 @@ def _fold(curve: _Trace, a: _Passed, b: _Passed, axis: int) -> Fold | None:
     except Unsolvable:
         return None
     return _as_fold(boundary, found[length], axis, along)
+
+
+def _tangent_noise(boundary: Boundary) -> float:
+    """Uncertainty of the tangents of a boundary."""
+    if not boundary.plane.standard:
+        return ARM_TANGENT
+    return DOUBLE_TANGENT if boundary.sign else HOPF_TANGENT
 
 
 def _as_fold(boundary: Boundary, there: OnBoundary, axis: int, along: float) -> Fold:

@@ -20,14 +20,16 @@ from .thresholds import Thresholds, ThresholdStatus, judged, nothing_found
 from .unstable_modes import SHORT_OF_CRUSHED
 
 MEETS_K1 = 1e-12
-"""Relative distance of F from k1 that rounding makes: two axes in steps may meet there but for it."""
+"""Relative distance of F from the force that crushes the rod, made by rounding: two axes in steps may meet
+there but for it."""
 
 
 class Motion(IntEnum):
     """How a small deflection of the straight rod evolves.
 
     monotone, oscillatory: stable, and the slowest mode decays without or with oscillations. flutter: at
-    least one mode grows. undecided: on a boundary within its error, or not known. crushed: F >= k1.
+    least one mode grows. undecided: on a boundary within its error, or not known. crushed: F is at least the
+    force that crushes the weakest section, k1 for a uniform rod of linear material.
     """
 
     monotone = 0
@@ -85,16 +87,18 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     name, values = request.name, request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
-    alive = k1 * (1 - SHORT_OF_CRUSHED) > F
-    crushed = k1 * (1 - MEETS_K1) <= F
+    share = rod.build.crushing_share(rod.taper)
+    crushing = k1 * share
+    alive = crushing * (1 - SHORT_OF_CRUSHED) > F
+    crushed = crushing * (1 - MEETS_K1) <= F
     if not alive.any():
         row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
         return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
     start, stop = float(values[alive][0]), float(values[alive][-1])
     if name == "F" and not alive.all():
-        stop = rod.k1 * (1 - SHORT_OF_CRUSHED)
+        stop = rod.crushing_force * (1 - SHORT_OF_CRUSHED)
     if name == "k1" and not alive.all():
-        start = rod.F / (1 - SHORT_OF_CRUSHED) if rod.F > 0 else start
+        start = rod.F / (share * (1 - SHORT_OF_CRUSHED)) if rod.F > 0 else start
     found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
     motion, unstable = classes(found, values)
     # What is nearly crushed lies beyond the search.

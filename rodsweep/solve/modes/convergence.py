@@ -11,11 +11,9 @@ from math import inf
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.value import distance_to_next
-from ...discretization.elements.resolution import Resolution, finer, mesh_accuracy, resolution_for
-from ...discretization.straight.pencil import assemble
-from ...model.rod import Rod
+from ...discretization.elements.resolution import mesh_accuracy
 from .inverse_iteration import Vectors, mode_vectors
+from .problem import ModesProblem
 
 ORDER_STEP = 4
 """How much finer the second mesh is; two orders of magnitude in the vectors."""
@@ -27,25 +25,25 @@ ROUNDINGS = 2.0
 """Relative error of a condition number, in units of rounding/distance: 0.6 in the median, at most 3.4."""
 
 
-def first_mesh(wave: float, accuracy: float) -> Resolution:
-    """The coarser mesh of the first pair, for the largest wave number and a relative accuracy."""
-    return resolution_for(wave, max(mesh_accuracy(accuracy, True), FINEST_MESH_ACCURACY))
+def vector_accuracy(accuracy: float) -> float:
+    """Accuracy of the eigenvalues of the coarser mesh of the first pair, for one of the vectors."""
+    return max(mesh_accuracy(accuracy, True), FINEST_MESH_ACCURACY)
 
 
 def converged_vectors(
-    rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
+    problem: ModesProblem, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> Vectors | None:
     """The vectors at `points`, (n,), from the best of few meshes; None where even the first is too large."""
-    mesh = first_mesh(wave, accuracy)
-    gaps = np.array([distance_to_next(complex(w), rod.coefficients) for w in eigenvalues])
-    coarse = mode_vectors(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)
+    rod, mesh = problem.rod, problem.mesh_for(wave, vector_accuracy(accuracy))
+    gaps = np.array([problem.gap(complex(w)) for w in eigenvalues])
+    coarse = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
     best: Vectors | None = None
     least = inf
     for _ in range(MOST_PAIRS):
-        mesh = Resolution(mesh.elements, mesh.order + ORDER_STEP) if best is None else finer(mesh)
+        mesh = problem.of_order(mesh, mesh.order + ORDER_STEP) if best is None else problem.finer(mesh)
         if mesh.unknowns > MOST_DENSE_UNKNOWNS:
             break
-        fine = mode_vectors(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)
+        fine = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
         error = max(result.errors().values())
         improved = error < least / 2

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.value import ROUND_OFF
 from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.pencil import Pencil, shear_force, slope, tip_scale
+from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_form
+from ...discretization.straight.pencil import tip_scale
 from ...model.rod import Rod
 
 ITERATIONS = 4
@@ -29,6 +30,7 @@ class Vectors:
     right: (Y, Theta) with Y(1) = 1, left: (Y+, Theta+) with Y+(1) = 1, in L and 1 for a tip deflection of L;
     deformation: (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V), h2 = c2 s being exactly
     0 in an unshearable rod; complex, shape (2, modes, points), NaN where a tip does not move.
+    Where a stiffness jumps, h2 and Pi are those behind the jump.
     pairing: (psi_n, xi_n) in the Gamma inner product, complex, shape (modes,).
     condition: |psi| |xi|/|(psi, xi)| >= 1, shape (modes,): how much farther than its size a perturbation of
     L, in the Gamma norm, moves the eigenvalue; inf at the onset F*. With gamma3 = 0 theta follows
@@ -54,19 +56,19 @@ class Vectors:
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
-def mode_vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: Array) -> Vectors:
+def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> Vectors:
     """The modes of known eigenvalues on one mesh, at `points` in [0, 1], shape (n,)."""
-    X, Z, rounding = _vectors(rod, pencil, eigenvalues)
-    evaluation = pencil.evaluation(points)
-    y, theta = pencil.fields(X, rod)
-    B = pencil.inertia(rod)[:, None]
+    form = dense_form(rod, pencil)
+    X, Z, rounding = _vectors(form, eigenvalues)
+    evaluation = form.mesh.evaluation(points)
+    B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        no_vectors(Resolution(pencil.elements, pencil.order), len(eigenvalues), len(points)),
-        right=np.stack([(evaluation @ y).T, (evaluation @ theta).T]),
-        deformation=np.stack([rod.c2 * shear_force(pencil, X, points).T, slope(pencil, theta, points).T]),
-        left=np.stack([(evaluation @ field).T for field in pencil.fields(Z.conj(), rod)]),
+        no_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
+        right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
+        deformation=form.strains(X, points),
+        left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),
         pairing=pairing,
         condition=norms[0] * norms[1] / np.abs(pairing),
         rounding=rounding,
@@ -89,11 +91,11 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
     )
 
 
-def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
+def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Vectors.rounding`."""
-    A, B = pencil.dense(rod)
+    A, B = form.A, form.B
     m = len(eigenvalues)
-    X, Z = np.empty((pencil.unknowns, m), complex), np.empty((pencil.unknowns, m), complex)
+    X, Z = np.empty((len(B), m), complex), np.empty((len(B), m), complex)
     for i, w in enumerate(eigenvalues):
         if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= CONJUGATE * abs(w):
             X[:, i], Z[:, i] = X[:, i - 1].conj(), Z[:, i - 1].conj()
@@ -101,7 +103,7 @@ def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, C
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
-    right, left = (V * tip_scale(*pencil.fields(V, rod)) for V in (X, Z))
+    right, left = (V * tip_scale(*form.fields(V)) for V in (X, Z))
     return right, left, rounding
 
 

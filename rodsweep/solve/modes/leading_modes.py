@@ -7,7 +7,7 @@ reported is that of the vectors.
 Normalisation, stated once: right modes have Y(1) = 1, and so do left modes, Y+(1) = 1, which makes both
 equal at F = 0, where L is self-adjoint. `pairing` has the product (psi_n, xi_n) that this leaves: the share
 of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n). A left mode belongs to the eigenvalue w* of the
-adjoint (Appendix B), so that (psi_m, xi_n) = int Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
+adjoint (Appendix B), so that (psi_m, xi_n) = int gamma2 Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
 """
 
 from dataclasses import dataclass, replace
@@ -15,15 +15,15 @@ from math import nan
 
 import numpy as np
 
-from ...determinant.value import newton_correction
 from ...discretization.elements.quadrature import lobatto_points
-from ...discretization.elements.resolution import Resolution, resolution_for
+from ...discretization.elements.resolution import Resolution
 from ...model.rod import Rod
 from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
 from .inverse_iteration import Vectors, no_vectors
+from .problem import modes_problem
 from .transient_growth import Growth, growth_of
 
 GROWTH_WAVE_NUMBER = 24.0
@@ -61,6 +61,8 @@ class Modes:
 
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     """The leading `request.modes` modes of `rod`; failures are a status, never an exception."""
+    if rod.uniform and not rod.standard:
+        return _in_own_time(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
     vectors = no_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
@@ -79,22 +81,43 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     return replace(found, seconds=spectrum.seconds + found.seconds)
 
 
+def _in_own_time(rod: Rod, request: ModesRequest) -> Modes:
+    """The modes of a uniform rod of any law, from those of the linear rod to which it is equivalent."""
+    linear, rate = rod.equivalent
+    found = solve_modes(linear, request)
+    spectrum, growth = found.spectrum, found.growth
+    return replace(
+        found,
+        spectrum=replace(
+            spectrum, eigenvalues=rate * spectrum.eigenvalues, error_estimate=rate * spectrum.error_estimate
+        ),
+        vectors=replace(found.vectors, rounding=rate * found.vectors.rounding),
+        growth=replace(
+            growth,
+            transient_time=growth.transient_time / rate,
+            numerical_abscissa=rate * growth.numerical_abscissa,
+            abscissa_error=rate * growth.abscissa_error,
+        ),
+    )
+
+
 def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     """The outcome with its vectors and, where wanted, its growth; the largest error decides on the status."""
     spectrum = outcome.spectrum
-    wave = max(newton_correction(complex(w), rod.coefficients)[2] for w in spectrum.eigenvalues)
+    problem = modes_problem(rod)
+    wave = max(problem.wave_number(complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.nodes)
-    vectors = converged_vectors(rod, spectrum.eigenvalues, points, wave, request.accuracy)
+    vectors = converged_vectors(problem, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
         return replace(outcome, status=SpectrumStatus.failed, message="no dense mesh resolves the modes")
     result, errors = replace(outcome, vectors=vectors), vectors.errors()
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
-        mesh = resolution_for(max(wave, GROWTH_WAVE_NUMBER), request.accuracy)
+        mesh = problem.mesh_for(max(wave, GROWTH_WAVE_NUMBER), request.accuracy)
         grows = (spectrum.eigenvalues.real > SURELY * spectrum.error_estimate).any()
         known = spectrum.status != SpectrumStatus.undecided
         stable = False if grows or spectrum.unstable_count > 0 else (True if known else None)
-        growth = growth_of(rod, mesh, request.accuracy, stable, rate)
+        growth = growth_of(problem, mesh, request.accuracy, stable, rate)
         errors |= growth.errors(rate)
         result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))
     culprit, error = max(errors.items(), key=lambda item: item[1])

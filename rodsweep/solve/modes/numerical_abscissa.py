@@ -4,8 +4,10 @@ from math import inf, nan
 
 import numpy as np
 
+from ...determinant.arm.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
-from ...discretization.straight.pencil import Pencil, angle_weight
+from ...discretization.straight.dense_form import AnyPencil, dense_form
+from ...discretization.straight.slaving import slaving_of
 from ...model.adjoint import hermitian_tip
 from ...model.rod import Rod
 from .propagator import shifted_inverse
@@ -18,19 +20,15 @@ POSITIVE = 1e-9
 """Relative size above which an eigenvalue of the shifted inverse is not rounding."""
 
 
-def numerical_abscissa(rod: Rod, pencil: Pencil) -> float:
+def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the growth rate at t = 0+.
 
     The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from
     above: nan where none is above it, which only a rod without rotational drag and g < 0 can bring about.
     """
-    A, B = pencil.dense(rod)
-    n, t, tip_mass = pencil.nodes, angle_weight(rod.rotational_drag), pencil.mass[-1]
-    pair, layer = hermitian_tip(rod)
-    A[n - 1, 2 * n - 1] += pair / (t * tip_mass)
-    A[2 * n - 1, n - 1] -= pair / (t * tip_mass)
-    A[n - 1, n - 1] -= layer / tip_mass
-    bound, _ = eigenvalue_box(rod)
+    form = dense_form(rod, pencil)
+    A, B = form.averaged(*hermitian_tip(rod.F, slaving_of(rod))), form.B
+    bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(MOST_SHIFTS):
         H = shifted_inverse(A, B, shift)

@@ -11,14 +11,15 @@ shear leads and like a^5 where bending does, and early; below the accuracy it is
 
 from dataclasses import dataclass, replace
 from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
+from typing import Any
 
 import numpy as np
 
-from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.pencil import Pencil, assemble
+from ...discretization.straight.dense_form import AnyPencil, dense_form
 from ...model.rod import Rod
 from .norm_maximum import LARGEST_EXPONENT, highest
 from .numerical_abscissa import numerical_abscissa
+from .problem import ModesProblem
 from .propagator import Propagator, shifted_inverse
 
 FEWEST_MODES, MORE_MODES = 8, 1.5
@@ -65,26 +66,26 @@ UNBOUNDED = Growth(growth_error=inf)
 """The growth of which nothing is known."""
 
 
-def growth_of(rod: Rod, mesh: Resolution, accuracy: float, stable: bool | None, rate: float) -> Growth:
+def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | None, rate: float) -> Growth:
     """Abscissa and growth on meshes from `mesh` on; `rate` is the modulus of the leading eigenvalue.
 
     A rod that is not `stable` grows without end; where that is not known (None), the growth is nan.
     """
-    best, least = UNBOUNDED, inf
-    abscissa, coarse = numerical_abscissa(rod, assemble(mesh.elements, mesh.order)), None
+    best, least, rod = UNBOUNDED, inf, problem.rod
+    abscissa, coarse = numerical_abscissa(rod, problem.pencil(mesh)), None
     for step in range(MOST_GROWTH_MESHES):
         order = mesh.order + FIRST_FINER if step == 0 else ceil(ORDER_FACTOR * mesh.order)
-        last, mesh = mesh, Resolution(mesh.elements, order)
+        last, mesh = mesh, problem.of_order(mesh, order)
         if step and mesh.unknowns > MOST_GROWTH_UNKNOWNS:
             break
-        pencil = assemble(mesh.elements, mesh.order)
+        pencil = problem.pencil(mesh)
         before, abscissa = abscissa, numerical_abscissa(rod, pencil)
         change = abs(abscissa - before)
         found = KNOWN[stable]
         if found is None and abscissa + change <= 0:
             found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if found is None:
-            coarse = coarse or propagator_of(rod, assemble(last.elements, last.order))
+            coarse = coarse or propagator_of(rod, problem.pencil(last))
             fine = propagator_of(rod, pencil)
             found, coarse = transient_growth(coarse, fine, abscissa + change, accuracy), fine
         result = replace(found, numerical_abscissa=abscissa, abscissa_error=change)
@@ -97,9 +98,10 @@ def growth_of(rod: Rod, mesh: Resolution, accuracy: float, stable: bool | None, 
     return best
 
 
-def propagator_of(rod: Rod, pencil: Pencil) -> Propagator:
+def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
     """exp(L t) of the rod on one mesh, in coordinates in which the Gamma norm is Euclidean."""
-    return Propagator(shifted_inverse(*pencil.dense(rod), 0.0))
+    form = dense_form(rod, pencil)
+    return Propagator(shifted_inverse(form.A, form.B, 0.0))
 
 
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:

@@ -106,7 +106,12 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False, build: Build
     shares = build.crushing_shares(axes.get("taper", np.ones(1)))
     if (shares == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
-    elif axes["F"].max() >= axes["k1"].min() * shares.min():
+    elif into_crushed and axes["F"].min() >= axes["k1"].max() * shares.max():
+        raise InputError(
+            f"parameters.F starts at {axes['F'].min():.15g}, but the weakest section of all arms is crushed "
+            f"at {axes['k1'].max() * shares.max():.15g}"
+        )
+    elif not into_crushed and axes["F"].max() >= axes["k1"].min() * shares.min():
         raise InputError(
             f"parameters.F reaches {axes['F'].max():.15g}, but the weakest section of the arms is crushed at "
             f"{axes['k1'].min() * shares.min():.15g}; F must stay below"

@@ -90,7 +90,8 @@ class DiagramCurves:
         (line, row), options = self.task.config.plane, self.task.config.phase_diagram
         names = (line, row)
         found, limit = self._boundaries(plane, view, self.task.points.by_name[row]), {}
-        if names == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
+        if names == CRUSHING and self.task.config.standard:
+            # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_hopf
 
             Fc = filament_hopf()
@@ -122,13 +123,14 @@ class DiagramCurves:
             return None
         axes = self.task.config.parameters.axes
         not_crushed: dict[str, Any] = {
-            name: float(axis.array()[-1 if name == "k1" else 0]) for name, axis in axes.items()
+            name: float(axis.array()[-1 if name in ("k1", "taper") else 0]) for name, axis in axes.items()
         }
         abscissa, ordinate = (
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
             for name, values in ((line, self.task.line), (row, finite))
         )
-        return Plane(Rod(**not_crushed, gamma1=self.task.config.gamma1), (abscissa, ordinate))
+        rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
+        return Plane(rod, (abscissa, ordinate))
 
     def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
         """Curves through the crossings of all finite rows; rows: value of every row, (rows,)."""

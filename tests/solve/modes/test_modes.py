@@ -24,6 +24,7 @@ from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.modes.norm_maximum import highest
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
+from rodsweep.solve.modes.problem import modes_problem
 from rodsweep.solve.modes.propagator import Propagator, exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -727,7 +728,7 @@ def test_a_failing_mesh_is_a_status(monkeypatch):
 
 
 def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
-    monkeypatch.setattr(convergence_module, "first_mesh", lambda *_: Resolution(1, 8))
+    monkeypatch.setattr(convergence_module, "vector_accuracy", lambda _: 1.0)
     result = solve_modes(rod_of(*FIG_2A), SHAPES)
     assert result.status == SpectrumStatus.ok
     assert result.vectors.resolution.order > 16
@@ -797,7 +798,7 @@ def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     coarse, fine = (growth_module.propagator_of(rod, assemble(1, order)) for order in (4, 6))
     first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)
     assert 1e-9 < abs(first.transient_growth / exact.growth.transient_growth - 1) < first.growth_error
-    growth = growth_module.growth_of(rod, Resolution(1, 4), 1e-10, True, 45.0)
+    growth = growth_module.growth_of(modes_problem(rod), Resolution(1, 4), 1e-10, True, 45.0)
     assert max(growth.errors(45.0).values()) < 1e-10
     assert growth.transient_growth == pytest.approx(exact.growth.transient_growth, rel=1e-10)
     assert growth.numerical_abscissa == pytest.approx(exact.growth.numerical_abscissa, rel=1e-9)

@@ -8,6 +8,7 @@ from ....model.parameters import CRUSHING
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS
+from ....results.layouts.variables import has_covering
 from .class_bars import classes_between_crossings
 
 UNDECIDED = {
@@ -64,7 +65,7 @@ def _changes(view: View, variable: str, line: str, place: int) -> Array:
         found = [at[kinds > 0]]
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    if line in CRUSHING:
+    if line in CRUSHING and has_covering(view.config):  # elsewhere, or never, where arms vary
         (other,) = set(CRUSHING) - {line}
         found.append(view.point_columns[other][[place]])
     changes = np.concatenate(found)

@@ -1,0 +1,117 @@
+"""Meshes of one rod for its modes, and what D says of them.
+
+A uniform rod of linear material has equal elements and D in closed form, every other arm elements that end
+where a coefficient jumps and D from propagators.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from functools import lru_cache
+from typing import Any
+
+from ...determinant.arm.determinant import arm_determinant
+from ...determinant.arm.roots import second_derivative
+from ...determinant.value import distance_to_next, newton_correction
+from ...discretization.elements.resolution import Resolution, finer, resolution_for
+from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil
+from ...discretization.straight.arm_resolution import arm_elements, finer_arm_mesh
+from ...discretization.straight.dense_form import AnyPencil
+from ...discretization.straight.pencil import assemble
+from ...model.rod import Rod
+
+PENCILS_KEPT = 16
+"""Patterns of the pencils of arms that are kept for the next point on an equal mesh."""
+
+
+class ModesProblem(ABC):
+    """What the modes of one rod need beside its eigenvalues."""
+
+    rod: Rod
+
+    @abstractmethod
+    def mesh_for(self, wave_number: float, accuracy: float) -> Any:
+        """The mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
+
+    @abstractmethod
+    def of_order(self, mesh: Any, order: int) -> Any:
+        """The same elements of another order."""
+
+    @abstractmethod
+    def finer(self, mesh: Any) -> Any:
+        """The next mesh after one that proved too coarse."""
+
+    @abstractmethod
+    def pencil(self, mesh: Any) -> AnyPencil:
+        """The pencil on a mesh."""
+
+    @abstractmethod
+    def wave_number(self, w: complex) -> float:
+        """The wave number of the mode of an eigenvalue, in 1/L."""
+
+    @abstractmethod
+    def gap(self, w: complex) -> float:
+        """About how far the eigenvalue next to the eigenvalue w is, 2 |D'/D''|: sharp where that is close."""
+
+
+class UniformModes(ModesProblem):
+    """The problem of a uniform rod of linear material."""
+
+    def __init__(self, rod: Rod):
+        self.rod = rod
+
+    def mesh_for(self, wave_number: float, accuracy: float) -> Resolution:
+        return resolution_for(wave_number, accuracy)
+
+    def of_order(self, mesh: Resolution, order: int) -> Resolution:
+        return Resolution(mesh.elements, order)
+
+    def finer(self, mesh: Resolution) -> Resolution:
+        return finer(mesh)
+
+    def pencil(self, mesh: Resolution) -> AnyPencil:
+        return assemble(mesh.elements, mesh.order)
+
+    def wave_number(self, w: complex) -> float:
+        return newton_correction(w, self.rod.coefficients)[2]
+
+    def gap(self, w: complex) -> float:
+        return distance_to_next(w, self.rod.coefficients)
+
+
+class ArmModes(ModesProblem):
+    """The problem of an arm that varies along its length."""
+
+    def __init__(self, rod: Rod):
+        self.rod = rod
+        self._determinant = arm_determinant(rod)
+
+    def mesh_for(self, wave_number: float, accuracy: float) -> ArmMesh:
+        elements = arm_elements(self.rod, wave_number, accuracy)
+        return ArmMesh(elements.edges, elements.order)
+
+    def of_order(self, mesh: ArmMesh, order: int) -> ArmMesh:
+        return ArmMesh(mesh.edges, order)
+
+    def finer(self, mesh: ArmMesh) -> ArmMesh:
+        return finer_arm_mesh(self.rod, mesh)
+
+    def pencil(self, mesh: ArmMesh) -> AnyPencil:
+        return _arm_pencil(mesh)
+
+    def wave_number(self, w: complex) -> float:
+        return self._determinant.wave_number(w)
+
+    def gap(self, w: complex) -> float:
+        here = self._determinant.value(w)
+        second = abs(second_derivative(w, here.S, self._determinant))
+        return 2 * abs(here.D_w) / max(second, math.ulp(0.0))
+
+
+@lru_cache(maxsize=PENCILS_KEPT)
+def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
+    return ArmPencil(mesh)
+
+
+def modes_problem(rod: Rod) -> ModesProblem:
+    """The problem of a rod."""
+    return UniformModes(rod) if rod.standard else ArmModes(rod)

@@ -1,0 +1,140 @@
+"""Rows and curves of phase diagrams of arms that vary along their length or are of rubber."""
+
+import numpy as np
+import pytest
+
+import rodsweep as rs
+from rodsweep.determinant.boundary import Boundary
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.errors import InputError
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.boundary_curves import trace
+from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.thresholds import ThresholdStatus
+from rodsweep.solve.changes.unstable_modes import Kind
+
+ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
+SWELLING = Build("neo_hookean", "swelling")
+FORCE_AND_STIFFNESS = PlaneAxis("F", 20.0, 140.0), PlaneAxis("k1", 100.0, 300.0)
+ROD = {"k2": 1e4, "gamma3": 1e-4}
+
+
+def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
+    """The curve from the first change of a kind on the middle row of a plane."""
+    first, second = axes
+    middle = Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, build=build)
+    found = transitions(Path(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
+    change = next(c for c in found.crossings if c.kind == kind)
+    plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
+    sign = 0.0 if kind == Kind.hopf else -1.0
+    return trace(sign, plane, (first.scaled(change.at), 0.5), change.frequency or change.growth_rate)
+
+
+def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
+    exact, found = (traced(build, Kind.hopf) for build in (Build(), ONES))
+    (fold,), (of_arm,) = exact.folds, found.folds
+    assert of_arm.values[1] == pytest.approx(fold.values[1], rel=1e-13)
+    assert abs(of_arm.values[0] - fold.values[0]) <= of_arm.errors[0] < 2e-7
+    assert found.values[[0, -1]] == pytest.approx(exact.values[[0, -1]], rel=1e-10)
+
+
+@pytest.mark.parametrize("kind", [Kind.hopf, Kind.onset])
+def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
+    curve = traced(Build(), kind)
+    boundaries = [
+        Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.sign)
+        for build in (Build(), ONES)
+    ]
+    for v in curve.scaled[::6]:
+        exact, found = (boundary.tangent(v) for boundary in boundaries)
+        assert found * np.sign(found @ exact) == pytest.approx(exact, abs=3e-10)
+
+
+def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
+    axes = PlaneAxis("F", 20.0, 500.0), PlaneAxis("k1", 350.0, 550.0)
+    (fold,) = traced(SWELLING, Kind.hopf, axes).folds
+    assert fold.axis == 1
+    k1, error = fold.values[1], 1e-6
+
+    def hopfs(stiffness):
+        found = transitions(Path(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0)
+        return [c.at for c in found.crossings if c.kind in (Kind.hopf, Kind.restabilization)]
+
+    assert hopfs(k1 * (1 - error)) == []
+    low, high = hopfs(k1 * (1 + error))
+    assert low < fold.values[0] < high < low * 1.02
+
+
+def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
+    axes = PlaneAxis("F", 40.0, 560.0), PlaneAxis("taper", 1.1, 1.8)
+    (fold,) = (f for f in traced(SWELLING, Kind.hopf, axes, k1=500.0).folds if f.axis == 1)
+    taper = fold.values[1]
+    numbers = []
+    for side in (-1e-5, 1e-5):
+        rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, build=SWELLING)
+        found = transitions(Path(rod, "F"), 0.0, 560.0)
+        numbers.append(sum(c.kind in (Kind.hopf, Kind.restabilization) for c in found.crossings))
+    assert numbers == [2, 0]
+
+
+def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
+    def row(name, values, rod):
+        request = RowRequest(name, np.array(values), accuracy=1e-10, certify=True, crossings=16)
+        return solve_row(rod, request)
+
+    rubber = row("F", [10.0, 100.0, 500.0, 550.0], Rod(F=0.0, k1=500.0, **ROD, build=SWELLING))
+    assert rubber.status == ThresholdStatus.ok
+    assert rubber.motion.tolist() == [Motion.monotone, Motion.flutter, Motion.oscillatory, Motion.oscillatory]
+    cone = row("F", [5.0, 20.0, 49.0, 51.0, 60.0], Rod(F=0.0, k1=200.0, **ROD, taper=0.5))
+    assert cone.motion.tolist()[3:] == [Motion.crushed] * 2
+    assert Motion.crushed not in cone.motion.tolist()[:3]
+    assert cone.changes.end == pytest.approx(50.0, rel=2e-6)
+    along_k1 = row("k1", [20.0, 39.0, 41.0, 200.0], Rod(F=10.0, k1=np.inf, **ROD, taper=0.5))
+    assert (along_k1.motion == Motion.crushed).tolist() == [True, True, False, False]
+
+
+PLANE = {"F": np.linspace(0, 450, 10), "k1": [300.0, 400.0, 500.0], **ROD}
+
+
+@pytest.mark.parametrize("option", ["criticality", "cycles"])
+def test_what_a_diagram_of_arms_lacks_is_refused_in_a_sentence(option):
+    with pytest.raises(InputError, match=f"phase_diagram.{option} is true, but .* use the task criticality"):
+        rs.sweep("phase_diagram", **PLANE, law="neo_hookean", **{option: True})
+
+
+def test_a_plane_that_is_crushed_everywhere_is_refused():
+    with pytest.raises(InputError, match="the weakest section of all arms is crushed at 25"):
+        rs.sweep("phase_diagram", F=[30.0, 60.0], k1=[50.0, 100.0], taper=0.5, **ROD)
+
+
+def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
+    text = "task: phase_diagram\nparameters: {F: {start: 0, stop: 450, num: 10}, k1: [300, 400, 500], "
+    command.write(
+        "rubber.yaml",
+        f"{text}k2: 1.0e4, gamma3: 1.0e-4}}\nmaterial: {{law: neo_hookean, section: swelling}}\n",
+    )
+    assert command("run", "rubber.yaml").returncode == 0
+    said = command("show", "rubber.h5").stdout
+    assert "is confirmed by counts of unstable modes on 3 of 3 rows" in said
+    assert "fold of the curve of Hopf points, where k1 is extremal: k1 = 366.4520346" in said
+    assert "partial beam" not in said
+    assert "crushed" not in said
+    assert command("plot", "rubber.h5").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("k1", [2e2, 1e7]), ("k2", [1e2, 1e7]), ("gamma3", [0.0, 1e-2]), ("k1", [160.001, 1e3])],
+)
+def test_rows_begin_and_end_at_the_limits_of_the_model(name, values):
+    """Slopes by a compliance or a drag next to 0, and next to the force that crushes the tip."""
+    rod = {"F": 40.0, "k1": 1e4, **ROD, "taper": 0.5} | {name: values[0]}
+    request = RowRequest(name, np.array(values), accuracy=1e-9, certify=True, crossings=16)
+    row = solve_row(Rod(**rod), request)
+    assert row.status == ThresholdStatus.ok
+    for value, unstable in zip(values, row.unstable_count, strict=True):
+        assert rs.Rod(**{**rod, name: value}).spectrum(modes=4).unstable_count == unstable

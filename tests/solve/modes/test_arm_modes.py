@@ -1,0 +1,221 @@
+"""Modes and growth of arms that vary along their length or are of rubber, against another discretisation."""
+
+import numpy as np
+import pytest
+from reference.dense_arm import in_energy_norm, matrices, nodes
+from reference.random_arms import random_arm
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+from surveyed import RODS
+
+from rodsweep.discretization.straight.slaving import slaving_of
+from rodsweep.model.adjoint import slaving_layer
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.modes.inverse_iteration import mode_vectors
+from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
+from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
+from rodsweep.solve.modes.problem import ArmModes
+from rodsweep.solve.spectrum.status import SpectrumStatus
+
+INF = float("inf")
+TIGHT = ModesRequest(modes=4, accuracy=1e-10, nodes=65, growth=True)
+NEAR = ModesRequest(modes=4, accuracy=1e-9, nodes=65, growth=True)
+"""Rounding leaves 2e-10 of the bending strain of the steepest of `ARMS`."""
+ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
+STEPS = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.3, 0.5, 0.2, 1.0, 1.5, 0.4), (1.0,) * 6))
+SWELLING = Build("neo_hookean", "swelling")
+UNIFORM = [
+    {"F": 15.0, "k1": 1e4, "k2": 1e4, "gamma3": 1e-4},
+    {"F": 30.0, "k1": 1e4, "k2": 1e4, "gamma3": 1e-4},
+    {"F": 15.0, "k1": 1e4, "k2": 200.0, "gamma3": 0.0},
+    {"F": 15.0, "k1": INF, "k2": INF, "gamma3": 0.0},
+    {"F": -10.0, "k1": 1e4, "k2": 100.0, "gamma3": 1e-2},
+]
+ARMS = [
+    Rod(F=10.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5),
+    Rod(F=14.0, k1=500.0, k2=200.0, gamma3=1e-2, taper=0.6, build=SWELLING),
+    Rod(F=12.0, k1=1e3, k2=1e3, gamma3=1e-3, build=Build(profile=STEPS)),
+    Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=2.0, build=Build("neo_hookean", "fixed", STEPS)),
+    Rod(F=25.0, k1=500.0, k2=500.0, gamma3=1e-3, build=SWELLING),
+]
+
+
+def relative(found, exact):
+    size = abs(exact).max()
+    return abs(found - exact).max() / size if size else abs(found).max()
+
+
+def numbers(result):
+    """All numbers of an outcome but its errors and its meshes, in units of their largest."""
+    vectors, growth = result.vectors, result.growth
+    return {
+        "eigenvalues": result.spectrum.eigenvalues,
+        "right": vectors.right,
+        "h2": vectors.deformation[0],
+        "Pi": vectors.deformation[1],
+        "left": vectors.left,
+        "pairing": vectors.pairing,
+        "condition": vectors.condition,
+        "abscissa": np.array(growth.numerical_abscissa),
+        "growth": np.array(growth.transient_growth),
+    }
+
+
+@pytest.mark.parametrize("values", UNIFORM)
+@pytest.mark.parametrize("arm", [{"build": ONES}, {"taper": 1 + 1e-12}])
+def test_an_arm_that_is_uniform_has_the_modes_of_a_uniform_rod(values, arm):
+    exact, found = solve_modes(Rod(**values), TIGHT), solve_modes(Rod(**values, **arm), TIGHT)
+    assert found.status == SpectrumStatus.ok
+    for name, number in numbers(exact).items():
+        assert relative(numbers(found)[name], number) < 1e-10, name
+
+
+def reference_modes(rod, eigenvalues):
+    """(right, left) (y, theta) at the nodes of the reference, (2, modes, nodes), and condition numbers."""
+    L, (_, M) = in_energy_norm(rod), matrices(rod)
+    w, X = np.linalg.eig(L)
+    Z = np.linalg.inv(X).conj().T
+    nearest = [int(abs(w - each).argmin()) for each in eigenvalues]
+    fields = []
+    for V in (X, Z):
+        some = (V / np.sqrt(M)[:, None])[:, nearest].T
+        y, theta = np.split(some / some[:, [some.shape[1] // 2 - 1]], 2, axis=1)
+        fields.append(np.pad(np.stack([y, theta]), ((0, 0), (0, 0), (1, 0))))
+    condition = np.linalg.norm(X, axis=0) * np.linalg.norm(Z, axis=0)
+    return *fields, condition[nearest]
+
+
+@pytest.mark.parametrize("rod", ARMS, ids=str)
+def test_modes_and_growth_agree_with_another_discretisation(rod):
+    result = solve_modes(rod, NEAR)
+    assert result.status == SpectrumStatus.ok
+    right, left, condition = reference_modes(rod, result.spectrum.eigenvalues)
+    assert result.vectors.condition == pytest.approx(condition, rel=1e-7)
+    L, growth = in_energy_norm(rod), result.growth
+    assert growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-6)
+    if not rod.uniform:
+        problem = ArmModes(rod)
+        pencil = problem.pencil(problem.mesh_for(12.0, 1e-20))
+        vectors = mode_vectors(rod, pencil, result.spectrum.eigenvalues, nodes(rod))
+        assert relative(vectors.right, right) < 1e-7
+        assert relative(vectors.left, left) < 1e-7
+    if np.isfinite(growth.transient_growth):
+        assert growth.transient_growth > 1.001
+        norms = {x: np.linalg.norm(expm(L * x * growth.transient_time), 2) for x in (0.9, 1.0, 1.1)}
+        assert max(norms, key=norms.get) == 1.0
+        assert norms[1.0] == pytest.approx(growth.transient_growth, rel=1e-6)
+    else:
+        assert result.spectrum.unstable_count > 0
+
+
+@pytest.mark.parametrize("seed", range(max(8, RODS // 10)))
+def test_conditions_and_abscissae_of_random_arms(seed):
+    """Stiffnesses up to 1e5 times 10 at the ends of short elements cost the reference up to ten digits."""
+    rod = random_arm(np.random.default_rng(seed))
+    result = solve_modes(rod, ModesRequest(3, 1e-8, 9, growth=True))
+    assert result.status == SpectrumStatus.ok
+    *_, condition = reference_modes(rod, result.spectrum.eigenvalues)
+    assert result.vectors.condition == pytest.approx(condition, rel=1e-5)
+    L = in_energy_norm(rod)
+    assert result.growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-4)
+
+
+@pytest.mark.parametrize("rod", ARMS, ids=str)
+def test_strains_and_errors_are_those_of_a_finer_mesh(rod):
+    coarse, fine = (solve_modes(rod, ModesRequest(4, accuracy, 65, growth=True)) for accuracy in (1e-4, 1e-9))
+    assert coarse.status == fine.status == SpectrumStatus.ok
+    for name in ("right", "h2", "Pi", "left"):
+        errors = abs(numbers(coarse)[name] - numbers(fine)[name]).max(axis=-1)
+        sizes = abs(numbers(fine)[name]).max(axis=-1)
+        each = errors.max(axis=0) / sizes.max(axis=0) if errors.ndim == 2 else errors / sizes
+        assert (each <= 10 * coarse.vectors.mode_error + 1e-9).all(), name
+    abscissa = fine.growth.numerical_abscissa
+    off = abs(coarse.growth.numerical_abscissa - abscissa)
+    assert off <= 10 * coarse.growth.abscissa_error + 1e-9 * abs(abscissa)
+    if np.isfinite(fine.growth.transient_growth):
+        off = abs(coarse.growth.transient_growth / fine.growth.transient_growth - 1)
+        assert off <= coarse.growth.growth_error + 1e-9
+
+
+def test_the_bending_strain_jumps_with_the_stiffness_and_the_moment_does_not():
+    rod = ARMS[2]
+    result = solve_modes(rod, TIGHT)
+    problem = ArmModes(rod)
+    pencil = problem.pencil(problem.mesh_for(12.0, 1e-20))
+    beside = np.array([0.4 - 1e-9, 0.4])
+    strain = mode_vectors(rod, pencil, result.spectrum.eigenvalues, beside).deformation
+    assert strain[1, :, 1] == pytest.approx(strain[1, :, 0] / 0.2, rel=1e-6)
+    assert strain[0, :, 1] == pytest.approx(strain[0, :, 0] / 0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("rod", ARMS[:4], ids=str)
+def test_modes_of_different_eigenvalues_are_orthogonal(rod):
+    """In the inner product weighted with gamma2 and gamma3 along the arm."""
+    result = solve_modes(rod, TIGHT)
+    right, left, _ = reference_modes(rod, result.spectrum.eigenvalues)
+    _, M = matrices(rod)
+    X, Z = (np.concatenate([*field[:, :, 1:]], axis=1) for field in (right, left))
+    products = (Z.conj() * M) @ X.T
+    assert np.diag(products) == pytest.approx(result.vectors.pairing, rel=1e-6)
+    sizes = np.sqrt((abs(Z) ** 2 @ M)[:, None] * (abs(X) ** 2 @ M))
+    assert (abs(products - np.diag(np.diag(products))) < 1e-8 * sizes).all()
+
+
+def test_unshearable_limit_of_an_arm_is_reached_at_first_order():
+    arm = {"F": 10.0, "k1": 1e4, "gamma3": 1e-2, "taper": 0.5}
+    limit = solve_modes(Rod(k2=INF, **arm), TIGHT)
+    assert limit.status == SpectrumStatus.ok
+    assert (limit.vectors.deformation[0] == 0).all()
+    far, near = (solve_modes(Rod(k2=k2, **arm), TIGHT) for k2 in (1e5, 1e6))
+    for name, number in numbers(limit).items():
+        ratio = abs(numbers(far)[name] - number).max() / abs(numbers(near)[name] - number).max()
+        assert ratio == pytest.approx(10, rel=0.02), name
+
+
+SLAVED = [
+    Rod(F=10.0, k1=1e4, k2=200.0, gamma3=0.0, taper=0.5),
+    Rod(F=12.0, k1=1e3, k2=1e3, gamma3=0.0, build=Build(profile=STEPS)),
+    Rod(F=1.0, k1=1e4, k2=1e8, gamma3=0.0, taper=0.3),
+    Rod(F=-30.0, k1=1e4, k2=12.0, gamma3=0.0, taper=0.9),
+]
+
+
+@pytest.mark.parametrize("rod", SLAVED, ids=str)
+def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
+    """T' = c3 - (g nu/c2) T^2, T(0) = 0, from break to break; of T = tan(phi) where T has poles."""
+
+    def slope(u, T):
+        at = rod.local(np.clip(u, start + 1e-12, end - 1e-12))
+        foundation = at.g * at.nu / at.c2
+        if poles:
+            return at.c3 * np.cos(T) ** 2 - foundation * np.sin(T) ** 2
+        return at.c3 - foundation * T**2
+
+    T, breaks, poles = np.zeros(1), rod.build.breaks, rod.F < 0
+    for start, end in zip(breaks[:-1], breaks[1:], strict=True):
+        T = solve_ivp(slope, (start, end), T, method="Radau", rtol=1e-11, atol=1e-14).y[:, -1]
+    assert slaving_of(rod) == pytest.approx(np.tan(T[0]) if poles else T[0], rel=1e-8)
+
+
+@pytest.mark.parametrize("k2", [30.0, 1e4, 1e9])
+def test_the_slaved_layer_of_a_uniform_arm_is_the_closed_form(k2):
+    values = {"F": 15.0, "k1": 1e4, "k2": k2, "gamma3": 0.0}
+    assert slaving_of(Rod(**values, build=ONES)) == pytest.approx(slaving_layer(Rod(**values)), rel=1e-12)
+
+
+@pytest.mark.parametrize("rod", SLAVED[:2], ids=str)
+def test_the_abscissa_of_a_slaved_arm_is_the_largest_quotient(rod):
+    """Over y, with theta and theta+ slaved by their own ends on a mesh that resolves the layer."""
+    found = solve_modes(rod, TIGHT).growth.numerical_abscissa
+    fine = ArmModes(rod)
+    mesh = fine.mesh_for(160.0, 1e-12)
+    assert numerical_abscissa(rod, fine.pencil(mesh)) == pytest.approx(found, rel=1e-9)
+    A, B = fine.pencil(mesh).dense(rod)
+    n = mesh.nodes
+    y, slaved = slice(n), slice(n, None)
+    L = A[y, y] - A[y, slaved] @ np.linalg.solve(A[slaved, slaved], A[slaved, y])
+    assert (B[y] == 1).all()
+    w = np.linalg.eigvalsh(L + L.T)[-1] / 2
+    assert w == pytest.approx(found, rel=1e-3)
