@@ -238,7 +238,7 @@ def parameters() -> str:
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
         default = "" if p.default is None else f"{p.default:g} in a grid; a spectrum has none"
         if p.optional:
-            having = [task for task, kind in CONFIGS.items() if kind.takes_arms]
+            having = list(CONFIGS)
             default = f"{p.default:g}; no dimension of the file unless given"
         key, allowed = f"`parameters.{name}`", p.allowed.phrase
         rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
@@ -268,8 +268,7 @@ def material_keys() -> str:
         for place, section in (("material", MaterialSection), ("material.profile", ProfileTable))
         for name, field in section.model_fields.items()
     ]
-    taking = ", ".join(task for task, kind in CONFIGS.items() if kind.takes_arms)
-    return f"\n### Keys of the material\n\nOf the tasks {taking} only.\n\n" + key_table(rows)
+    return "\n### Keys of the material\n\n" + key_table(rows)
 
 
 def task_keys(task: str) -> str:

@@ -65,7 +65,6 @@ class BranchConfig(Config):
     branch: BranchOptions = BranchOptions()
 
     others_may_be_needed: ClassVar[bool] = True
-    takes_arms: ClassVar[bool] = True
     of_cycles: ClassVar[bool] = True
 
     @property

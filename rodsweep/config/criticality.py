@@ -33,7 +33,6 @@ class CriticalityConfig(Config):
     amplitude coefficient and the frequency slope follow from these; the file holds error estimates of all."""
     criticality: CriticalityOptions = CriticalityOptions()
 
-    takes_arms: ClassVar[bool] = True
     of_cycles: ClassVar[bool] = True
 
     @classmethod

@@ -54,7 +54,6 @@ class LimitCycleConfig(Config):
     hundred times larger, in units of the largest y. The file holds error estimates of all."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
-    takes_arms: ClassVar[bool] = True
     of_cycles: ClassVar[bool] = True
 
     @property

@@ -1,6 +1,6 @@
 """Config of the task modes."""
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 from pydantic import model_validator
 
@@ -28,8 +28,6 @@ class ModesConfig(LinearConfig):
 
     task: Literal["modes"]
     modes: ModesOptions = ModesOptions()
-
-    takes_arms: ClassVar[bool] = True
 
     @model_validator(mode="after")
     def _whole_points(self) -> "ModesConfig":

@@ -70,7 +70,6 @@ class PhaseDiagramConfig(LinearConfig):
     parameters: DiagramParameters
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
-    takes_arms: ClassVar[bool] = True
     into_crushed: ClassVar[bool] = True
     of_several_rods: ClassVar[bool] = True
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)

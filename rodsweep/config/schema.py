@@ -36,8 +36,6 @@ class Config(Strict):
     ] = None
     """Constitutive law and profile of the arm; by default linear and the same all along the arm."""
 
-    takes_arms: ClassVar[bool] = False
-    """Whether the task solves arms that vary along their length, or are not of linear material."""
     of_cycles: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
     into_crushed: ClassVar[bool] = False
@@ -129,26 +127,12 @@ class Config(Strict):
         return self
 
     @model_validator(mode="after")
-    def _arms_only_where_solved(self) -> "Config":
+    def _jumps_of_linear_material_only(self) -> "Config":
         if self.of_cycles and self.build.law != LINEAR.law and not self.build.continuous:
             where = "material.profile" if self.material is not None else "parameters.arm.segments"
             raise ValueError(
                 f"{where} has a jump and the law is {self.build.law}, but the task {self.task} solves jumps "
                 "of linear material only; remove the jump or set law: linear"
-            )
-        if self.takes_arms:
-            return self
-        arm = self.parameters.arm
-        asked = "material" if self.material is not None and not self.build.standard else ""
-        if arm is not None and not arm.standard:
-            given = (name for name in (*SHAPES, "law") if getattr(arm, name) is not None)
-            asked = f"parameters.arm.{next(given)}"
-        for name in OPTIONAL_PARAMETERS:
-            asked = f"parameters.{name}" if name in self.parameters.given_axes else asked
-        if asked:
-            raise ValueError(
-                f"{asked} is given, but the task {self.task} solves uniform arms of linear material only; "
-                "remove it"
             )
         return self
 

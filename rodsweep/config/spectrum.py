@@ -37,7 +37,6 @@ class SpectrumConfig(LinearConfig):
     spectrum: SpectrumOptions = SpectrumOptions()
 
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
-    takes_arms: ClassVar[bool] = True
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

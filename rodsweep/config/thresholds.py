@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import inf
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -28,8 +28,6 @@ class ThresholdsConfig(LinearConfig):
 
     task: Literal["thresholds"]
     thresholds: ThresholdsOptions = ThresholdsOptions()
-
-    takes_arms: ClassVar[bool] = True
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

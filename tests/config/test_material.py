@@ -8,7 +8,6 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.config import load_config
-from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
 
 BASE = """
@@ -94,14 +93,6 @@ def test_bad_materials_are_refused_in_a_sentence(tmp_path, rest, more, sentence)
 def test_a_taper_of_a_point_is_refused(taper):
     with pytest.raises(InputError, match=r"parameters.taper = .* it must be a number from 0.01 to 100"):
         rs.Rod(F=1, k1=1e4, k2=1e4, gamma3=1e-4, taper=taper).spectrum()
-
-
-@pytest.mark.parametrize("task", [name for name, kind in CONFIGS.items() if not kind.takes_arms])
-@pytest.mark.parametrize("asked", ["taper", "law"])
-def test_tasks_that_solve_no_arms_say_so(task, asked):
-    keywords = {"taper": 0.5} if asked == "taper" else {"law": "neo_hookean"}
-    with pytest.raises(InputError, match=f"but the task {task} solves uniform arms of linear material only"):
-        rs.sweep(task, k1=[1e3, 1e4], k2=1e4, gamma3=1e-4, **keywords)
 
 
 def test_the_tip_of_a_cone_is_crushed_first():
