@@ -1,12 +1,11 @@
 """Everything on a page: its controls, pictures, numbers and texts, and which answer fills which."""
 
 from collections.abc import Callable, Mapping
-from html import escape
 from typing import Any
 
 from bokeh.document import Document
 from bokeh.events import DocumentReady, Pan, Tap
-from bokeh.models import Button, Column, CustomJS, Div
+from bokeh.models import Button, Div
 
 from .controls import Changed, Controls
 from .look import colours, read, sheet
@@ -17,28 +16,22 @@ from .pictures.diagram import DiagramPicture
 from .pictures.growth import GrowthPicture
 from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
-from .scales import SCALES
+from .scales import SCALES, length_axis, load_axis
+from .sharing import Sharing
 from .state import PageState
 
-SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + source.tags[0])'
-"""The browser's address is the state."""
 
+class PageContents:
+    """All models of a page. changed: called by the controls. loaded: called with the text of a config."""
 
-class Contents:
-    """All models of a page. changed: called by the controls."""
-
-    def __init__(self, changed: Changed):
+    def __init__(self, changed: Changed, loaded: Callable[[str], None]):
         widgets, texts = sheet("widgets.css"), sheet("text.css")
         self.controls = Controls(changed, widgets)
         self.spectrum, self.mode, self.growth = SpectrumPicture(), ModePicture(), GrowthPicture()
         self.beating, self.branches, self.diagram = BeatingPicture(), BranchPicture(), DiagramPicture()
         self.numbers = NumbersTable()
         self.working = Div(name="working", css_classes=["working"], stylesheets=[texts])
-        self.yaml, self.python = Div(name="yaml"), Div(name="python")
-        self.address = Div(name="address", tags=[""])
-        self.sharing = Column(
-            self.yaml, self.python, self.address, name="sharing", sizing_mode="stretch_width"
-        )
+        self.sharing = Sharing(self.cards, loaded)
         self.buttons = {
             kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])
             for kind, name, label in (
@@ -47,7 +40,7 @@ class Contents:
             )
         }
         self.numbers.root.stylesheets = [texts]
-        for div in (self.yaml, self.python, self.address, *(card.message for card in self.cards)):
+        for div in (card.message for card in self.cards):
             div.update(sizing_mode="stretch_width", stylesheets=[texts])
 
     @property
@@ -59,7 +52,7 @@ class Contents:
     def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
         """Puts everything into a document. react: what to do on a click, by button or picture."""
         for root in (
-            self.working, self.controls.root, self.numbers.root, self.sharing, *self.buttons.values(),
+            self.working, self.controls.root, self.numbers.root, self.sharing.root, *self.buttons.values(),
             *(card.root for card in self.cards),
         ):  # fmt: skip
             document.add_root(root)
@@ -69,7 +62,6 @@ class Contents:
             self.diagram.card.figure.on_event(event, react["diagram_point"])
         for picture in (self.growth, self.branches):
             picture.card.figure.on_event(Tap, react["load"])
-        self.address.js_on_change("tags", CustomJS(args={"source": self.address}, code=SHOW_ADDRESS))
         document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"
@@ -78,17 +70,14 @@ class Contents:
 
     def show_point(self, state: PageState, F: float) -> None:
         """Shows where the point is, and how it is written elsewhere."""
-        self.growth.move_point(F)
-        self.branches.move_point(F)
+        at = F * load_axis(state).factor
+        self.growth.move_point(at)
+        self.branches.move_point(at)
         load, second = SCALES[state.tab][state.load], SCALES[state.tab][state.second]
         x, y = load.value(state.values[state.load]), second.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
-        query = state.address()
-        self.address.tags = [query]
-        self.address.text = f'<a href="?{escape(query)}">This page as an address</a>'
-        self.yaml.text = f"<pre>{escape(state.yaml('limit_cycle'))}</pre>"
-        self.python.text = f"<pre>{escape(state.python())}</pre>"
+        self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
         """Fills the pictures that an answer belongs to."""
@@ -97,13 +86,13 @@ class Contents:
             self.spectrum.show(found)
             self.mode.show(found)
         elif kind == "cycle":
-            self.beating.show(found)
+            self.beating.show(found, length_axis(state))
         elif kind == "thresholds":
-            self.growth.show_thresholds(found)
+            self.growth.show_thresholds(found, load_axis(state))
         elif kind == "growth":
-            self.growth.show_rates(found)
+            self.growth.show_rates(found, load_axis(state))
         elif kind == "branch":
-            self.branches.show(found)
+            self.branches.show(found, load_axis(state), length_axis(state))
         else:
             scales = SCALES[state.tab]
             self.diagram.show(found, scales[state.load], scales[state.second])

@@ -7,7 +7,7 @@ from typing import Any
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
-from .scales import SCALES, Scale
+from .scales import SCALES, ControlScale
 from .state import ACROSS, LAW_NAMES, TABS, PageState
 
 STEPS = 400
@@ -18,7 +18,7 @@ Changed = Callable[..., None]
 class Field:
     """A number with its slider. A change of either is told to `changed(name, text)`."""
 
-    def __init__(self, scale: Scale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
+    def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale, self.changed = scale, changed
         start, end = scale.ends
         self.text = TextInput(

@@ -8,12 +8,13 @@ from bokeh.document import Document
 from bokeh.events import Pan, Tap
 
 from ..errors import InputError
-from .contents import Contents
+from .contents import PageContents
 from .diagrams import uniform
-from .questions import Question, Reply, rod_of
+from .questions import Question, Reply
 from .scales import SCALES
+from .sharing import state_of_text
 from .solvers import Solvers
-from .state import PageState, from_address
+from .state import PageState, from_address, rod_of
 
 AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
 """Questions that follow every change."""
@@ -40,12 +41,12 @@ class Page:
         self.solving: set[str] = set()
         self.asked: dict[str, PageState] = {}
         """What each kind of question depends on, when it was asked last."""
-        self.contents = Contents(self.change)
+        self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
         if stored is not None:
             self.asked["diagram"] = needs("diagram", state)
-            self._show("diagram", stored)
+            self.contents.show("diagram", stored, state)
 
     def open(self, query: str) -> None:
         """Shows the state of an address."""
@@ -53,6 +54,13 @@ class Page:
             self._change_to(from_address(query, self.state))
         except InputError as error:
             self._change_to(self.state)
+            self._refuse(str(error))
+
+    def load(self, text: str) -> None:
+        """Shows the rod or arm of a config."""
+        try:
+            self._change_to(state_of_text(text))
+        except InputError as error:
             self._refuse(str(error))
 
     def close(self) -> None:
@@ -96,12 +104,14 @@ class Page:
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
-        """Shows a sentence in place of all pictures, and drops all questions."""
+        """Shows a sentence in place of all pictures but a diagram that is drawn, and drops all questions."""
         for kind in (*AT_ONCE, *WHEN_IDLE):
-            self.asked.pop(kind, None)
+            if kind != "diagram" or kind in self.solving:
+                self.asked.pop(kind, None)
             if kind in self.solving:
                 self.solvers.drop(self.session, kind)
-            self.contents.say(kind, sentence)
+            if kind != "diagram" or not self.contents.diagram.is_drawn:
+                self.contents.say(kind, sentence)
         self.solving.clear()
         self._show_solving()
 
@@ -130,27 +140,25 @@ class Page:
         self.solving.add(kind)
         self._show_solving()
         question = Question(kind, self.state)
-        self.solvers.ask(self.session, question, lambda reply: self._receive(kind, wanted, reply))
+        self.solvers.ask(self.session, question, lambda reply: self._receive(question, reply))
 
-    def _receive(self, kind: str, wanted: PageState, reply: Reply) -> None:
+    def _receive(self, question: Question, reply: Reply) -> None:
         """Hands a reply to the document, which belongs to its own lock."""
         if self.is_open:
-            self.document.add_next_tick_callback(lambda: self._answered(kind, wanted, reply))
+            self.document.add_next_tick_callback(lambda: self._answered(question, reply))
 
-    def _answered(self, kind: str, wanted: PageState, reply: Reply) -> None:
+    def _answered(self, question: Question, reply: Reply) -> None:
+        kind = question.kind
         newest = self.asked.get(kind)
         if newest is None:  # the values are bad by now
             return
-        if newest == wanted:
+        if newest == needs(kind, question.state):
             self.solving.discard(kind)
             self._show_solving()
         if reply.outcome == "answer":
-            self._show(kind, reply.content)
+            self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.say(kind, reply.content["sentence"])
-
-    def _show(self, kind: str, found: dict[str, Any]) -> None:
-        self.contents.show(kind, found, self.state)
 
     def _show_solving(self) -> None:
         names = [NAMES.get(kind, kind) for kind in (*AT_ONCE, *WHEN_IDLE) if kind in self.solving]
@@ -164,18 +172,9 @@ class Page:
         self.change({load: scales[load].text(event.x), second: scales[second].text(event.y)})
 
     def _move_load(self, event: Tap) -> None:
-        """Moves the load to the force of a click; an arm's pressure is proportional to it."""
-        if event.x is None:
-            return
-        state = self.state
-        F, scale = event.x, SCALES[state.tab][state.load]
-        if state.tab == "arm":
-            now = scale.value(state.arm["pressure"])
-            force = rod_of(state.subject()).get("F")
-            if not now or not force:
-                return
-            F = F / force * now
-        self.change({state.load: scale.text(F)})
+        """Moves the load to that of a click."""
+        if event.x is not None:
+            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(event.x)})
 
 
 def needs(kind: str, state: PageState) -> PageState:

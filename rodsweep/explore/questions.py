@@ -7,17 +7,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..api.answers.answer import Answer
-from ..api.arm import Arm
 from ..api.dataset import view_of
-from ..api.rod import SoftRod
 from ..api.sweeping import sweep
 from ..arrays import Array
 from ..config.axes import DEFAULTS
 from ..post.branch_curves import curves_of
 from .diagrams import diagram, words_of
-from .state import LAWS, PageState
+from .state import LAWS, PageState, rod_of
 
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
@@ -73,10 +72,10 @@ def thresholds(state: PageState) -> Found:
 def growth(state: PageState) -> Found:
     """Growth rates of the leading modes along F."""
     rod = rod_of(state.subject())
-    names = [name for name in ("k1", "k2", "gamma3", "taper") if name in rod]
+    keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
+    keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), FORCES)
-    material = {"material": LAWS[state.law]} if LAWS[state.law] else {}
-    data = sweep("spectrum", F=F, **{name: rod[name] for name in names}, **material, certify=False)
+    data = sweep("spectrum", F=F, **keywords, certify=False)
     rates = data["growth_rate"].values.reshape(FORCES, -1)
     return {"F": F, "growth_rate": rates, "unstable_count": data["unstable_count"].values.reshape(-1)}
 
@@ -89,8 +88,8 @@ def cycle(state: PageState) -> Found:
 def branch(state: PageState) -> Found:
     """Branches of cycles along F.
 
-    pieces: (F, y, stable) of each piece of a branch or of the straight state, with stable 1, 0 or -1 as far as
-    it is known. special: (F, y, kind, period) of each special point.
+    pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1, 0, or -1 where it
+    is not known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force())
     curves = curves_of(view_of(answer.whole, Path(answer.rod)), 0)
@@ -104,7 +103,7 @@ def branch(state: PageState) -> Found:
     }
 
 
-def pieces_of(at: Array, y: Array, stable: Array) -> list[tuple[Array, Array, int]]:
+def pieces_of(at: Array, y: Array, stable: NDArray[np.integer]) -> list[tuple[Array, Array, int]]:
     """Pieces of equal stability of a curve through (n,) vertices; stable: (n - 1,)."""
     starts = [0, *(i for i in range(1, len(stable)) if stable[i] != stable[i - 1]), len(stable)]
     return [
@@ -113,7 +112,7 @@ def pieces_of(at: Array, y: Array, stable: Array) -> list[tuple[Array, Array, in
 
 
 def straight_pieces(answer: Answer, stop: float) -> list[tuple[Array, Array, int]]:
-    """The straight state from F = 0 to `stop`, in pieces between its Hopf points."""
+    """The straight state from F = 0 to `stop`, in pieces between its Hopf points: F and y of shape (2,)."""
     data = answer.data
     hopf = words_of(data["special_kind"]) == "hopf"
     at = data["special_at"].values[hopf]
@@ -125,11 +124,6 @@ def straight_pieces(answer: Answer, stop: float) -> list[tuple[Array, Array, int
         (np.array(piece), np.zeros(2), -1 if count < 0 else int(count == 0))
         for piece, count in zip(pairwise(ends), counts, strict=True)
     ]
-
-
-def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
-    """Dimensionless parameters of a rod or an arm."""
-    return subject.parameters if isinstance(subject, SoftRod) else SoftRod(arm=subject).parameters
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:

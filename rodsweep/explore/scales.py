@@ -1,18 +1,19 @@
 """How each control writes its number: unit, range, linear or logarithmic."""
 
 from dataclasses import dataclass
-from math import inf, isfinite, log10
+from math import inf, isfinite, isnan, log10
+from typing import NamedTuple
 
 from ..errors import InputError
 from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import in_si
-from .state import number
+from .state import PageState, number, rod_of
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scale:
-    """Scale of one parameter or quantity.
+class ControlScale:
+    """ControlScale of one parameter or quantity.
 
     label: with its unit. low, high: ends of the slider, in this unit. logarithmic: whether the slider is.
     unit: text behind the number of a quantity, empty for a rod's parameter. factor: this unit's numbers for 1
@@ -53,7 +54,7 @@ class Scale:
         """Place of the slider for a text, at an end for what lies beyond; None if it has none."""
         value = self.value(text)
         start, end = self.ends
-        if value is None or value != value:
+        if value is None or isnan(value):
             return None
         if value == inf:
             return end
@@ -70,17 +71,44 @@ class Scale:
         return self.text(value)
 
 
-def _of_rod(name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False) -> Scale:
+class PictureAxis(NamedTuple):
+    """An axis of a picture. label: with its unit. factor: numbers of this unit for 1 in units of the rod."""
+
+    label: str
+    factor: float
+
+
+def load_axis(state: PageState) -> PictureAxis:
+    """PictureAxis of the load: F of a rod, the pressure of an arm in kPa."""
+    if state.tab == "rod":
+        return PictureAxis("force F (k3/L^2)", 1.0)
+    subject = state.with_values(pressure="1 kPa").subject()
+    return PictureAxis("pressure (kPa)", 1 / rod_of(subject)["F"])
+
+
+def length_axis(state: PageState) -> PictureAxis:
+    """PictureAxis of lengths: L of a rod, cm of an arm."""
+    scale = SCALES["arm"]["length"]
+    length = scale.value(state.arm["length"]) if state.tab == "arm" else None
+    return PictureAxis("L", 1.0) if length is None else PictureAxis(scale.unit, length)
+
+
+def _of_rod(
+    name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False
+) -> ControlScale:
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"
-    return Scale(name=name, label=label, low=low, high=high, logarithmic=logarithmic, has_inf=has_inf)
+    return ControlScale(name=name, label=label, low=low, high=high, logarithmic=logarithmic, has_inf=has_inf)
 
 
-def _of_arm(name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True) -> Scale:
-    return Scale(
-        name=name, label=f"{name} ({unit})", low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
-    )  # fmt: skip
+def _of_arm(
+    name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
+) -> ControlScale:
+    label = f"{name} ({unit})"
+    return ControlScale(
+        name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
+    )
 
 
 SCALES = {

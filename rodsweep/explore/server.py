@@ -95,9 +95,7 @@ def _bound(port: int) -> list[socket.socket]:
     try:
         return bind_sockets(port, ADDRESS)
     except OSError as error:
-        raise InputError(
-            f"--port {port}: {error.strerror}; without --port any free port is taken"
-        ) from None
+        raise InputError(f"--port {port}: {error.strerror}; without --port any free port is taken") from None
 
 
 async def serve(state: PageState, stored: dict[str, Any] | None, port: int, is_opened: bool) -> None:

@@ -41,7 +41,7 @@ class Patience:
     kill: float = 1.5
 
 
-class Solver:
+class SolverProcess:
     """One process, which is started when it is first asked, and again when it was killed."""
 
     def __init__(self, patience: Patience | None = None):
@@ -164,7 +164,7 @@ class Solvers:
     """The solvers of all pages of a server."""
 
     def __init__(self, patience: Patience | None = None):
-        self.groups = {group: Solver(patience) for group in GROUPS.values()}
+        self.groups = {group: SolverProcess(patience) for group in GROUPS.values()}
 
     def warm_up(self) -> None:
         """Starts the processes of `AT_ONCE` and lets them solve once, which loads compiled code."""

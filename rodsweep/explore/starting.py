@@ -13,11 +13,13 @@ def explore(source: Path | None, port: int, is_opened: bool) -> None:
     Raises InputError if bokeh is missing, the source is neither, or the port is in use.
     """
     try:
-        import bokeh  # noqa: F401
+        import bokeh  # noqa: F401 - whether it is there
     except ImportError:
         raise InputError(
             "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"
         ) from None
     from .server import serve
+    from .stored import opened
 
-    asyncio.run(serve(PageState(), None, port, is_opened))
+    state, stored = (PageState(), None) if source is None else opened(source)
+    asyncio.run(serve(state, stored, port, is_opened))

@@ -9,8 +9,10 @@ from ..api.arm import Arm
 from ..api.rod import SoftRod
 from ..config.document.reading import yaml_of
 from ..config.document.refusals import hint_of
+from ..config.tasks import CONFIGS
 from ..config.values import short
 from ..errors import InputError
+from ..model.parameters import OPTIONAL_PARAMETERS
 
 LAWS: dict[str, dict[str, str]] = {
     "linear": {},
@@ -65,11 +67,12 @@ class PageState:
 
     def with_values(self, **changed: str) -> "PageState":
         """A copy with other values on its tab."""
-        return replace(self, **{self.tab: {**self.values, **changed}})
+        values = {**self.values, **changed}
+        return replace(self, rod=values) if self.tab == "rod" else replace(self, arm=values)
 
     def subject(self) -> SoftRod | Arm:
         """The rod or the arm; InputError, with the command line's sentence, for bad values."""
-        material = LAWS[self.law]
+        material: dict[str, Any] = dict(LAWS[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         return SoftRod(**self.parameters(), **material)
@@ -83,7 +86,9 @@ class PageState:
         """The number `F_max`; InputError if it is no number above 0."""
         value = number(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
-            raise InputError(f"F_max = {short(self.F_max)} is not allowed; it must be a finite number above 0")
+            raise InputError(
+                f"F_max = {short(self.F_max)} is not allowed; it must be a finite number above 0"
+            )
         return value
 
     def address(self) -> str:
@@ -93,18 +98,25 @@ class PageState:
 
     def yaml(self, task: str) -> str:
         """A config of `rodsweep run` with this rod or arm."""
-        with_load = task in ("spectrum", "limit_cycle")
-        named = self.parameters() if self.tab == "rod" else dict(self.arm)
-        left_out = {name for name in ("F", "pressure") if not with_load}
-        left_out |= {"gamma1"} if task in ("spectrum", "thresholds") else set()
-        values = {name: value for name, value in named.items() if name not in left_out}
+        taken = (*CONFIGS[task].taken_of_a_rod({}), *OPTIONAL_PARAMETERS)
+        values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in taken}
+        if self.tab == "arm":
+            values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in taken}
         tree: dict[str, Any] = {"task": task, "parameters": values if self.tab == "rod" else {"arm": values}}
         tree |= {"material": dict(LAWS[self.law])} if LAWS[self.law] else {}
         return yaml_of(tree)
 
     def python(self) -> str:
         """Python lines that solve this rod or arm."""
-        return f"import rodsweep as rs\n\nrod = rs.{self.subject()!r}\nprint(rod.spectrum())\nprint(rod.cycle())\n"
+        made = f"{self.tab} = rs.{self.subject()!r}"
+        return f"import rodsweep as rs\n\n{made}\n" + "".join(
+            f"print({self.tab}.{method}())\n" for method in ("spectrum", "thresholds", "cycle")
+        )
+
+
+def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
+    """Dimensionless parameters of a rod or an arm."""
+    return subject.parameters if isinstance(subject, SoftRod) else SoftRod(arm=subject).parameters
 
 
 def number(text: str) -> Any:

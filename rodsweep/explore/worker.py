@@ -1,7 +1,7 @@
 """The process of one solver: it reads questions from a pipe, and writes replies to it.
 
-SIGINT cancels the question that is being answered. The process ends when its pipe closes, and in the middle of
-a solve when the process of the page ends: only that process held the other end of the second pipe.
+SIGINT cancels the question that is being answered. The process ends when its pipe closes, and in the middle
+of a solve when the process of the page ends: only that process held the other end of the second pipe.
 """
 
 import os

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from bokeh.models import CustomJS, Range1d
 
-from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure
+from ..scales import PictureAxis
+from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of
 
 SECONDS = 2.0
 """Time of one period on the screen."""
@@ -50,20 +51,24 @@ class BeatingPicture:
         """What the browser runs once when the page is ready."""
         return CustomJS(args={"shapes": self.shapes, "arm": self.arm}, code=ANIMATE % SECONDS)
 
-    def show(self, found: dict[str, Any]) -> None:
+    def show(self, found: dict[str, Any], length: PictureAxis) -> None:
         """Draws an answer of the task limit_cycle, or says that there is no cycle."""
-        x, y = found["shape_x"], found["shape_y"]
+        x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
         if not np.isfinite(x).all():
             self.stop()
-            message = found["message"]
-            self.card.say(f"{found['sentence']}{'; ' if message else ''}{message}")
+            self.card.say(sentence_of(found))
             return
         number = np.full(x.size, x.shape[1], dtype=float)
         self.shapes.data = {"x": x.ravel(), "y": y.ravel(), "number": number}
         self.path.data = {"x": np.append(x[:, -1], x[0, -1]), "y": np.append(y[:, -1], y[0, -1])}
-        reach = 1.15 * max(0.3, float(np.abs(y).max()))
+        reach = 1.15 * max(0.3 * length.factor, float(np.abs(y).max()))
         self.card.figure.y_range.update(start=-reach, end=reach)
-        self.card.figure.x_range.update(start=min(-0.1, float(x.min()) - 0.1), end=1.1)
+        self.card.figure.x_range.update(
+            start=min(0.0, float(x.min())) - 0.1 * length.factor, end=1.1 * length.factor
+        )
+        self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
+            f"{n} ({length.label})" for n in "xy"
+        )
         self.card.figure.title.text = "" if found["status"] == "cycle" else found["sentence"]
         self.card.reveal()
 

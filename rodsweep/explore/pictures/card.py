@@ -4,13 +4,17 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
-from bokeh.models import ColumnDataSource, Column, Div, Span
+from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Span
 from bokeh.plotting import figure
 
 from ...arrays import Array
 
 STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
 """Colours that stand out on a white page and on a dark one."""
+TICKS = 5
+"""Labels along the lower axis, about."""
+PLAIN_DIGITS = 7
+"""Largest power of ten that labels write out."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
@@ -22,9 +26,14 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
     made.toolbar.autohide = True
+    made.toolbar_inner = True
     made.toolbar.logo = None
     made.toolbar.active_drag = None
     made.min_border_right = 20
+    # The outermost half pixel of a canvas stays white, also on a dark page.
+    made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
+    made.xaxis.ticker.desired_num_ticks = TICKS
+    made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
     return made
 
 
@@ -47,6 +56,17 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     return low - pad, high + pad
 
 
+def ends(values: Array, margin: float = 0.08) -> dict[str, float]:
+    """`limits` of values, (n,), as the ends of a range."""
+    start, end = limits(values, margin)
+    return {"start": start, "end": end}
+
+
+def sentence_of(found: dict[str, Any]) -> str:
+    """Meaning of an answer's status, and what the solver adds."""
+    return "; ".join(filter(None, (found["sentence"], found["message"])))
+
+
 class Card:
     """A figure that gives way to a sentence when there is nothing to draw."""
 
@@ -54,9 +74,7 @@ class Card:
         self.figure = figure
         figure.name = f"{name}_figure"
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
-        self.root = Column(
-            self.message, figure, name=name, sizing_mode="stretch_width", min_height=HEIGHT
-        )  # fmt: skip
+        self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def say(self, sentence: str) -> None:
         """Shows a sentence in place of the picture."""

@@ -7,25 +7,26 @@ import numpy as np
 from bokeh.models import Range1d
 
 from ...arrays import Array
-from ..scales import Scale
+from ..diagrams import CRUSHED
+from ..scales import ControlScale
 from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, new_figure
 
-CRUSHED, NOT_KNOWN = -2, -1
-"""Numbers in `unstable_count` that are no count."""
+NOT_KNOWN = -1
+"""Stored in `unstable_count` where the number is not known."""
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
 """Colours of boundaries; all others are those of stable states."""
 DEEPEST = 6
 """Number of unstable modes from which the colour stays the same."""
 
 
-class Cell(NamedTuple):
+class DiagramCell(NamedTuple):
     """Points beside each other in a row that have the same number of unstable modes."""
 
     left: float
     right: float
     bottom: float
     top: float
-    count: int
+    unstable: int
 
 
 def edges(values: Array) -> Array:
@@ -37,7 +38,7 @@ def edges(values: Array) -> Array:
     return np.exp(np.concatenate(([2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]])))
 
 
-def cells(x: Array, y: Array, counts: Array) -> list[Cell]:
+def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Cells of a grid; x: (columns,), y: (rows,), counts: (rows, columns)."""
     sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
     levels, found = edges(y), []
@@ -45,7 +46,7 @@ def cells(x: Array, y: Array, counts: Array) -> list[Cell]:
         start = 0
         for count, group in groupby(map(int, line)):
             stop = start + len(list(group))
-            found.append(Cell(sides[start], sides[stop], levels[row], levels[row + 1], count))
+            found.append(DiagramCell(sides[start], sides[stop], levels[row], levels[row + 1], count))
             start = stop
     return found
 
@@ -62,10 +63,12 @@ class DiagramPicture:
 
     def __init__(self) -> None:
         figure = new_figure(
-            "force F (k3/L^2)", "k2", [("unstable modes", "@count")], y_axis_type="log",
+            "force F (k3/L^2)", "k2", [("unstable modes", "@unstable")], y_axis_type="log",
             x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
         )  # fmt: skip
-        self.cells = empty_source(("left", "right", "bottom", "top", "count", "colour", "alpha"), "cell_source")
+        self.cells = empty_source(
+            ("left", "right", "bottom", "top", "unstable", "colour", "alpha"), "cell_source"
+        )
         self.curves = empty_source(("x", "y", "colour"), "curve_source")
         self.crossings = empty_source(("x", "y", "colour"), "crossing_source")
         self.point = empty_source(("x", "y"), "point_source")
@@ -78,12 +81,17 @@ class DiagramPicture:
         figure.scatter("x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point)
         self.card = Card("diagram", figure)
 
-    def show(self, found: dict[str, Any], load: Scale, second: Scale) -> None:
+    @property
+    def is_drawn(self) -> bool:
+        """Whether there is a diagram to click on."""
+        return len(self.cells.data["left"]) > 0
+
+    def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
         """Draws an answer to the question `diagram`, in the units of the scales."""
         x, y = found["x"] * load.factor, found["y"] * second.factor
         grid = cells(x, y, found["unstable_count"])
-        data = {name: [getattr(cell, name) for cell in grid] for name in Cell._fields}
-        shades = [shade(cell.count) for cell in grid]
+        data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
+        shades = [shade(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cells.data = data
         self._show_curves(found)

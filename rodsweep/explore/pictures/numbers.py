@@ -19,13 +19,22 @@ ROWS = {
         "multiplier": "largest multiplier", "least_stretch": "least stretch h1",
     },
     "thresholds": {
-        "F_onset": "F*", "pressure_onset": "oscillates from", "F_hopf": "F**", "hopf_frequency": "frequency at F**",
+        "F_onset": "F*", "pressure_onset": "oscillates from", "F_hopf": "F**",
+        "hopf_frequency": "frequency at F**",
+        "F_restabilization": "stable again from", "pressure_restabilization": "stable again from",
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
     },
 }  # fmt: skip
 """Rows of the table: meaning by variable, for each kind of question."""
 HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
 DIGITS = 8
+SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
+"""Unit of the table, and its numbers for 1 in the SI unit."""
+IN_SI = {
+    "growth_rate": "growth_rate_si", "frequency": "frequency_hz", "F_onset": "pressure_onset",
+    "F_hopf": "pressure_hopf", "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
+}  # fmt: skip
+"""Variables of an arm in SI units, where the name is not that of the dimensionless variable with `_si`."""
 
 
 class NumbersTable:
@@ -47,20 +56,23 @@ class NumbersTable:
         self.root.text = f"<table>{''.join(parts)}</table>"
 
 
-def written(value: Any) -> str:
-    """A number as the table shows it: the first of an array, "" if it is not finite."""
+def written(value: Any, factor: float = 1.0) -> str:
+    """A number as the table shows it: the first of an array, "" if it is not finite or no count."""
     first = np.ravel(value)[0]
     if np.issubdtype(np.asarray(first).dtype, np.integer):
-        return str(int(first))
-    return f"{float(first):.{DIGITS}g}" if np.isfinite(first) else ""
+        return str(int(first)) if first >= 0 else ""
+    return f"{factor * float(first):.{DIGITS}g}" if np.isfinite(first) else ""
 
 
 def _rows(kind: str, found: dict[str, Any]) -> str:
-    units = found["units"]
-    rows = [
-        f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td>'
-        f"<td>{escape(units[name] if units[name] != '1' else '')}</td></tr>"
-        for name, meaning in ROWS[kind].items()
-        if name in found and (text := written(found[name]))
-    ]
-    return f'<tr><th colspan="3">{HEADINGS[kind]}</th></tr>{"".join(rows)}'
+    rows = []
+    for name, meaning in ROWS[kind].items():
+        if name not in found or IN_SI.get(name, f"{name}_si") in found:
+            continue
+        unit, factor = SHOWN_IN.get(found["units"][name], (found["units"][name], 1.0))
+        if text := written(found[name], factor):
+            shown = "" if unit == "1" else escape(unit)
+            rows.append(
+                f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{shown}</td></tr>'
+            )
+    return f'<tr><th colspan="3">{HEADINGS[kind]}</th></tr>{"".join(rows)}' if rows else ""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import Range1d
 
-from .card import NEUTRAL, STABLE, UNSTABLE, Card, empty_source, limits, new_figure, vertical_line
+from .card import NEUTRAL, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, sentence_of, vertical_line
 
 
 class SpectrumPicture:
@@ -27,14 +27,14 @@ class SpectrumPicture:
         growth, frequency = found["growth_rate"], found["frequency"]
         known = np.isfinite(growth)
         if not known.any():
-            self.card.say(found["sentence"])
+            self.card.say(sentence_of(found))
             return
         growth, frequency = growth[known], frequency[known]
         colours = np.where(growth > 0, UNSTABLE, STABLE)
         self.source.data = {"growth": growth, "frequency": frequency, "colour": colours}
         figure = self.card.figure
-        figure.x_range.update(**_ends(limits(np.append(growth, 0.0))))
-        figure.y_range.update(**_ends(limits(frequency)))
+        figure.x_range.update(**ends(np.append(growth, 0.0)))
+        figure.y_range.update(**ends(frequency))
         figure.title.text = count_of(found)
         self.card.reveal()
 
@@ -52,7 +52,9 @@ class ModePicture:
     """Real and imaginary part of the deflection of the leading mode."""
 
     def __init__(self) -> None:
-        figure = new_figure("u along the arm", "deflection Y, Y(1) = 1")
+        figure = new_figure(
+            "u along the arm", "deflection Y, Y(1) = 1", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
+        )
         self.source = empty_source(("u", "real", "imaginary"), "mode_source")
         figure.line("u", "real", line_width=2.5, color=STABLE, legend_label="real part", source=self.source)
         figure.line(
@@ -66,11 +68,8 @@ class ModePicture:
         """Draws the leading mode of an answer of the task spectrum."""
         real, imaginary = found["Y_real"][0], found["Y_imag"][0]
         if not np.isfinite(real).all():
-            self.card.say(found["sentence"])
+            self.card.say(sentence_of(found))
             return
         self.source.data = {"u": found["u"], "real": real, "imaginary": imaginary}
+        self.card.figure.y_range.update(**ends(np.append(real, imaginary)))
         self.card.reveal()
-
-
-def _ends(ends: tuple[float, float]) -> dict[str, float]:
-    return {"start": ends[0], "end": ends[1]}
