@@ -9,11 +9,11 @@ from bokeh.events import Pan, Tap
 
 from ..errors import InputError
 from .contents import PageContents
-from .diagrams import uniform
-from .questions import Question, Reply
 from .scales import SCALES
 from .sharing import state_of_text
-from .solvers import Solvers
+from .solving.diagrams import uniform
+from .solving.questions import Question, Reply
+from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 
 AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")

@@ -18,7 +18,7 @@ from tornado.netutil import bind_sockets
 
 from ..errors import InputError
 from .page import Page
-from .solvers import Solvers
+from .solving.solvers import Solvers
 from .state import PageState
 
 ADDRESS = "127.0.0.1"

@@ -82,9 +82,8 @@ def _picture_buttons(cards: Sequence[Card]) -> list[Select | Row]:
     """A choice of picture, and a button for each kind of file."""
     widgets = sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
-    choice = Select(
-        title="Picture", name="picture", options=list(figures), value=next(iter(figures)), stylesheets=[widgets]
-    )  # fmt: skip
+    names = list(figures)
+    choice = Select(title="Picture", name="picture", options=names, value=names[0], stylesheets=[widgets])
     buttons = []
     for kind in ("png", "svg"):
         button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])

@@ -10,8 +10,8 @@ from ..api.dataset import open_result
 from ..config.document.reading import config_of, load_config
 from ..config.schema import Config
 from ..errors import InputError
-from .diagrams import Dataset, of_grid, of_phases, of_rows
 from .scales import SCALES
+from .solving.diagrams import Dataset, of_grid, of_phases, of_rows
 from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
 
 RESULTS = (".h5", ".hdf5", ".nc")

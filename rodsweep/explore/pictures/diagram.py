@@ -7,8 +7,8 @@ import numpy as np
 from bokeh.models import Range1d
 
 from ...arrays import Array
-from ..diagrams import CRUSHED
 from ..scales import ControlScale
+from ..solving.diagrams import CRUSHED
 from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, new_figure
 
 NOT_KNOWN = -1

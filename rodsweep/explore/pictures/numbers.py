@@ -32,7 +32,8 @@ SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
 """Unit of the table, and its numbers for 1 in the SI unit."""
 IN_SI = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz", "F_onset": "pressure_onset",
-    "F_hopf": "pressure_hopf", "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
+    "F_hopf": "pressure_hopf",
+    "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
 }  # fmt: skip
 """Variables of an arm in SI units, where the name is not that of the dimensionless variable with `_si`."""
 

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from ..api.arm import Arm
-from ..api.sweeping import sweep
-from ..errors import InputError
-from ..model.arm.quantities import QUANTITIES
-from ..model.units import in_si
-from .state import LAWS, PageState, number
+from ...api.arm import Arm
+from ...api.sweeping import sweep
+from ...errors import InputError
+from ...model.arm.quantities import QUANTITIES
+from ...model.units import in_si
+from ..state import LAWS, PageState, number
 
 Dataset = Any
 """An xarray.Dataset, or an array of one."""

@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api.answers.answer import Answer
-from ..api.dataset import view_of
-from ..api.sweeping import sweep
-from ..arrays import Array
-from ..config.axes import DEFAULTS
-from ..post.branch_curves import curves_of
+from ...api.answers.answer import Answer
+from ...api.dataset import view_of
+from ...api.sweeping import sweep
+from ...arrays import Array
+from ...config.axes import DEFAULTS
+from ...post.branch_curves import curves_of
+from ..state import LAWS, PageState, rod_of
 from .diagrams import diagram, words_of
-from .state import LAWS, PageState, rod_of
 
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""

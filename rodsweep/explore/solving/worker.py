@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from types import FrameType
 
-from ..errors import Refusal
+from ...errors import Refusal
 from .questions import Question, Reply, answer_to
 
 

@@ -13,8 +13,8 @@ from typing import Any
 
 from tornado.ioloop import IOLoop
 
+from ..state import PageState
 from .questions import Question, Reply
-from .state import PageState
 
 Key = tuple[str, str]
 """(session, kind): a new question replaces an older one of the same key."""
