@@ -43,6 +43,7 @@ class BeatingPicture:
         self.arm = empty_source(("x", "y"), "arm_source")
         self.path = empty_source(("x", "y"), "path_source")
         figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
+        figure.scatter("x", "y", visible=False, source=self.shapes)  # so that the source is on the page
         figure.line("x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm)
         figure.scatter([0], [0], marker="square", size=12, color=POINT)
         self.card = Card("beating", figure)

@@ -24,6 +24,8 @@ GROUPS = {
     "branch": "branch", "diagram": "diagram",
 }  # fmt: skip
 """The process that answers each kind: what follows a slider never waits for what takes seconds."""
+NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10}
+"""How much the process of each group steps back for others: pictures that follow a slider come first."""
 AT_ONCE = ("spectrum", "cycle", "thresholds")
 """Groups whose processes start, and compile, before the page is opened."""
 
@@ -44,8 +46,8 @@ class Patience:
 class SolverProcess:
     """One process, which is started when it is first asked, and again when it was killed."""
 
-    def __init__(self, patience: Patience | None = None):
-        self.patience = patience or Patience()
+    def __init__(self, patience: Patience | None = None, niceness: int = 0):
+        self.patience, self.niceness = patience or Patience(), niceness
         self.waiting: dict[Key, tuple[Question, Done]] = {}
         self.asked: tuple[Key, Done] | None = None
         self.number = 0
@@ -99,6 +101,7 @@ class SolverProcess:
         self._connection, theirs = Pipe()
         watched, self._life = os.pipe()
         words = [sys.executable, "-m", f"{__package__}.worker", str(theirs.fileno()), str(watched)]
+        words.append(str(self.niceness))
         self._process = subprocess.Popen(
             words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), start_new_session=True
         )
@@ -164,7 +167,7 @@ class Solvers:
     """The solvers of all pages of a server."""
 
     def __init__(self, patience: Patience | None = None):
-        self.groups = {group: SolverProcess(patience) for group in GROUPS.values()}
+        self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
 
     def warm_up(self) -> None:
         """Starts the processes of `AT_ONCE` and lets them solve once, which loads compiled code."""

@@ -55,8 +55,9 @@ def end_with_parent(descriptor: int) -> None:
 
 
 def main() -> None:
-    """Arguments: the descriptors of the pipe of questions and of the pipe that closes with the parent."""
-    questions, life = (int(word) for word in sys.argv[1:3])
+    """Arguments: descriptors of the pipe of questions, and of that which closes with the parent; niceness."""
+    questions, life, niceness = (int(word) for word in sys.argv[1:4])
+    os.nice(niceness)
     connection: Connection[Reply, Question] = Connection(questions)
     Thread(target=end_with_parent, args=(life,), daemon=True).start()
     cancellation = Cancellation()
