@@ -26,6 +26,8 @@ GROUPS = {
 """The process that answers each kind: what follows a slider never waits for what takes seconds."""
 NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10}
 """How much the process of each group steps back for others: pictures that follow a slider come first."""
+STARTED_AGAIN = 0.1
+"""Seconds after which a cancellation that came while the process starts is tried again."""
 AT_ONCE = ("spectrum", "cycle", "thresholds")
 """Groups whose processes start, and compile, before the page is opened."""
 
@@ -54,6 +56,8 @@ class SolverProcess:
         """Number of questions asked so far; tells whether a timer still concerns the question asked."""
         self.since = 0.0
         self.starts = 0
+        self.is_ready = False
+        """Whether the process has started; before, a signal would end it."""
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection[Any, Any] | None = None
         self._life = -1
@@ -106,6 +110,7 @@ class SolverProcess:
             words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), start_new_session=True
         )
         self.starts += 1
+        self.is_ready = False
         theirs.close()
         os.close(watched)
         IOLoop.current().add_handler(self._connection.fileno(), self._hear, IOLoop.READ)
@@ -128,6 +133,9 @@ class SolverProcess:
         except (EOFError, OSError):
             self._end()
             reply = Reply("failed", {"sentence": "the solver ended unexpectedly"}, 0.0)
+        if reply.outcome == "ready":
+            self.is_ready = True
+            return
         asked, self.asked = self.asked, None
         if asked is not None and reply.outcome != "cancelled":
             asked[1](reply)
@@ -141,6 +149,9 @@ class SolverProcess:
 
     def _interrupt(self, number: int) -> None:
         if self.asked is None or number != self.number or self._process is None:
+            return
+        if not self.is_ready:
+            IOLoop.current().call_later(STARTED_AGAIN, lambda: self._interrupt(number))
             return
         self._process.send_signal(signal.SIGINT)
         IOLoop.current().call_later(self.patience.kill, lambda: self._kill(number))
