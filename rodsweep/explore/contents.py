@@ -51,17 +51,18 @@ class PageContents:
 
     def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
         """Puts everything into a document. react: what to do on a click, by button or picture."""
-        for root in (
-            self.working, self.controls.root, self.numbers.root, self.sharing.root, *self.buttons.values(),
-            *(card.root for card in self.cards),
-        ):  # fmt: skip
-            document.add_root(root)
         for kind, button in self.buttons.items():
             button.on_click(react[kind])
         for event in (Tap, Pan):
             self.diagram.card.figure.on_event(event, react["diagram_point"])
         for picture in (self.growth, self.branches):
             picture.card.figure.on_event(Tap, react["load"])
+        # A document subscribes to the events that its models already listen to.
+        for root in (
+            self.working, self.controls.root, self.numbers.root, self.sharing.root, *self.buttons.values(),
+            *(card.root for card in self.cards),
+        ):  # fmt: skip
+            document.add_root(root)
         document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"

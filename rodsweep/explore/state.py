@@ -10,7 +10,7 @@ from ..api.rod import SoftRod
 from ..config.document.reading import yaml_of
 from ..config.document.refusals import hint_of
 from ..config.tasks import CONFIGS
-from ..config.values import short
+from ..config.values import overflows, short
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 
@@ -122,7 +122,7 @@ def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
 def number(text: str) -> Any:
     """A text as a number, or the text itself, which the refusal then quotes."""
     try:
-        return float(text)
+        return text if overflows(text.strip()) else float(text)
     except ValueError:
         return text
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 NEEDED = ("chromium", "chromedriver")
-LONGEST = 120.0
+LONGEST = 60.0
 """Seconds that a loaded machine may need for anything."""
 needs_browser = pytest.mark.skipif(
     not all(map(shutil.which, NEEDED)), reason="Debian's chromium and chromium-driver are not installed"

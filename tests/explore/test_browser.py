@@ -33,7 +33,7 @@ def url() -> Iterator[str]:
 @pytest.fixture(scope="module")
 def opened(url) -> Iterator[Browser]:
     with Browser() as browser:
-        browser.open(url)
+        browser.open(f"{url}?F_max=150")  # branches up to 200 take twice the time
         yield browser
 
 
@@ -108,11 +108,12 @@ def test_a_click_on_the_thresholds_moves_the_load(browser):
     ("name", "value"),
     [
         ("F", "abc"), ("F", ""), ("F", "1e5"), ("F", "nan"), ("k1", "-1"), ("k1", "0"), ("k2", "1,5"),
-        ("k2", "<b>x</b>"), ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"), ("taper", "1e9"),
-        ("k1", "40"), ("k2", "1e400"),
+        ("k2", "<b>x</b>"), ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"),
+        ("taper", "1e9"), ("k1", "40"), ("k2", "1e400"),
     ],
 )  # fmt: skip
-def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(browser, name, value):
+def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(opened, name, value):
+    browser = opened
     before = browser.model(f"{name}_field", "value")
     change(browser, f"{name}_field", value)
     browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_message').visible")
@@ -122,7 +123,6 @@ def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended
     assert not browser.model("spectrum_figure", "visible")
     change(browser, f"{name}_field", before)
     browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_figure').visible")
-    solved(browser)
     assert not browser.model("spectrum_message", "visible")
 
 

@@ -41,7 +41,8 @@ class Question:
 class Reply(NamedTuple):
     """Outcome of a question: "answer", "refused", "failed" or "cancelled".
 
-    A process that has started sends "ready" without being asked. content: variables by name of an answer, else the sentence as `sentence`. seconds: time of the solve.
+    A process that has started sends "ready" unasked. content: variables by name of an answer, else the
+    sentence as `sentence`. seconds: time of the solve.
     """
 
     outcome: str
