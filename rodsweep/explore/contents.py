@@ -1,0 +1,111 @@
+"""Everything on a page: its controls, pictures, numbers and texts, and which answer fills which."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from bokeh.document import Document
+from bokeh.events import DocumentReady, Pan, Tap
+from bokeh.models import Button, Div
+
+from .controls import Changed, Controls
+from .look import colours, read, sheet
+from .pictures.beating import BeatingPicture
+from .pictures.branches import BranchPicture
+from .pictures.card import Card
+from .pictures.diagram import DiagramPicture
+from .pictures.growth import GrowthPicture
+from .pictures.numbers import NumbersTable
+from .pictures.spectrum import ModePicture, SpectrumPicture
+from .scales import SCALES, length_axis, load_axis
+from .sharing import Sharing
+from .state import PageState
+
+
+class PageContents:
+    """All models of a page. changed: called by the controls. loaded: called with the text of a config."""
+
+    def __init__(self, changed: Changed, loaded: Callable[[str], None]):
+        widgets, texts = sheet("widgets.css"), sheet("text.css")
+        self.controls = Controls(changed, widgets)
+        self.spectrum, self.mode, self.growth = SpectrumPicture(), ModePicture(), GrowthPicture()
+        self.beating, self.branches, self.diagram = BeatingPicture(), BranchPicture(), DiagramPicture()
+        self.numbers = NumbersTable()
+        self.working = Div(name="working", css_classes=["working"], stylesheets=[texts])
+        self.sharing = Sharing(self.cards, loaded)
+        self.buttons = {
+            kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])
+            for kind, name, label in (
+                ("diagram", "diagram", "Solve the diagram around this point"),
+                ("branch", "branches", "Solve the branches"),
+            )
+        }
+        self.numbers.root.stylesheets = [texts]
+        for div in (card.message for card in self.cards):
+            div.update(sizing_mode="stretch_width", stylesheets=[texts])
+
+    @property
+    def cards(self) -> list[Card]:
+        """All pictures."""
+        pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
+        return [picture.card for picture in pictures]
+
+    def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
+        """Puts everything into a document. react: what to do on a click, by button or picture."""
+        for kind, button in self.buttons.items():
+            button.on_click(react[kind])
+        for event in (Tap, Pan):
+            self.diagram.card.figure.on_event(event, react["diagram_point"])
+        for picture in (self.growth, self.branches):
+            picture.card.figure.on_event(Tap, react["load"])
+        # A document subscribes to the events that its models already listen to.
+        for root in (
+            self.working, self.controls.root, self.numbers.root, self.sharing.root, *self.buttons.values(),
+            *(card.root for card in self.cards),
+        ):  # fmt: skip
+            document.add_root(root)
+        document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
+        document.js_on_event(DocumentReady, self.beating.animation())
+        document.title = "rodsweep explore"
+        document.template = read("page.html")
+        document.template_variables["page_css"] = read("page.css")
+
+    def show_point(self, state: PageState, F: float) -> None:
+        """Shows where the point is, and how it is written elsewhere."""
+        at = F * load_axis(state).factor
+        self.growth.move_point(at)
+        self.branches.move_point(at)
+        load, second = SCALES[state.tab][state.load], SCALES[state.tab][state.second]
+        x, y = load.value(state.values[state.load]), second.value(state.values[state.second])
+        if x is not None and y is not None:
+            self.diagram.move_point(x, y)
+        self.sharing.show(state)
+
+    def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
+        """Fills the pictures that an answer belongs to."""
+        self.numbers.show(kind, found)
+        if kind == "spectrum":
+            self.spectrum.show(found)
+            self.mode.show(found)
+        elif kind == "cycle":
+            self.beating.show(found, length_axis(state))
+        elif kind == "thresholds":
+            self.growth.show_thresholds(found, load_axis(state))
+        elif kind == "growth":
+            self.growth.show_rates(found, load_axis(state))
+        elif kind == "branch":
+            self.branches.show(found, load_axis(state), length_axis(state))
+        else:
+            scales = SCALES[state.tab]
+            self.diagram.show(found, scales[state.load], scales[state.second])
+
+    def say(self, kind: str, sentence: str) -> None:
+        """Shows a sentence in place of the pictures of a question."""
+        self.numbers.show(kind, None)
+        if kind == "cycle":
+            self.beating.stop()
+        by_kind = {
+            "spectrum": (self.spectrum, self.mode), "cycle": (self.beating,), "thresholds": (self.growth,),
+            "growth": (self.growth,), "branch": (self.branches,), "diagram": (self.diagram,),
+        }  # fmt: skip
+        for picture in by_kind[kind]:
+            picture.card.say(sentence)

@@ -1,0 +1,118 @@
+"""Sliders and fields of the page; every change is told as text by name."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
+from bokeh.models.css import StyleSheet
+
+from .scales import SCALES, ControlScale
+from .state import ACROSS, LAW_NAMES, TABS, PageState
+
+STEPS = 400
+"""Steps of a slider from end to end."""
+Changed = Callable[..., None]
+
+
+class Field:
+    """A number with its slider. A change of either is told to `changed(name, text)`."""
+
+    def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
+        self.scale, self.changed = scale, changed
+        start, end = scale.ends
+        self.text = TextInput(
+            title=scale.label, name=f"{scale.name}_field", sizing_mode="stretch_width", stylesheets=sheets
+        )  # fmt: skip
+        self.slider = Slider(
+            start=start, end=end, value=start, step=(end - start) / STEPS, show_value=False,
+            name=f"{scale.name}_slider", sizing_mode="stretch_width", stylesheets=sheets,
+        )  # fmt: skip
+        self.text.on_change("value", self._typed)
+        self.slider.on_change("value", self._slid)
+        self.root = Column(self.text, self.slider, sizing_mode="stretch_width", spacing=0)
+        self._is_shown = False
+        """Whether a change comes from the page, not from the user."""
+        self._sliding = False
+
+    def show(self, text: str) -> None:
+        """Shows a text, and moves the slider unless it is the source of the text."""
+        self._is_shown = True
+        try:
+            self.text.value = text
+            position = self.scale.position(text)
+            if position is not None and not self._sliding:
+                self.slider.value = position
+        finally:
+            self._is_shown = False
+
+    def _typed(self, attribute: str, old: str, new: str) -> None:
+        if not self._is_shown:
+            self.changed(self.scale.name, new)
+
+    def _slid(self, attribute: str, old: float, new: float) -> None:
+        if self._is_shown:
+            return
+        self._sliding = True
+        try:
+            self.changed(self.scale.name, self.scale.at(new))
+        finally:
+            self._sliding = False
+
+
+class Controls:
+    """All controls. changed: called with keywords of `PageState`; `values` are texts of the tab by name."""
+
+    def __init__(self, changed: Changed, sheet: InlineStyleSheet):
+        self._changed = changed
+        self._is_shown = False
+        sheets: list[StyleSheet] = [sheet]
+        self.fields = {
+            tab: {name: Field(scale, self._field_changed, sheets) for name, scale in scales.items()}
+            for tab, scales in SCALES.items()
+        }
+        panels = [
+            TabPanel(
+                title={"rod": "Rod", "arm": "Arm, SI units"}[tab],
+                child=Column(*(f.root for f in fields.values()), sizing_mode="stretch_width", spacing=2),
+            )
+            for tab, fields in self.fields.items()
+        ]
+        self.tabs = Tabs(tabs=panels, sizing_mode="stretch_width", name="tabs", stylesheets=sheets)
+        self.tabs.on_change("active", self._tab_changed)
+        choice = partial(Select, sizing_mode="stretch_width", stylesheets=sheets)
+        self.law = choice(title="Law of the material", name="law", options=list(LAW_NAMES.items()))
+        self.across = choice(title="Second parameter of the diagram", name="across")
+        self.F_max = TextInput(
+            title="Largest force F", name="F_max", sizing_mode="stretch_width", stylesheets=sheets
+        )
+        for key, widget in (("law", self.law), ("across", self.across), ("F_max", self.F_max)):
+            widget.on_change("value", partial(self._choice_changed, key))
+        self.root = Column(
+            self.tabs, self.law, self.F_max, self.across, sizing_mode="stretch_width", name="controls"
+        )
+
+    def show(self, state: PageState) -> None:
+        """Shows a state."""
+        self._is_shown = True
+        try:
+            self.tabs.active = list(TABS).index(state.tab)
+            for name, field in self.fields[state.tab].items():
+                field.show(state.values[name])
+            self.law.value = state.law
+            self.across.options = list(ACROSS[state.tab])
+            self.across.value = state.second
+            self.F_max.value = state.F_max
+        finally:
+            self._is_shown = False
+
+    def _field_changed(self, name: str, text: str) -> None:
+        self._changed(values={name: text})
+
+    def _tab_changed(self, attribute: str, old: int, new: int) -> None:
+        if not self._is_shown:
+            self._changed(tab=list(TABS)[new])
+
+    def _choice_changed(self, key: str, attribute: str, old: Any, new: Any) -> None:
+        if not self._is_shown:
+            self._changed(**{key: new})

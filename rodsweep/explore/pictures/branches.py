@@ -1,0 +1,70 @@
+"""The bifurcation diagram: the largest deflection of cycles along the force, stable or not."""
+
+from math import nan
+from typing import Any
+
+import numpy as np
+from bokeh.models import HoverTool, Legend, LegendItem, Range1d
+
+from ..scales import PictureAxis
+from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, vertical_line
+
+COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
+DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
+
+
+class BranchPicture:
+    """Branches of cycles and the straight state; filled marks are Hopf points, folds and torus points."""
+
+    def __init__(self) -> None:
+        figure = new_figure(
+            "force F (k3/L^2)", "largest tip deflection (L)", x_range=Range1d(0, 1), y_range=Range1d(-0.05, 1)
+        )
+        self.pieces = empty_source(("F", "y", "colour", "dash"), "branch_source")
+        self.special = empty_source(("F", "y", "kind", "period"), "special_source")
+        figure.multi_line(
+            "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.pieces
+        )  # fmt: skip
+        marks = figure.scatter("F", "y", size=9, color=NEUTRAL, line_color=POINT, source=self.special)
+        figure.add_tools(
+            HoverTool(
+                renderers=[marks],
+                tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("period", "@period{0.00000000}")],
+            )
+        )
+        keys = [
+            figure.line([nan], [nan], color=COLOURS[k], line_dash=DASHES[k], line_width=2.5) for k in (1, 0)
+        ]
+        items = [
+            LegendItem(label=text, renderers=[key])
+            for text, key in zip(("stable", "unstable"), keys, strict=True)
+        ]
+        figure.add_layout(Legend(items=items, location="top_left"))
+        self.point = vertical_line(0, POINT)
+        figure.add_layout(self.point)
+        self.card = Card("branches", figure)
+
+    def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
+        """Draws the branches of an answer."""
+        pieces = found["pieces"]
+        self.pieces.data = {
+            "F": [at * load.factor for at, _, _ in pieces],
+            "y": [y * length.factor for _, y, _ in pieces],
+            "colour": [COLOURS[stable] for _, _, stable in pieces],
+            "dash": [DASHES[stable] for _, _, stable in pieces],
+        }
+        if pieces:
+            all_F, all_y = (np.concatenate([piece[i] for piece in pieces]) for i in range(2))
+            self.card.figure.x_range.update(**ends(all_F * load.factor, 0.0))
+            self.card.figure.y_range.update(**ends(all_y * length.factor))
+            self.card.figure.xaxis.axis_label = load.label
+            self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
+        special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]
+        names = ("F", "y", "kind", "period")
+        self.special.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
+        self.card.figure.title.text = found["sentence"] if found["status"] != "ok" else ""
+        self.card.reveal()
+
+    def move_point(self, F: float) -> None:
+        """Moves the line of the point."""
+        self.point.location = F

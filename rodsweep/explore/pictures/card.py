@@ -1,0 +1,86 @@
+"""A picture of the page, or the sentence that stands in its place."""
+
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Span
+from bokeh.plotting import figure
+
+from ...arrays import Array
+
+STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
+"""Colours that stand out on a white page and on a dark one."""
+TICKS = 5
+"""Labels along the lower axis, about."""
+PLAIN_DIGITS = 7
+"""Largest power of ten that labels write out."""
+HEIGHT = 300
+"""Height of a picture in pixels."""
+
+
+def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
+    """An empty figure as wide as its place."""
+    made = figure(
+        height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
+        x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
+    )  # fmt: skip
+    made.toolbar.autohide = True
+    made.toolbar_inner = True
+    made.toolbar.logo = None
+    made.toolbar.active_drag = None
+    made.min_border_right = 20
+    # The outermost half pixel of a canvas stays white, also on a dark page.
+    made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
+    made.xaxis.ticker.desired_num_ticks = TICKS
+    made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
+    return made
+
+
+def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
+    """A line across the whole height of a figure."""
+    return Span(location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5)
+
+
+def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
+    """A source with columns that are still empty."""
+    return ColumnDataSource({each: [] for each in names}, name=name)
+
+
+def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
+    """Smallest and largest of the values, (n,), with a margin; (-1, 1) without values."""
+    if len(values) == 0:
+        return -1.0, 1.0
+    low, high = float(values.min()), float(values.max())
+    pad = margin * ((high - low) or abs(high) or 1.0)
+    return low - pad, high + pad
+
+
+def ends(values: Array, margin: float = 0.08) -> dict[str, float]:
+    """`limits` of values, (n,), as the ends of a range."""
+    start, end = limits(values, margin)
+    return {"start": start, "end": end}
+
+
+def sentence_of(found: dict[str, Any]) -> str:
+    """Meaning of an answer's status, and what the solver adds."""
+    return "; ".join(filter(None, (found["sentence"], found["message"])))
+
+
+class Card:
+    """A figure that gives way to a sentence when there is nothing to draw."""
+
+    def __init__(self, name: str, figure: figure):
+        self.figure = figure
+        figure.name = f"{name}_figure"
+        self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
+        self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
+
+    def say(self, sentence: str) -> None:
+        """Shows a sentence in place of the picture."""
+        self.message.text = escape(sentence)
+        self.message.visible, self.figure.visible = True, False
+
+    def reveal(self) -> None:
+        """Shows the picture."""
+        self.message.visible, self.figure.visible = False, True

@@ -1,0 +1,121 @@
+"""The diagram over the load and a second parameter, in which a click moves the point."""
+
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import numpy as np
+from bokeh.models import Range1d
+
+from ...arrays import Array
+from ..scales import ControlScale
+from ..solving.diagrams import CRUSHED
+from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, new_figure
+
+NOT_KNOWN = -1
+"""Stored in `unstable_count` where the number is not known."""
+BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
+"""Colours of boundaries; all others are those of stable states."""
+DEEPEST = 6
+"""Number of unstable modes from which the colour stays the same."""
+
+
+class DiagramCell(NamedTuple):
+    """Points beside each other in a row that have the same number of unstable modes."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+    unstable: int
+
+
+def edges(values: Array) -> Array:
+    """Edges between values on a logarithmic scale, (n + 1,) for (n,) increasing values above 0."""
+    logs = np.log(values)
+    if len(logs) == 1:
+        return np.exp(logs[0] + np.array([-0.1, 0.1]))
+    middle = (logs[1:] + logs[:-1]) / 2
+    return np.exp(np.concatenate(([2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]])))
+
+
+def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
+    """Cells of a grid; x: (columns,), y: (rows,), counts: (rows, columns)."""
+    sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
+    levels, found = edges(y), []
+    for row, line in enumerate(counts):
+        start = 0
+        for count, group in groupby(map(int, line)):
+            stop = start + len(list(group))
+            found.append(DiagramCell(sides[start], sides[stop], levels[row], levels[row + 1], count))
+            start = stop
+    return found
+
+
+def shade(count: int) -> tuple[str, float]:
+    """Colour and opacity for a number of unstable modes."""
+    if count in (CRUSHED, NOT_KNOWN):
+        return NEUTRAL, 0.55 if count == CRUSHED else 0.25
+    return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DEEPEST) / DEEPEST)
+
+
+class DiagramPicture:
+    """Blue: stable; orange: flutter, the deeper the more modes are unstable; grey: crushed or not known."""
+
+    def __init__(self) -> None:
+        figure = new_figure(
+            "force F (k3/L^2)", "k2", [("unstable modes", "@unstable")], y_axis_type="log",
+            x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
+        )  # fmt: skip
+        self.cells = empty_source(
+            ("left", "right", "bottom", "top", "unstable", "colour", "alpha"), "cell_source"
+        )
+        self.curves = empty_source(("x", "y", "colour"), "curve_source")
+        self.crossings = empty_source(("x", "y", "colour"), "crossing_source")
+        self.point = empty_source(("x", "y"), "point_source")
+        figure.quad(
+            left="left", right="right", bottom="bottom", top="top", color="colour", alpha="alpha",
+            line_width=0, source=self.cells,
+        )  # fmt: skip
+        figure.multi_line("x", "y", color="colour", line_width=2, source=self.curves)
+        figure.scatter("x", "y", size=6, color="colour", source=self.crossings)
+        figure.scatter("x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point)
+        self.card = Card("diagram", figure)
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether there is a diagram to click on."""
+        return len(self.cells.data["left"]) > 0
+
+    def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
+        """Draws an answer to the question `diagram`, in the units of the scales."""
+        x, y = found["x"] * load.factor, found["y"] * second.factor
+        grid = cells(x, y, found["unstable_count"])
+        data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
+        shades = [shade(cell.unstable) for cell in grid]
+        data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
+        self.cells.data = data
+        self._show_curves(found)
+        kinds = found["crossing_kind"]
+        self.crossings.data = {
+            "x": found["crossing_x"] * load.factor,
+            "y": found["crossing_y"] * second.factor,
+            "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds],
+        }
+        figure = self.card.figure
+        figure.x_range.update(start=float(x[0]), end=float(x[-1]))
+        figure.y_range.update(start=float(grid[0].bottom), end=float(grid[-1].top))
+        figure.xaxis.axis_label, figure.yaxis.axis_label = load.label, second.label
+        self.card.reveal()
+
+    def _show_curves(self, found: dict[str, Any]) -> None:
+        numbers = np.asarray(found["curve_number"])
+        lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
+        self.curves.data = {
+            "x": [found["curve_x"][line] for line in lines],
+            "y": [found["curve_y"][line] for line in lines],
+            "colour": [BOUNDARIES.get(found["curve_kind"][line[0]], STABLE) for line in lines],
+        }
+
+    def move_point(self, x: float, y: float) -> None:
+        """Moves the mark of the point."""
+        self.point.data = {"x": [x], "y": [y]}

@@ -1,0 +1,84 @@
+"""Growth rates along the force, with the forces at which stability changes."""
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import HoverTool, Range1d, Span
+
+from ..scales import PictureAxis
+from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, vertical_line
+
+KINDS = {
+    "onset": ("oscillates from F*", NEUTRAL),
+    "hopf": ("flutters, Hopf point F**", UNSTABLE),
+    "hopf_reverse": ("a mode becomes stable", STABLE),
+    "restabilization": ("stable again", STABLE),
+}
+"""Words and colour of each kind of threshold that the picture shows."""
+
+
+class GrowthPicture:
+    """Growth rates of the leading modes over F; vertical lines are thresholds, the thick line the point."""
+
+    def __init__(self) -> None:
+        figure = new_figure(
+            "force F (k3/L^2)", "growth rate (1/tau2)", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
+        )
+        self.rates = empty_source(("F", "first", "second", "third"), "growth_source")
+        self.lines = empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
+        for name, width in (("third", 1), ("second", 1), ("first", 2.5)):
+            figure.line(
+                "F", name, line_width=width, color=NEUTRAL if width == 1 else STABLE, source=self.rates
+            )
+        drawn = figure.vspan(x="F", line_color="colour", line_width=2, line_dash="dotted", source=self.lines)
+        figure.add_tools(
+            HoverTool(
+                renderers=[drawn],
+                tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("frequency", "@frequency{0.000000}")],
+            )
+        )
+        figure.add_layout(Span(location=0, dimension="width", line_color=NEUTRAL, line_dash="dashed"))
+        self.point = vertical_line(0, POINT)
+        self.point.line_width = 3
+        figure.add_layout(self.point)
+        self.card = Card("growth", figure)
+
+    def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
+        """Draws the growth rates."""
+        rates = found["growth_rate"]
+        names = ("first", "second", "third")
+        F = found["F"] * load.factor
+        self.rates.data = {"F": F, **{name: rates[:, i] for i, name in enumerate(names)}}
+        leading = rates[:, 0]
+        self.card.figure.y_range.update(**ends(np.append(leading[np.isfinite(leading)], 0.0)))
+        self.card.figure.x_range.update(start=F[0], end=F[-1])
+        self.card.figure.xaxis.axis_label = load.label
+        self.card.reveal()
+
+    def show_thresholds(self, found: dict[str, Any], load: PictureAxis) -> None:
+        """Draws the thresholds, and names F* and F** above the picture."""
+        rows = [
+            (F * load.factor, *KINDS[kind], frequency)
+            for F, kind, frequency in zip(
+                found["crossing_F"], found["kinds"], found["crossing_frequency"], strict=True
+            )
+            if kind in KINDS
+        ]
+        names = ("F", "kind", "colour", "frequency")
+        self.lines.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+        self.card.figure.title.text = named(found, load)
+
+    def move_point(self, F: float) -> None:
+        """Moves the line of the point."""
+        self.point.location = F
+
+
+def named(found: dict[str, Any], load: PictureAxis) -> str:
+    """F*, F** and the restabilization, as far as they exist, in units of the load."""
+    parts = [
+        f"{symbol} = {load.factor * float(found[name]):.7g}"
+        for symbol, name in (("F*", "F_onset"), ("F**", "F_hopf"), ("stable from", "F_restabilization"))
+        if np.isfinite(found[name])
+    ]
+    proved = "certified" if found["certified"] else "not certified"
+    return f"{', '.join(parts) or 'No threshold'} ({proved})"

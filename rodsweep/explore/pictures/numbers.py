@@ -1,0 +1,79 @@
+"""The table of numbers: what the solvers found, to eight digits, with units."""
+
+from html import escape
+from typing import Any
+
+import numpy as np
+from bokeh.models import Div
+
+ROWS = {
+    "spectrum": {
+        "growth_rate": "growth rate", "growth_rate_si": "growth rate", "frequency": "frequency",
+        "frequency_hz": "frequency", "unstable_count": "unstable modes",
+    },
+    "cycle": {
+        "period": "period", "period_si": "period", "tip_y_max": "amplitude",
+        "tip_y_max_si": "amplitude", "tip_theta_max": "tip angle", "injection_mean": "power of the force",
+        "injection_mean_si": "power of the force", "dissipation_mean": "power lost to the fluid",
+        "dissipation_mean_si": "power lost to the fluid", "energy_imbalance": "energy imbalance",
+        "multiplier": "largest multiplier", "least_stretch": "least stretch h1",
+    },
+    "thresholds": {
+        "F_onset": "F*", "pressure_onset": "oscillates from", "F_hopf": "F**",
+        "hopf_frequency": "frequency at F**",
+        "F_restabilization": "stable again from", "pressure_restabilization": "stable again from",
+        "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
+    },
+}  # fmt: skip
+"""Rows of the table: meaning by variable, for each kind of question."""
+HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
+DIGITS = 8
+SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
+"""Unit of the table, and its numbers for 1 in the SI unit."""
+IN_SI = {
+    "growth_rate": "growth_rate_si", "frequency": "frequency_hz", "F_onset": "pressure_onset",
+    "F_hopf": "pressure_hopf",
+    "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
+}  # fmt: skip
+"""Variables of an arm in SI units, where the name is not that of the dimensionless variable with `_si`."""
+
+
+class NumbersTable:
+    """Numbers of the latest answers."""
+
+    def __init__(self) -> None:
+        self.root = Div(name="numbers", sizing_mode="stretch_width", css_classes=["numbers"])
+        self.found: dict[str, dict[str, Any]] = {}
+
+    def show(self, kind: str, found: dict[str, Any] | None) -> None:
+        """Fills the rows of a kind of question; empties them for None."""
+        if kind not in ROWS:
+            return
+        if found is None:
+            self.found.pop(kind, None)
+        else:
+            self.found[kind] = found
+        parts = [_rows(name, self.found[name]) for name in ROWS if name in self.found]
+        self.root.text = f"<table>{''.join(parts)}</table>"
+
+
+def written(value: Any, factor: float = 1.0) -> str:
+    """A number as the table shows it: the first of an array, "" if it is not finite or no count."""
+    first = np.ravel(value)[0]
+    if np.issubdtype(np.asarray(first).dtype, np.integer):
+        return str(int(first)) if first >= 0 else ""
+    return f"{factor * float(first):.{DIGITS}g}" if np.isfinite(first) else ""
+
+
+def _rows(kind: str, found: dict[str, Any]) -> str:
+    rows = []
+    for name, meaning in ROWS[kind].items():
+        if name not in found or IN_SI.get(name, f"{name}_si") in found:
+            continue
+        unit, factor = SHOWN_IN.get(found["units"][name], (found["units"][name], 1.0))
+        if text := written(found[name], factor):
+            shown = "" if unit == "1" else escape(unit)
+            rows.append(
+                f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{shown}</td></tr>'
+            )
+    return f'<tr><th colspan="3">{HEADINGS[kind]}</th></tr>{"".join(rows)}' if rows else ""

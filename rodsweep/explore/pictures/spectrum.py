@@ -1,0 +1,75 @@
+"""The leading eigenvalues in the complex plane, and the shape of the leading mode."""
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import Range1d
+
+from .card import NEUTRAL, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, sentence_of, vertical_line
+
+
+class SpectrumPicture:
+    """Eigenvalues; to the right of the line the straight state is unstable."""
+
+    def __init__(self) -> None:
+        figure = new_figure(
+            "growth rate (1/tau2)", "frequency (rad/tau2)",
+            [("growth rate", "@growth{0.00000000}"), ("frequency", "@frequency{0.00000000}")],
+            x_range=Range1d(-1, 1), y_range=Range1d(-1, 1),
+        )  # fmt: skip
+        self.source = empty_source(("growth", "frequency", "colour"), "spectrum_source")
+        figure.add_layout(vertical_line(0, NEUTRAL, "dashed"))
+        figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
+        self.card = Card("spectrum", figure)
+
+    def show(self, found: dict[str, Any]) -> None:
+        """Draws an answer of the task spectrum."""
+        growth, frequency = found["growth_rate"], found["frequency"]
+        known = np.isfinite(growth)
+        if not known.any():
+            self.card.say(sentence_of(found))
+            return
+        growth, frequency = growth[known], frequency[known]
+        colours = np.where(growth > 0, UNSTABLE, STABLE)
+        self.source.data = {"growth": growth, "frequency": frequency, "colour": colours}
+        figure = self.card.figure
+        figure.x_range.update(**ends(np.append(growth, 0.0)))
+        figure.y_range.update(**ends(frequency))
+        figure.title.text = count_of(found)
+        self.card.reveal()
+
+
+def count_of(found: dict[str, Any]) -> str:
+    """How many modes are unstable, and whether it is proved."""
+    count = int(found["unstable_count"])
+    if count < 0:
+        return found["sentence"]
+    modes = {0: "No unstable mode", 1: "1 unstable mode"}.get(count, f"{count} unstable modes")
+    return f"{modes}, {'certified' if found['certified'] else 'not certified'}"
+
+
+class ModePicture:
+    """Real and imaginary part of the deflection of the leading mode."""
+
+    def __init__(self) -> None:
+        figure = new_figure(
+            "u along the arm", "deflection Y, Y(1) = 1", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
+        )
+        self.source = empty_source(("u", "real", "imaginary"), "mode_source")
+        figure.line("u", "real", line_width=2.5, color=STABLE, legend_label="real part", source=self.source)
+        figure.line(
+            "u", "imaginary", line_width=2.5, color=UNSTABLE, line_dash="dashed",
+            legend_label="imaginary part", source=self.source,
+        )  # fmt: skip
+        figure.legend.location = "top_left"
+        self.card = Card("mode", figure)
+
+    def show(self, found: dict[str, Any]) -> None:
+        """Draws the leading mode of an answer of the task spectrum."""
+        real, imaginary = found["Y_real"][0], found["Y_imag"][0]
+        if not np.isfinite(real).all():
+            self.card.say(sentence_of(found))
+            return
+        self.source.data = {"u": found["u"], "real": real, "imaginary": imaginary}
+        self.card.figure.y_range.update(**ends(np.append(real, imaginary)))
+        self.card.reveal()

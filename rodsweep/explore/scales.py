@@ -1,0 +1,137 @@
+"""How each control writes its number: unit, range, linear or logarithmic."""
+
+from dataclasses import dataclass
+from math import inf, isfinite, isnan, log10
+from typing import NamedTuple
+
+from ..errors import InputError
+from ..model.arm.quantities import QUANTITIES
+from ..model.parameters import PARAMETERS
+from ..model.units import in_si
+from .state import PageState, number, rod_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class ControlScale:
+    """ControlScale of one parameter or quantity.
+
+    label: with its unit. low, high: ends of the slider, in this unit. logarithmic: whether the slider is.
+    unit: text behind the number of a quantity, empty for a rod's parameter. factor: this unit's numbers for 1
+    in SI units. has_inf: whether the upper end of the slider is inf.
+    """
+
+    name: str
+    label: str
+    low: float
+    high: float
+    logarithmic: bool = True
+    unit: str = ""
+    factor: float = 1.0
+    has_inf: bool = False
+
+    def text(self, value: float) -> str:
+        """Text of a number in this unit, as a control shows it."""
+        written = f"{value:.5g}"
+        return f"{written} {self.unit}" if self.unit else written
+
+    def value(self, text: str) -> float | None:
+        """Number in this unit of a text; None if it is none."""
+        try:
+            if self.unit:
+                quantity = QUANTITIES[self.name]
+                return in_si(self.name, text, quantity.unit, quantity.example) * self.factor
+            found = number(text)
+        except InputError:
+            return None
+        return found if isinstance(found, float) else None
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Positions of the slider's ends."""
+        return (log10(self.low), log10(self.high)) if self.logarithmic else (self.low, self.high)
+
+    def position(self, text: str) -> float | None:
+        """Place of the slider for a text, at an end for what lies beyond; None if it has none."""
+        value = self.value(text)
+        start, end = self.ends
+        if value is None or isnan(value):
+            return None
+        if value == inf:
+            return end
+        if self.logarithmic:
+            value = log10(value) if value > 0 else start
+        return min(max(value, start), end)
+
+    def at(self, position: float) -> str:
+        """Text for a place of the slider."""
+        if self.has_inf and position >= self.ends[1]:
+            return "inf"
+        value = 10**position if self.logarithmic else position
+        assert isfinite(value)
+        return self.text(value)
+
+
+class PictureAxis(NamedTuple):
+    """An axis of a picture. label: with its unit. factor: numbers of this unit for 1 in units of the rod."""
+
+    label: str
+    factor: float
+
+
+def load_axis(state: PageState) -> PictureAxis:
+    """PictureAxis of the load: F of a rod, the pressure of an arm in kPa."""
+    if state.tab == "rod":
+        return PictureAxis("force F (k3/L^2)", 1.0)
+    subject = state.with_values(pressure="1 kPa").subject()
+    return PictureAxis("pressure (kPa)", 1 / rod_of(subject)["F"])
+
+
+def length_axis(state: PageState) -> PictureAxis:
+    """PictureAxis of lengths: L of a rod, cm of an arm."""
+    scale = SCALES["arm"]["length"]
+    length = scale.value(state.arm["length"]) if state.tab == "arm" else None
+    return PictureAxis("L", 1.0) if length is None else PictureAxis(scale.unit, length)
+
+
+def _of_rod(
+    name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False
+) -> ControlScale:
+    parameter = PARAMETERS[name]
+    unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
+    label = f"{name}: {parameter.meaning}{unit}"
+    return ControlScale(name=name, label=label, low=low, high=high, logarithmic=logarithmic, has_inf=has_inf)
+
+
+def _of_arm(
+    name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
+) -> ControlScale:
+    label = f"{name} ({unit})"
+    return ControlScale(
+        name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
+    )
+
+
+SCALES = {
+    "rod": {
+        scale.name: scale
+        for scale in (
+            _of_rod("F", -20, 200, logarithmic=False),
+            _of_rod("k1", 10, 1e7, has_inf=True),
+            _of_rod("k2", 1, 1e7, has_inf=True),
+            _of_rod("gamma3", 1e-6, 10),
+            _of_rod("gamma1", 0.1, 10),
+            _of_rod("taper", 0.3, 2, logarithmic=False),
+        )
+    },
+    "arm": {
+        scale.name: scale
+        for scale in (
+            _of_arm("length", 1, 100, "cm", 1e2),
+            _of_arm("radius", 0.5, 50, "mm", 1e3),
+            _of_arm("young", 1, 1e4, "kPa", 1e-3),
+            _of_arm("viscosity", 1e-2, 1e3, "Pa s", 1.0),
+            _of_arm("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
+        )
+    },
+}
+"""Scales by tab and name."""

@@ -1,0 +1,115 @@
+"""The server of the page: on this machine only, and for its own page only."""
+
+import asyncio
+import signal
+import socket
+import sys
+from typing import Any
+
+from bokeh.application import Application
+from bokeh.application.handlers import FunctionHandler
+from bokeh.document import Document
+from bokeh.server.server import BaseServer
+from bokeh.server.tornado import BokehTornado
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+from tornado.iostream import IOStream
+from tornado.netutil import bind_sockets
+
+from ..errors import InputError
+from .page import Page
+from .solving.solvers import Solvers
+from .state import PageState
+
+ADDRESS = "127.0.0.1"
+HOSTS = (ADDRESS, "localhost")
+"""Names under which a browser on this machine may open the page."""
+UNUSED = 5000
+"""Milliseconds after which a page that was closed ends its session."""
+
+
+class UndelayedServer(HTTPServer):
+    """An HTTP server without Nagle's delay: each small change of a page is sent at once."""
+
+    def handle_stream(self, stream: IOStream, address: Any) -> None:
+        """Handles a new connection."""
+        stream.set_nodelay(True)
+        super().handle_stream(stream, address)
+
+
+class ExploreServer:
+    """Server and solvers of the page. port: 0 for any free port.
+
+    Raises InputError if the port is in use.
+    """
+
+    def __init__(self, state: PageState, stored: dict[str, Any] | None = None, port: int = 0):
+        self.state, self.stored = state, stored
+        sockets = _bound(port)
+        self.port: int = sockets[0].getsockname()[1]
+        self.solvers = Solvers()
+        application = Application(FunctionHandler(self._open))
+        tornado = BokehTornado(
+            {"/": application},
+            extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
+            unused_session_lifetime_milliseconds=UNUSED,
+            check_unused_sessions_milliseconds=UNUSED,
+        )
+        self.http = UndelayedServer(tornado)
+        self.http.add_sockets(sockets)
+        self.server = BaseServer(IOLoop.current(), tornado, self.http)
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return f"http://{ADDRESS}:{self.port}/"
+
+    def start(self) -> None:
+        """Starts the solvers, and answers browsers as soon as the loop runs."""
+        self.server.start()
+        self.solvers.warm_up()
+
+    def stop(self) -> None:
+        """Ends all sessions and all processes."""
+        self.solvers.close()
+        self.server.stop()
+        self.http.stop()
+
+    def _open(self, document: Document) -> None:
+        page = Page(document, self.solvers, self.state, self.stored)
+        document.on_session_destroyed(lambda context: page.close())
+        context = document.session_context
+        arguments = {} if context is None else context.request.arguments
+        page.open(_query(arguments))
+
+
+def _query(arguments: dict[str, list[bytes]]) -> str:
+    """The query of an address from its decoded arguments."""
+    from urllib.parse import urlencode
+
+    own = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}
+    return urlencode({name: text for name, text in own.items() if not name.startswith("bokeh-")})
+
+
+def _bound(port: int) -> list[socket.socket]:
+    try:
+        return bind_sockets(port, ADDRESS)
+    except OSError as error:
+        raise InputError(f"--port {port}: {error.strerror}; without --port any free port is taken") from None
+
+
+async def serve(state: PageState, stored: dict[str, Any] | None, port: int, is_opened: bool) -> None:
+    """Serves the page until Ctrl-C."""
+    stopped = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, stopped.set)
+    server = ExploreServer(state, stored, port)
+    server.start()
+    print(f"{server.url} shows the page; Ctrl-C ends it", flush=True)
+    if is_opened:
+        import webbrowser
+
+        if not webbrowser.open(server.url):
+            print("no browser can be opened here; open the address yourself", file=sys.stderr, flush=True)
+    await stopped.wait()
+    server.stop()

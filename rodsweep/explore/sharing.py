@@ -1,0 +1,102 @@
+"""What the page gives away and takes in: its address, a config, Python lines, pictures."""
+
+from base64 import b64decode
+from collections.abc import Callable, Sequence
+from html import escape
+from pathlib import Path
+
+from bokeh.models import Button, Column, CustomJS, Div, FileInput, Row, Select
+
+from ..config.document.parsing import parse
+from ..config.document.reading import validated
+from ..errors import InputError
+from .look import read, sheet
+from .pictures.card import Card
+from .state import PageState
+from .stored import state_of
+
+SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
+"""The browser's address is the state."""
+SAVE = 'download(new Blob([yaml.tags[0]], {type: "application/yaml"}), "explore.yaml")'
+COPY = "navigator.clipboard.writeText(source.tags[0])"
+TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
+"""Tasks of the config that is shown; the first is the default."""
+FILM = """# the film of the arm:
+# rodsweep run explore.yaml --set limit_cycle.shapes=48
+# rodsweep plot explore.h5 --what animation -o explore.gif
+"""
+
+
+class Sharing:
+    """Texts and buttons. loaded: called with the text of a config that the user loads."""
+
+    def __init__(self, cards: Sequence[Card], loaded: Callable[[str], None]):
+        self._loaded = loaded
+        self._state = PageState()
+        widgets, texts = sheet("widgets.css"), sheet("text.css")
+        self.address, self.yaml, self.python = (
+            Div(name=name, tags=[""], sizing_mode="stretch_width", stylesheets=[texts])
+            for name in ("address", "yaml", "python")
+        )
+        self.task = Select(
+            title="Config of the task", name="task", options=TASKS, value=TASKS[0], stylesheets=[widgets]
+        )
+        self.task.on_change("value", lambda attribute, old, new: self._show_yaml())
+        save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
+        save.js_on_click(CustomJS(args={"yaml": self.yaml}, code=read("download.js") + SAVE))
+        self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
+        self.file.on_change("value", self._take)
+        copies = [
+            Button(label=f"Copy the {what}", name=f"copy_{source.name}", stylesheets=[widgets])
+            for what, source in (("config", self.yaml), ("Python lines", self.python))
+        ]
+        for button, source in zip(copies, (self.yaml, self.python), strict=True):
+            button.js_on_click(CustomJS(args={"source": source}, code=COPY))
+        self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=SHOW_ADDRESS))
+        self.root = Column(
+            self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
+            *_picture_buttons(cards), name="sharing", sizing_mode="stretch_width",
+        )  # fmt: skip
+
+    def show(self, state: PageState) -> None:
+        """Shows the address, config and Python lines of a state."""
+        self._state = state
+        query = state.address()
+        self.address.tags = [query]
+        self.address.text = f'<a href="?{escape(query)}">This page as an address</a>'
+        self.python.tags = [state.python()]
+        self.python.text = f"<pre>{escape(state.python())}</pre>"
+        self._show_yaml()
+
+    def _show_yaml(self) -> None:
+        text = self._state.yaml(self.task.value)
+        text += FILM if self.task.value == TASKS[0] else ""
+        self.yaml.tags = [text]
+        self.yaml.text = f"<pre>{escape(text)}</pre>"
+
+    def _take(self, attribute: str, old: str, new: str) -> None:
+        self._loaded(b64decode(new).decode(errors="replace"))
+
+
+def _picture_buttons(cards: Sequence[Card]) -> list[Select | Row]:
+    """A choice of picture, and a button for each kind of file."""
+    widgets = sheet("widgets.css")
+    figures = {card.root.name: card.figure for card in cards}
+    names = list(figures)
+    choice = Select(title="Picture", name="picture", options=names, value=names[0], stylesheets=[widgets])
+    buttons = []
+    for kind in ("png", "svg"):
+        button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])
+        code = read("download.js") + read("picture.js")
+        button.js_on_click(CustomJS(args={"figures": figures, "choice": choice, "type": kind}, code=code))
+        buttons.append(button)
+    return [choice, Row(*buttons)]
+
+
+def state_of_text(text: str) -> PageState:
+    """State of the text of a config; InputError, with the command line's sentence, for a bad one."""
+    where = "the loaded file"
+    tree = parse(text, where)
+    if not isinstance(tree, dict):
+        raise InputError(f"{where} is no mapping of keys to values; give task and parameters")
+    return state_of(validated(tree), Path(where))

@@ -1,0 +1,170 @@
+"""The diagram of a page: what a rod or an arm does over its load and a second parameter."""
+
+from typing import Any
+
+import numpy as np
+
+from ...api.arm import Arm
+from ...api.sweeping import sweep
+from ...errors import InputError
+from ...model.arm.quantities import QUANTITIES
+from ...model.units import in_si
+from ..state import LAWS, PageState, number
+
+Dataset = Any
+"""An xarray.Dataset, or an array of one."""
+ROWS = 20
+"""Values of the second parameter; curves of boundaries are traced between them."""
+SLOW_ROWS = 8
+"""Values of the second parameter of rods whose thresholds take seconds each: those that are not uniform."""
+COLUMNS = 121
+"""Values of the load. They cost little: a row is solved from its crossings."""
+ARM_ROWS = 12
+ARM_SPAN = 2.0
+"""Ratio of the largest value of an arm's quantity to the present one: all arms must stay slender."""
+CRUSHED = -2
+"""Stored in `unstable_count` where the load crushes the rod."""
+SPAN = 10.0
+"""Ratio of the largest value of the second parameter to the present one, and of that to the smallest."""
+TAPERS = (0.4, 1.6)
+"""Range of the taper, below which cones take minutes."""
+
+
+def diagram(state: PageState) -> dict[str, Any]:
+    """Classes over a grid, or crossings of each row, whichever the rod has.
+
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), -1 where it is not
+    known. curve_x, curve_y, curve_number, curve_kind: (curve points,). crossing_x, crossing_y,
+    crossing_kind: (crossings,).
+    """
+    state.subject()
+    if state.tab == "arm":
+        return _of_arm(state)
+    return _of_phases(state) if uniform(state) else _of_thresholds(state)
+
+
+def uniform(state: PageState) -> bool:
+    """Whether the task phase_diagram solves these rods."""
+    return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
+
+
+def span(state: PageState) -> np.ndarray:
+    """Values of the second parameter, (rows,), around that of the point."""
+    rows = ROWS if uniform(state) else SLOW_ROWS
+    if state.second == "taper":
+        return np.linspace(*TAPERS, rows)
+    value = number(state.rod[state.second])
+    if not (0 < value < np.inf):
+        raise InputError(f"{state.second} = {value:g} is not in the middle of a finite range above 0")
+    return np.geomspace(value / SPAN, value * SPAN, rows)
+
+
+def _fixed(state: PageState) -> dict[str, Any]:
+    return {n: v for n, v in state.parameters().items() if n not in ("F", "gamma1", state.second)}
+
+
+def _of_phases(state: PageState) -> dict[str, Any]:
+    F = np.linspace(0, state.largest_force(), COLUMNS)
+    keywords: dict[str, Any] = {"F": F, state.second: span(state), **_fixed(state)}
+    data = sweep("phase_diagram", **keywords)
+    return of_phases(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second)
+
+
+def of_phases(data: Dataset, second: str) -> dict[str, Any]:
+    """The diagram of the task phase_diagram over F and a second parameter."""
+    counts = data["unstable_count"].transpose(second, "F").values
+    crushed = data["class"].transpose(second, "F").values == _code(data["class"], "crushed")
+    curves = _no_curves()
+    if "curve_F" in data and f"curve_{second}" in data:
+        curves = {
+            "curve_x": data["curve_F"].values,
+            "curve_y": data[f"curve_{second}"].values,
+            "curve_number": data["curve_number"].values,
+            "curve_kind": words_of(data["curve_kind"]),
+        }
+    return {
+        "x": data["F"].values,
+        "y": data[second].values,
+        "unstable_count": np.where(crushed, CRUSHED, counts),
+        **curves,
+        **_no_crossings(),
+    }
+
+
+def of_grid(data: Dataset, second: str) -> dict[str, Any]:
+    """The diagram of the task spectrum over F and a second parameter."""
+    counts = data["unstable_count"].transpose(second, "F").values
+    return {
+        "x": data["F"].values,
+        "y": data[second].values,
+        "unstable_count": counts,
+        **_no_curves(),
+        **_no_crossings(),
+    }
+
+
+def _of_thresholds(state: PageState) -> dict[str, Any]:
+    keywords: dict[str, Any] = {**_fixed(state), state.second: span(state)}
+    keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
+    data = sweep("thresholds", **keywords, F_max=state.largest_force())
+    data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
+    return of_rows(data, span(state), "crossing_F", state.largest_force())
+
+
+def _of_arm(state: PageState) -> dict[str, Any]:
+    given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
+    quantity = QUANTITIES[state.second]
+    middle = in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
+    values = np.geomspace(middle / ARM_SPAN, middle * ARM_SPAN, ARM_ROWS)
+    subject = state.subject()
+    assert isinstance(subject, Arm)
+    arms = given | {state.second: list(map(float, values))}
+    data = sweep("thresholds", arm=arms, F_max=state.largest_force())
+    data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
+    flutter = data["pressure_hopf"].values
+    known = flutter[np.isfinite(flutter)]
+    largest = 2 * max(subject.si.pressure or 0.0, known.min() if len(known) else 0.0)
+    return of_rows(data, values, "crossing_pressure", largest or float(data["pressure_end"].max()))
+
+
+def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
+    """The diagram of the task thresholds over a second parameter: crossings of each row.
+
+    values: (rows,) of the second parameter. largest: largest load of the diagram.
+    name: variable of the load at crossings.
+    """
+    at, after, kind = data[name].values, data["unstable_after"].values, words_of(data["crossing_kind"])
+    x = np.linspace(0, largest, COLUMNS)
+    counts = np.zeros((len(values), COLUMNS), dtype=int)
+    for row in range(len(values)):
+        for place, count in zip(at[row], after[row], strict=True):
+            if np.isfinite(place):
+                counts[row, x > place] = count
+    known = np.isfinite(at) & (at <= largest)
+    rows = np.broadcast_to(values[:, None], at.shape)
+    return {
+        "x": x, "y": values, "unstable_count": counts, **_no_curves(),
+        "crossing_x": at[known], "crossing_y": rows[known], "crossing_kind": list(kind[known]),
+    }  # fmt: skip
+
+
+def _no_curves() -> dict[str, Any]:
+    empty = np.zeros(0)
+    return {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
+
+
+def _no_crossings() -> dict[str, Any]:
+    return {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
+
+
+def _code(array: Dataset, word: str) -> int:
+    """Number that stands for a word."""
+    words = str(array.attrs["flag_meanings"]).split()
+    return int(np.atleast_1d(array.attrs["flag_values"])[words.index(word)])
+
+
+def words_of(array: Dataset) -> Any:
+    """The words of an array of flags, in its shape."""
+    words = str(array.attrs["flag_meanings"]).split()
+    by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), words, strict=True))
+    return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)

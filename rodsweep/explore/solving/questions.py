@@ -1,0 +1,147 @@
+"""What the page asks, and how a solver's process answers: plain arrays, no object of a solver."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...api.answers.answer import Answer
+from ...api.dataset import view_of
+from ...api.sweeping import sweep
+from ...arrays import Array
+from ...config.axes import DEFAULTS
+from ...post.branch_curves import curves_of
+from ..state import LAWS, PageState, rod_of
+from .diagrams import diagram, words_of
+
+Found = dict[str, Any]
+"""Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
+MODES = 6
+"""Eigenvalues in the picture of the spectrum."""
+SHAPES = 48
+"""Shapes of the arm over a period; the browser interpolates between them."""
+FORCES = 121
+"""Forces of the curve of growth rates."""
+BELOW_CRUSHING = 0.98
+"""Largest force of a curve, as a fraction of the force that crushes the thinnest section."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """kind: a key of `ANSWERS`. state: the state of the page when it asked."""
+
+    kind: str
+    state: PageState
+
+
+class Reply(NamedTuple):
+    """Outcome of a question: "answer", "refused", "failed" or "cancelled".
+
+    A process that has started sends "ready" unasked. content: variables by name of an answer, else the
+    sentence as `sentence`. seconds: time of the solve.
+    """
+
+    outcome: str
+    content: Found
+    seconds: float
+
+
+def variables(answer: Answer) -> Found:
+    """Everything that an answer holds."""
+    found: Found = {str(name): array.values for name, array in answer.data.variables.items()}
+    return found | {
+        "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
+        "units": answer.units,
+    }  # fmt: skip
+
+
+def spectrum(state: PageState) -> Found:
+    """Leading eigenvalues with their count, and the shapes of the modes."""
+    return variables(state.subject().spectrum(modes=MODES, vectors=True))
+
+
+def thresholds(state: PageState) -> Found:
+    """Forces at which stability changes; `kinds` are the words of `crossing_kind`."""
+    answer = state.subject().thresholds(F_max=state.largest_force())
+    return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
+
+
+def growth(state: PageState) -> Found:
+    """Growth rates of the leading modes along F."""
+    rod = rod_of(state.subject())
+    keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
+    keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
+    F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), FORCES)
+    data = sweep("spectrum", F=F, **keywords, certify=False)
+    rates = data["growth_rate"].values.reshape(FORCES, -1)
+    return {"F": F, "growth_rate": rates, "unstable_count": data["unstable_count"].values.reshape(-1)}
+
+
+def cycle(state: PageState) -> Found:
+    """The limit cycle, with the shapes of the arm over a period."""
+    return variables(state.subject().cycle(shapes=SHAPES))
+
+
+def branch(state: PageState) -> Found:
+    """Branches of cycles along F.
+
+    pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1, 0, or -1 where it
+    is not known. special: (F, y, kind, period) of each special point.
+    """
+    answer = state.subject().branch(stop=state.largest_force())
+    curves = curves_of(view_of(answer.whole, Path(answer.rod)), 0)
+    pieces = [piece for curve in curves for piece in pieces_of(curve.at, curve.y, curve.stable)]
+    special = [(p.at, p.tip_y_max, p.kind, p.period) for curve in curves for p in curve.special]
+    return {
+        "pieces": pieces + straight_pieces(answer, state.largest_force()),
+        "special": [each for each in special if each[2] != "end"],
+        "status": str(answer.status),
+        "sentence": answer.sentence,
+    }
+
+
+def pieces_of(at: Array, y: Array, stable: NDArray[np.integer]) -> list[tuple[Array, Array, int]]:
+    """Pieces of equal stability of a curve through (n,) vertices; stable: (n - 1,)."""
+    starts = [0, *(i for i in range(1, len(stable)) if stable[i] != stable[i - 1]), len(stable)]
+    return [
+        (at[a : b + 1], y[a : b + 1], int(stable[a])) for a, b in pairwise(starts) if b > a
+    ]  # fmt: skip
+
+
+def straight_pieces(answer: Answer, stop: float) -> list[tuple[Array, Array, int]]:
+    """The straight state from F = 0 to `stop`, in pieces between its Hopf points: F and y of shape (2,)."""
+    data = answer.data
+    hopf = words_of(data["special_kind"]) == "hopf"
+    at = data["special_at"].values[hopf]
+    order = np.argsort(at)
+    after = data["special_unstable_after"].values[hopf][order]
+    counts = [int(data["unstable_at_start"]), *map(int, after)]
+    ends = [0.0, *at[order], stop]
+    return [
+        (np.array(piece), np.zeros(2), -1 if count < 0 else int(count == 0))
+        for piece, count in zip(pairwise(ends), counts, strict=True)
+    ]
+
+
+def crushing_force(rod: Mapping[str, float]) -> float:
+    """Force that crushes the thinnest section of a rod of linear material: k1, or at a thin tip less."""
+    return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
+
+
+ANSWERS: dict[str, Callable[[PageState], Found]] = {
+    "spectrum": spectrum,
+    "thresholds": thresholds,
+    "growth": growth,
+    "cycle": cycle,
+    "branch": branch,
+    "diagram": diagram,
+}
+
+
+def answer_to(question: Question) -> Found:
+    """The answer; InputError for bad values."""
+    return ANSWERS[question.kind](question.state)

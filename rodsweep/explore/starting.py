@@ -1,0 +1,25 @@
+"""Starts the page for a result file, a config, or nothing."""
+
+import asyncio
+from pathlib import Path
+
+from ..errors import InputError
+from .state import PageState
+
+
+def explore(source: Path | None, port: int, is_opened: bool) -> None:
+    """Serves the page until Ctrl-C; source: a result file or a config whose rod is shown first.
+
+    Raises InputError if bokeh is missing, the source is neither, or the port is in use.
+    """
+    try:
+        import bokeh  # noqa: F401 - whether it is there
+    except ImportError:
+        raise InputError(
+            "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"
+        ) from None
+    from .server import serve
+    from .stored import opened
+
+    state, stored = (PageState(), None) if source is None else opened(source)
+    asyncio.run(serve(state, stored, port, is_opened))

@@ -1,0 +1,103 @@
+"""The page of a result file or a config: its first rod, and the diagram that a file holds."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..api.dataset import open_result
+from ..config.document.reading import config_of, load_config
+from ..config.schema import Config
+from ..errors import InputError
+from .scales import SCALES
+from .solving.diagrams import Dataset, of_grid, of_phases, of_rows
+from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
+
+RESULTS = (".h5", ".hdf5", ".nc")
+"""Endings of names of result files; all other files are configs."""
+NOT_SHOWN = ("density_difference", "fluid_density", "law", "section")
+"""Quantities of an arm that change no number on the page, or have a control of their own."""
+
+
+def opened(path: Path) -> tuple[PageState, dict[str, Any] | None]:
+    """(state of the first page, stored diagram or None) of a result file or a config.
+
+    Raises InputError if it is neither, or holds arms that the page cannot show.
+    """
+    if path.suffix not in RESULTS:
+        return state_of(load_config(path)[0], path), None
+    data = open_result(path)
+    try:
+        state = state_of(config_of(json.loads(data.attrs["config_resolved"])), path)
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from None
+    return state, stored_diagram(data, state)
+
+
+def state_of(config: Config, path: Path) -> PageState:
+    """State of a config: each axis at its middle value, and the axis with most values across the load."""
+    if config.parameters.arm is not None:
+        return _state_of_arm(config, path)
+    material = _law(config, path)
+    axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
+    if not axes:
+        raise InputError(f"{path}: the points of a list are no single rod; the page needs axes of parameters")
+    rod = {name: _text(axes[name]) if name in axes else text for name, text in ROD.items()}
+    several = [name for name in ACROSS["rod"] if name in axes and len(axes[name]) > 1]
+    across = max(several, key=lambda name: len(axes[name]), default="")
+    F = axes.get("F", np.zeros(1))
+    largest = f"{F.max():g}" if len(F) > 1 and F.max() > 0 else DEFAULT_F_MAX
+    return PageState(rod=rod, law=material, across=across, F_max=largest)
+
+
+def _state_of_arm(config: Config, path: Path) -> PageState:
+    section: Any = config.parameters.arm
+    given = {name: getattr(section, name) for name in type(section).model_fields}
+    given = {name: value for name, value in given.items() if value is not None}
+    left_out = [name for name in given if name not in (*ARM, *NOT_SHOWN)]
+    if left_out:
+        raise InputError(
+            f"{path}: an arm with {left_out[0]} has no place on the page; it shows {', '.join(ARM)}"
+        )
+    texts = dict(ARM)
+    for name in ARM.keys() & given.keys():
+        scale, values = SCALES["arm"][name], given[name].array()
+        texts[name] = scale.text(scale.factor * float(values[len(values) // 2]))
+    return PageState(tab="arm", arm=texts, law=_law(config, path))
+
+
+def _law(config: Config, path: Path) -> str:
+    """Key of `LAWS` of a config."""
+    material = config.material
+    if material is None:
+        return "linear"
+    given = material.model_dump(exclude_none=True)
+    if "profile" in given:
+        raise InputError(
+            f"{path}: an arm with a profile has no place on the page; it shows uniform arms and cones"
+        )
+    words = {"law": "neo_hookean", "section": given.get("section", "fixed")}
+    return "linear" if given.get("law") != "neo_hookean" else next(k for k, v in LAWS.items() if v == words)
+
+
+def _text(values: np.ndarray) -> str:
+    return f"{values[len(values) // 2]:.6g}"
+
+
+def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
+    """The diagram over the load and the state's second parameter of a file; None if it holds none."""
+    second = state.second
+    dims = set(data["status"].dims)
+    if state.tab != "rod" or second not in dims or data.sizes[second] < 2:
+        return None
+    middle = {n: data.sizes[n] // 2 for n in ROD if n in dims and n not in ("F", second)}
+    data = data.isel(middle)
+    over_F = data.sizes.get("F", 1) > 1
+    if "class" in data and over_F:
+        return of_phases(data, second)
+    if "crossing_F" in data:
+        return of_rows(data, data[second].values, "crossing_F", float(data["F_end"].max()))
+    if "unstable_count" in data and over_F:
+        return of_grid(data, second)
+    return None

@@ -1,0 +1,152 @@
+"""The page of `rodsweep explore` in a real browser: what a user sees and clicks."""
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from html import unescape
+
+import pytest
+from explore.browser import LONGEST, Browser, needs_browser
+
+import rodsweep as rs
+from rodsweep.explore.pictures.numbers import written
+
+pytestmark = needs_browser
+SOLVED = "Bokeh.documents[0].get_model_by_name('working').text == ''"
+ROD = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01)
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    argv = [sys.executable, "-m", "rodsweep", "explore"]
+    process = subprocess.Popen(argv, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    yield re.match(r"(http://127\.0\.0\.1:\d+/) ", process.stdout.readline())[1]
+    process.send_signal(signal.SIGINT)
+    process.wait(LONGEST)
+    process.stdout.close()
+
+
+@pytest.fixture(scope="module")
+def opened(url) -> Iterator[Browser]:
+    with Browser() as browser:
+        browser.open(f"{url}?F_max=150")  # branches up to 200 take twice the time
+        yield browser
+
+
+@pytest.fixture
+def browser(opened) -> Browser:
+    """The page with the first rod, all solved."""
+    change(opened, "F_field", "50")
+    change(opened, "k2_field", "100")
+    solved(opened)
+    return opened
+
+
+def change(browser: Browser, name: str, value: object) -> None:
+    """Changes a control as a user does."""
+    browser.run("Bokeh.documents[0].get_model_by_name(arguments[0]).value = arguments[1]", name, value)
+
+
+def solved(browser: Browser) -> None:
+    """Waits until nothing is being solved: the server has heard of the last change when it answers again."""
+    time.sleep(0.3)
+    browser.wait_for(SOLVED)
+
+
+def numbers(browser: Browser) -> dict[str, str]:
+    """Texts of the table by name of the variable."""
+    text = unescape(browser.model("numbers", "text"))
+    return dict(re.findall(r'<tr data-name="(\w+)"><td>[^<]*</td><td>([^<]*)</td>', text))
+
+
+def test_the_numbers_on_the_page_are_those_of_the_solver(browser):
+    shown, spectrum, cycle, thresholds = numbers(browser), ROD.spectrum(), ROD.cycle(), ROD.thresholds()
+    for answer, names in (
+        (spectrum, ("growth_rate", "frequency", "unstable_count")),
+        (thresholds, ("F_onset", "F_hopf", "hopf_frequency")),
+    ):
+        assert {n: shown[n] for n in names} == {n: written(answer.data[n].values) for n in names}
+    # The start of a cycle differs between the page, which had other rods before, and a new process.
+    for name in ("period", "tip_y_max", "injection_mean", "dissipation_mean"):
+        assert float(shown[name]) == pytest.approx(float(cycle.data[name]), rel=1e-6)
+
+
+def test_the_count_is_certified_in_the_picture(browser):
+    assert browser.model("spectrum_figure", "title.text") == "2 unstable modes, certified"
+
+
+def test_the_animation_advances(browser):
+    shape = "return Array.from(Bokeh.documents[0].get_model_by_name('arm_source').data.y)"
+    first = browser.run(shape)
+    assert len(first) > 10
+    browser.wait_for(f"{shape.removeprefix('return ')}[{len(first) - 1}] != {first[-1]!r}")
+
+
+def test_a_click_in_the_diagram_moves_the_point_and_everything_follows(browser):
+    browser.wait_for("Bokeh.documents[0].get_model_by_name('cell_source').data.left.length > 0")
+    browser.click("diagram_figure", 120.0, 300.0)
+    browser.wait_for("Bokeh.documents[0].get_model_by_name('F_field').value != '50'")
+    solved(browser)
+    F, k2 = (float(browser.model(f"{name}_field", "value")) for name in ("F", "k2"))
+    assert (F, k2) == (pytest.approx(120, abs=2), pytest.approx(300, rel=0.1))
+    answer = rs.Rod(F=F, k1=1e4, k2=k2, gamma3=0.01).spectrum()
+    assert numbers(browser)["growth_rate"] == written(answer.growth_rate)
+    assert browser.run("return location.search").startswith(f"?tab=rod&F={F:g}&")
+
+
+def test_a_click_on_the_thresholds_moves_the_load(browser):
+    browser.click("growth_figure", 100.0, 1000.0)
+    browser.wait_for("Bokeh.documents[0].get_model_by_name('F_field').value != '50'")
+    assert float(browser.model("F_field", "value")) == pytest.approx(100, abs=2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("F", "abc"), ("F", ""), ("F", "1e5"), ("F", "nan"), ("k1", "-1"), ("k1", "0"), ("k2", "1,5"),
+        ("k2", "<b>x</b>"), ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"),
+        ("taper", "1e9"), ("k1", "40"), ("k2", "1e400"),
+    ],
+)  # fmt: skip
+def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(opened, name, value):
+    browser = opened
+    before = browser.model(f"{name}_field", "value")
+    change(browser, f"{name}_field", value)
+    browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_message').visible")
+    sentence = unescape(browser.model("spectrum_message", "text"))
+    assert name in sentence
+    assert "<b>" not in browser.model("spectrum_message", "text")
+    assert not browser.model("spectrum_figure", "visible")
+    change(browser, f"{name}_field", before)
+    browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_figure').visible")
+    assert not browser.model("spectrum_message", "visible")
+
+
+def test_a_slider_that_never_rests_ends_at_its_last_value(browser):
+    for step in range(40):
+        change(browser, "F_slider", 20.0 + step)
+    solved(browser)
+    F = float(browser.model("F_field", "value"))
+    assert pytest.approx(59.0) == F
+    assert numbers(browser)["growth_rate"] == written(ROD.replace(F=F).spectrum().growth_rate)
+
+
+def test_an_address_opens_the_same_page_and_an_arm_has_si_units(url, browser):
+    with Browser(width=800, dark=True) as other:
+        other.open(f"{url}?tab=arm&length=12+cm&pressure=5+kPa")
+        solved(other)
+        arm = rs.Arm(length="12 cm", radius="5 mm", young="100 kPa", viscosity="12 Pa s", pressure="5 kPa")
+        shown = numbers(other)
+        assert other.model("length_field", "value") == "12 cm"
+        assert float(shown["pressure_hopf"]) == pytest.approx(arm.thresholds().pressure_hopf / 1e3, rel=1e-7)
+        assert float(shown["period_si"]) == pytest.approx(arm.cycle().period_si, rel=1e-6)
+        assert float(shown["tip_y_max_si"]) == pytest.approx(arm.cycle().tip_y_max_si * 100, rel=1e-6)
+        assert other.complaints() == []
+
+
+def test_nothing_is_on_the_console(browser):
+    assert browser.complaints() == []

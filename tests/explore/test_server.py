@@ -1,0 +1,161 @@
+"""The server of `rodsweep explore`: who may connect, what is refused, and that it ends cleanly."""
+
+import asyncio
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
+from tornado.web import Application, RequestHandler
+from tornado.websocket import websocket_connect
+
+from rodsweep.explore.server import ADDRESS, ExploreServer, UndelayedServer
+from rodsweep.explore.state import PageState
+
+LONGEST = 60
+"""Seconds that a loaded machine may need to start or to end the server."""
+
+
+async def connected(server: ExploreServer, origin: str) -> str:
+    """Opens the websocket of a page from an origin; the first message of the server."""
+    page = (await AsyncHTTPClient().fetch(server.url)).body.decode()
+    token = re.search(r'"token":"([^"]+)"', page)[1]
+    request = HTTPRequest(
+        f"ws://{ADDRESS}:{server.port}/ws",
+        headers={"Origin": origin, "Sec-WebSocket-Protocol": f"bokeh, {token}"},
+    )
+    connection = await websocket_connect(request, subprotocols=["bokeh", token])
+    message = await connection.read_message()
+    connection.close()
+    return str(message)
+
+
+def served(origin: str) -> str:
+    """`connected` with a server of its own; origin: with {port} for its port."""
+
+    async def run() -> str:
+        server = ExploreServer(PageState())
+        server.server.start()
+        try:
+            return await connected(server, origin.format(port=server.port))
+        finally:
+            server.stop()
+
+    return asyncio.run(run())
+
+
+@pytest.mark.parametrize("origin", ["http://127.0.0.1:{port}", "http://localhost:{port}"])
+def test_the_page_itself_may_connect(origin):
+    assert "ACK" in served(origin)
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "http://127.0.0.1:1", "http://evil.example:{port}"]
+)
+def test_a_foreign_origin_is_forbidden(origin):
+    with pytest.raises(HTTPClientError) as refusal:
+        served(origin)
+    assert refusal.value.code == 403
+
+
+def test_no_other_machine_reaches_the_server():
+    async def addresses() -> list[str]:
+        server = ExploreServer(PageState())
+        try:
+            return [each.getsockname()[0] for each in server.http._sockets.values()]
+        finally:
+            server.stop()
+
+    assert asyncio.run(addresses()) == ["127.0.0.1"]
+
+
+def test_small_changes_are_sent_at_once():
+    seen: list[int] = []
+
+    class Seen(RequestHandler):
+        def get(self) -> None:
+            stream = self.request.connection.stream
+            seen.append(stream.socket.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+
+    async def run() -> None:
+        server = UndelayedServer(Application([("/", Seen)]))
+        server.listen(0, ADDRESS)
+        (listening,) = server._sockets.values()
+        await AsyncHTTPClient().fetch(f"http://{ADDRESS}:{listening.getsockname()[1]}/")
+        server.stop()
+
+    asyncio.run(run())
+    assert seen[0] != 0
+
+
+def started(*words: str) -> tuple[subprocess.Popen, str]:
+    """The command in a process of its own, and the address that it prints."""
+    argv = [sys.executable, "-m", "rodsweep", "explore", *words]
+    process = subprocess.Popen(argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    return process, re.match(r"(http://127\.0\.0\.1:\d+/) ", line)[1]
+
+
+def children(pid: int) -> list[int]:
+    """Processes started by a process."""
+    with open(f"/proc/{pid}/task/{pid}/children") as listed:
+        return list(map(int, listed.read().split()))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_the_server_with_all_its_processes(number):
+    process, _ = started()
+    solvers = children(process.pid)
+    assert len(solvers) == 3
+    process.send_signal(number)
+    output, errors = process.communicate(timeout=LONGEST)
+    assert (process.returncode, output, errors) == (0, "", "")
+    end = time.monotonic() + LONGEST
+    while any(os.path.exists(f"/proc/{pid}") for pid in solvers):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def test_a_port_in_use_is_refused(command):
+    with socket.socket() as other:
+        other.bind((ADDRESS, 0))
+        other.listen()
+        port = other.getsockname()[1]
+        done = command.afresh("explore", "--port", port)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"rodsweep: --port {port}: ")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_without_bokeh_the_extra_is_named():
+    lines = ("import sys", "sys.modules['bokeh'] = None", "sys.argv = ['rodsweep', 'explore']")
+    argv = [sys.executable, "-c", "; ".join((*lines, "import rodsweep.__main__"))]
+    done = subprocess.run(argv, capture_output=True, text=True, timeout=LONGEST, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "rodsweep[explore]" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("absent.h5", None),
+        ("absent.yaml", None),
+        ("text.h5", "no result"),
+        ("list.yaml", "- 1"),
+        ("typo.yaml", "task: spectrum\nparameters: {F: 3, k1: 1e4, k2: 1e4, gama3: 0}"),
+    ],
+)
+def test_what_is_neither_result_nor_config_is_refused(command, name, text):
+    if text is not None:
+        command.write(name, text)
+    done = command.afresh("explore", name)
+    assert done.returncode == 2
+    assert name in done.stderr
+    assert len(done.stderr.splitlines()) == 1

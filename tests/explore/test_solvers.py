@@ -1,0 +1,187 @@
+"""The processes that solve for the page of `explore`: newest question first, none left behind."""
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import rodsweep as rs
+from rodsweep.explore.solving.questions import Question, Reply
+from rodsweep.explore.solving.solvers import Patience, SolverProcess, Solvers
+from rodsweep.explore.state import PageState
+
+HARD = PageState().with_values(taper="0.6")
+"""A rod whose branches take half a minute."""
+SLOW = Question("branch", HARD)
+QUICK = Question("thresholds", PageState())
+LONGEST = 60.0
+"""Seconds that a loaded machine may need to start a process and to solve one question."""
+
+
+def wait_until(is_true: Callable[[], object]) -> None:
+    """Runs the loop until a condition holds; AssertionError after `LONGEST`."""
+
+    async def waiting() -> None:
+        end = time.monotonic() + LONGEST
+        while not is_true():
+            assert time.monotonic() < end, "the solver did not answer"
+            await asyncio.sleep(0.01)
+
+    asyncio.get_event_loop().run_until_complete(waiting())
+
+
+@pytest.fixture(autouse=True)
+def loop():
+    made = asyncio.new_event_loop()
+    asyncio.set_event_loop(made)
+    yield made
+    made.close()
+    asyncio.set_event_loop(None)
+
+
+@pytest.fixture
+def solver():
+    made = SolverProcess(Patience(interrupt=0.05, kill=LONGEST))
+    yield made
+    made.close()
+
+
+def exists(pid: int) -> bool:
+    """Whether a process runs; a zombie does not."""
+    try:
+        with open(f"/proc/{pid}/stat") as stat:
+            return stat.read().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_an_answer_is_that_of_the_python_interface(solver):
+    replies: list[Reply] = []
+    solver.ask(("page", "spectrum"), Question("spectrum", PageState()), replies.append)
+    wait_until(lambda: replies)
+    found = replies[0].content
+    answer = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).spectrum(modes=6)
+    assert replies[0].outcome == "answer"
+    assert found["growth_rate"] == pytest.approx(answer.growth_rate, rel=1e-10)
+    assert (found["unstable_count"], bool(found["certified"])) == (answer.unstable_count, answer.certified)
+
+
+def test_what_the_solver_refuses_comes_as_its_sentence(solver):
+    replies: list[Reply] = []
+    solver.ask(("page", "spectrum"), Question("spectrum", PageState().with_values(F="2e4")), replies.append)
+    wait_until(lambda: replies)
+    assert replies[0].outcome == "refused"
+    assert "crushed" in replies[0].content["sentence"]
+
+
+def test_a_newer_question_cancels_an_older_one_in_the_same_process(solver):
+    old: list[Reply] = []
+    new: list[Reply] = []
+    solver.ask(("page", "branch"), SLOW, old.append)
+    pid = solver.pid
+    wait_until(lambda: _has_read(solver))
+    solver.ask(("page", "branch"), QUICK, new.append)
+    wait_until(lambda: new)
+    assert (old, new[0].outcome, solver.pid, solver.starts) == ([], "answer", pid, 1)
+
+
+def test_of_questions_that_wait_only_the_newest_is_answered(solver):
+    replies: list[float] = []
+    for F in range(20, 60):
+        question = Question("spectrum", PageState().with_values(F=str(F)))
+        solver.ask(("page", "spectrum"), question, lambda reply: replies.append(float(reply.content["F"])))
+    wait_until(lambda: 59 in replies)
+    assert len(replies) < 40
+    assert np.all(np.diff(replies) > 0)
+
+
+def test_questions_of_another_page_are_kept(solver):
+    replies: dict[str, Reply] = {}
+    for page in ("one", "two"):
+        solver.ask((page, "thresholds"), QUICK, lambda reply, page=page: replies.setdefault(page, reply))
+    wait_until(lambda: len(replies) == 2)
+    assert {reply.outcome for reply in replies.values()} == {"answer"}
+
+
+def test_a_page_that_ends_takes_its_questions_along(solver):
+    replies: list[Reply] = []
+    solver.ask(("one", "branch"), SLOW, replies.append)
+    wait_until(lambda: _has_read(solver))
+    solver.forget("one")
+    solver.ask(("two", "thresholds"), QUICK, replies.append)
+    wait_until(lambda: replies)
+    assert [reply.content["status"] for reply in replies] == ["ok"]
+    assert "kinds" in replies[0].content
+
+
+def test_a_solver_that_does_not_answer_is_killed_and_started_again():
+    solver = SolverProcess(Patience(interrupt=0.05, kill=0.2))
+    try:
+        replies: list[Reply] = []
+        solver.ask(("page", "branch"), SLOW, replies.append)
+        first = solver.pid
+        wait_until(lambda: solver.is_ready)
+        os.kill(first, signal.SIGSTOP)
+        solver.ask(("page", "branch"), QUICK, replies.append)
+        wait_until(lambda: replies)
+        assert (replies[0].outcome, solver.starts) == ("answer", 2)
+        assert not exists(first)
+    finally:
+        solver.close()
+
+
+def test_a_solver_that_dies_says_so_and_the_next_question_is_answered(solver):
+    replies: list[Reply] = []
+    solver.ask(("page", "branch"), SLOW, replies.append)
+    os.kill(solver.pid, signal.SIGKILL)
+    wait_until(lambda: replies)
+    assert replies[0].outcome == "failed"
+    solver.ask(("page", "branch"), QUICK, replies.append)
+    wait_until(lambda: len(replies) == 2)
+    assert replies[1].outcome == "answer"
+
+
+def test_closing_ends_all_processes():
+    solvers = Solvers()
+    solvers.warm_up()
+    pids = [solver.pid for solver in solvers.groups.values() if solver.pid is not None]
+    assert len(pids) == 3
+    solvers.close()
+    assert not any(map(exists, pids))
+
+
+def test_a_solver_ends_in_the_middle_of_a_solve_when_its_page_is_killed():
+    """The page's process has no time to say anything."""
+    lines = [
+        "import asyncio, sys, time",
+        "from rodsweep.explore.solving.questions import Question",
+        "from rodsweep.explore.solving.solvers import SolverProcess",
+        "from rodsweep.explore.state import PageState",
+        "asyncio.set_event_loop(asyncio.new_event_loop())",
+        "solver = SolverProcess()",
+        "question = Question('branch', PageState().with_values(taper='0.6'))",
+        "solver.ask(('page', 'branch'), question, print)",
+        "print(solver.pid, flush=True)",
+        "time.sleep(100)",
+    ]
+    page = subprocess.Popen([sys.executable, "-c", "\n".join(lines)], stdout=subprocess.PIPE, text=True)
+    assert page.stdout is not None
+    pid = int(page.stdout.readline())
+    assert exists(pid)
+    page.kill()
+    page.wait()
+    page.stdout.close()
+    wait_until(lambda: not exists(pid))
+
+
+def _has_read(solver: SolverProcess) -> bool:
+    """Whether the process of a solver solves: it has used a second of processor time since its start."""
+    with open(f"/proc/{solver.pid}/stat") as stat:
+        used = sum(map(int, stat.read().rpartition(")")[2].split()[11:13]))
+    return used / os.sysconf("SC_CLK_TCK") > 3.0

@@ -1,0 +1,101 @@
+"""The state of the page of `explore`: addresses, configs, Python lines, configs and files that it opens."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rodsweep as rs
+from rodsweep.errors import InputError
+from rodsweep.explore.sharing import state_of_text
+from rodsweep.explore.state import ACROSS, ARM, LAWS, ROD, PageState, from_address
+
+TEXT = st.text(st.characters(exclude_categories=("Cs",)), max_size=12)
+RODS = st.builds(
+    lambda texts, law, across, F_max: PageState(
+        rod=dict(zip(ROD, texts, strict=True)), law=law, across=across, F_max=F_max
+    ),
+    st.lists(TEXT, min_size=len(ROD), max_size=len(ROD)),
+    st.sampled_from(list(LAWS)),
+    st.sampled_from(ACROSS["rod"]),
+    TEXT,
+)
+OTHER = {"F": "31.5", "k1": "inf", "k2": "2e3", "gamma3": "1e-3", "gamma1": "0.5", "taper": "0.8"}
+"""A rod of which no value is the default."""
+
+
+@given(RODS)
+def test_an_address_gives_the_same_state_whatever_was_typed(state):
+    assert from_address(state.address()) == state
+
+
+def test_the_address_of_an_arm_gives_the_same_arm():
+    state = PageState(tab="arm", arm=ARM | {"length": "12.5 cm"}, law="swelling", across="young", F_max="90")
+    assert from_address("?" + state.address()) == state
+
+
+@pytest.mark.parametrize(
+    ("query", "named"),
+    [
+        ("f=3", "f"),
+        ("law=rubber", "law"),
+        ("tab=wrist", "tab"),
+        ("across=gamma1", "across"),
+        ("F=3&length=2", "length"),
+    ],
+)
+def test_an_address_with_an_unknown_key_or_choice_is_refused(query, named):
+    with pytest.raises(InputError, match=named):
+        from_address(query)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_loaded_config_is_the_state_that_saved_it(law):
+    state = PageState(rod=OTHER, law=law)
+    assert state_of_text(state.yaml("limit_cycle")).subject() == state.subject()
+
+
+def test_a_loaded_config_of_an_arm_is_the_arm_that_saved_it():
+    state = PageState(tab="arm", arm=ARM | {"pressure": "3.25 kPa", "radius": "4 mm"})
+    loaded = state_of_text(state.yaml("limit_cycle"))
+    assert (loaded.tab, loaded.arm) == ("arm", state.arm)
+
+
+@pytest.mark.parametrize("text", ["", "- 1", "task: spectrum", "task: [", "parameters: {F: 3}"])
+def test_text_that_is_no_config_is_refused_in_a_sentence(text):
+    with pytest.raises(InputError):
+        state_of_text(text)
+
+
+def test_a_config_of_an_arm_that_varies_along_its_length_is_refused():
+    profile = "material: {profile: {u: [0, 1], k1: [1, 2], k2: [1, 2], k3: [1, 2], gamma3: [1, 1]}}"
+    with pytest.raises(InputError, match="profile"):
+        state_of_text(f"task: spectrum\nparameters: {{F: 3, k1: 1e4, k2: 1e4, gamma3: 0.1}}\n{profile}")
+
+
+@pytest.mark.parametrize("tab", ["rod", "arm"])
+def test_the_python_lines_make_the_subject_of_the_state(tab):
+    state = PageState(tab=tab, rod=OTHER, law="fixed")
+    line = next(line for line in state.python().splitlines() if line.startswith(tab))
+    assert eval(line.partition(" = ")[2], {"rs": rs, "inf": float("inf")}) == state.subject()
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("F", "abc"), ("k1", "-5"), ("gamma3", "nan"), ("k2", ""), ("taper", "0"), ("F", "1e5")],
+)
+def test_a_bad_value_has_the_sentence_of_the_command_line(name, text):
+    state = PageState().with_values(**{name: text})
+    with pytest.raises(InputError) as refusal:
+        state.subject()
+    assert name in str(refusal.value)
+    with pytest.raises(InputError) as same:
+        rs.Rod(**state.parameters())
+    assert str(refusal.value) == str(same.value)
+
+
+@pytest.mark.parametrize("F_max", ["0", "-3", "inf", "nan", "x", ""])
+def test_a_largest_force_that_is_no_finite_number_above_0_is_refused(F_max):
+    with pytest.raises(InputError, match="F_max"):
+        replace(PageState(), F_max=F_max).largest_force()
