@@ -1,0 +1,171 @@
+"""The page of `explore` without a browser: what each change asks, and what each answer shows."""
+
+import re
+from html import unescape
+
+import numpy as np
+import pytest
+from bokeh.document import Document
+
+import rodsweep as rs
+from rodsweep.errors import Refusal
+from rodsweep.explore.page import AT_ONCE, Page
+from rodsweep.explore.pictures.diagram import DiagramCell, cells
+from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.solving.questions import Question, Reply, answer_to
+from rodsweep.explore.state import PageState
+from rodsweep.explore.stored import opened
+
+PLANE = """task: phase_diagram
+parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, gamma3: 1.0e-4}
+"""
+
+
+class ImmediateSolvers:
+    """Answers at once, in this process. questions: all that were asked."""
+
+    def __init__(self, kinds: tuple[str, ...] = AT_ONCE):
+        self.kinds = kinds
+        self.questions: list[Question] = []
+
+    def ask(self, session, question, done):
+        self.questions.append(question)
+        if question.kind not in self.kinds:
+            return
+        try:
+            done(Reply("answer", answer_to(question), 0.0))
+        except Refusal as refusal:
+            done(Reply("refused", {"sentence": str(refusal)}, 0.0))
+
+    def drop(self, session, kind):
+        pass
+
+    def forget(self, session):
+        pass
+
+
+def run_callbacks(document: Document, seconds: bool = False) -> None:
+    """Runs what waits for the next tick, or for a rest of the page."""
+    for callback in document.session_callbacks:
+        if hasattr(callback, "timeout") == seconds:
+            remove = document.remove_timeout_callback if seconds else document.remove_next_tick_callback
+            remove(callback)
+            callback.callback()
+
+
+def page_with(
+    solvers: ImmediateSolvers, query: str = "", state: PageState | None = None, stored=None
+) -> Page:
+    page = Page(Document(), solvers, state or PageState(), stored)
+    page.open(query)
+    run_callbacks(page.document)
+    return page
+
+
+def shown(page: Page) -> dict[str, str]:
+    """Numbers of the table by name."""
+    text = unescape(page.contents.numbers.root.text)
+    return dict(re.findall(r'<tr data-name="(\w+)"><td>[^<]*</td><td>([^<]*)</td>', text))
+
+
+def test_pictures_and_numbers_are_those_of_the_solver():
+    page = page_with(ImmediateSolvers())
+    rod = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01)
+    spectrum, thresholds, cycle = rod.spectrum(modes=6), rod.thresholds(), rod.cycle()
+    source = page.contents.spectrum.source.data
+    assert source["growth"] == pytest.approx(spectrum.growth_rate, rel=1e-12)
+    assert page.contents.spectrum.card.figure.title.text == "2 unstable modes, certified"
+    assert shown(page)["F_hopf"] == written(thresholds.F_hopf)
+    assert float(shown(page)["period"]) == pytest.approx(cycle.period, rel=1e-7)
+    shapes = page.contents.beating.shapes.data
+    nodes = int(shapes["number"][0])
+    assert np.max(np.reshape(shapes["y"], (-1, nodes))[:, -1]) == pytest.approx(cycle.tip_y_max, rel=1e-2)
+    assert page.contents.working.text == ""
+
+
+def test_a_change_of_the_load_asks_no_thresholds_again():
+    solvers = ImmediateSolvers()
+    page = page_with(solvers)
+    solvers.questions.clear()
+    page.change({"F": "60"})
+    assert {question.kind for question in solvers.questions} == {"spectrum", "cycle"}
+    solvers.questions.clear()
+    page.change({"k2": "200"})
+    assert {question.kind for question in solvers.questions} == set(AT_ONCE)
+
+
+def test_a_rod_at_rest_says_so_in_place_of_the_arm():
+    page = page_with(ImmediateSolvers(), "F=20")
+    card = page.contents.beating.card
+    assert (card.message.visible, card.figure.visible) == (True, False)
+    assert "straight" in card.message.text
+    page.change({"F": "50"})
+    run_callbacks(page.document)
+    assert (card.message.visible, card.figure.visible) == (False, True)
+
+
+def test_a_bad_value_asks_nothing_and_has_its_sentence():
+    solvers = ImmediateSolvers()
+    page = page_with(solvers)
+    solvers.questions.clear()
+    page.change({"k1": "<i>-1"})
+    assert solvers.questions == []
+    assert "k1" in page.contents.spectrum.card.message.text
+    assert "<i>" not in page.contents.spectrum.card.message.text
+
+
+def test_the_sign_names_what_is_being_solved_until_it_is_answered():
+    page = page_with(ImmediateSolvers(("spectrum", "thresholds")))
+    assert page.contents.working.text == "solving cycle, growth rates ..."
+
+
+def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
+    kept = []
+    solvers = ImmediateSolvers()
+    solvers.ask = lambda session, question, done: kept.append((question, done))
+    page = page_with(solvers)
+    page.change({"F": "60"})
+    question, done = next(each for each in kept if each[0].kind == "spectrum")
+    done(Reply("answer", answer_to(question), 0.0))
+    run_callbacks(page.document)
+    assert "spectrum" in page.contents.working.text
+    assert len(page.contents.spectrum.source.data["growth"]) > 0
+
+
+def test_branches_wait_until_the_page_rests_and_cones_until_the_button():
+    solvers = ImmediateSolvers()
+    page = page_with(solvers)
+    run_callbacks(page.document, seconds=True)
+    assert {"branch", "diagram"} <= {question.kind for question in solvers.questions}
+    solvers.questions.clear()
+    page.change({"taper": "0.7"})
+    run_callbacks(page.document, seconds=True)
+    assert "branch" not in {question.kind for question in solvers.questions}
+    page.solve("branch")
+    assert solvers.questions[-1].kind == "branch"
+
+
+def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
+    command.write("plane.yaml", PLANE)
+    assert command("run", "plane.yaml").returncode == 0
+    state, stored = opened(command.directory / "plane.h5")
+    solvers = ImmediateSolvers()
+    page = page_with(solvers, state=state, stored=stored)
+    run_callbacks(page.document, seconds=True)
+    assert (state.rod["k1"], state.second, state.F_max) == ("200", "k1", "60")
+    assert "diagram" not in {question.kind for question in solvers.questions}
+    counts = rs.open(command.directory / "plane.h5")["unstable_count"].squeeze()
+    drawn = page.contents.diagram.cells.data
+    assert max(drawn["unstable"]) == int(counts.max())
+
+
+def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
+    counts = np.array([[0, 0, 2], [0, 2, 2]])
+    found = cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)
+    root = 10**0.5
+    assert found == [
+        DiagramCell(0.0, 1.5, pytest.approx(1 / root), pytest.approx(root), 0),
+        DiagramCell(1.5, 2.0, pytest.approx(1 / root), pytest.approx(root), 2),
+        DiagramCell(0.0, 0.5, pytest.approx(root), pytest.approx(10 * root), 0),
+        DiagramCell(0.5, 2.0, pytest.approx(root), pytest.approx(10 * root), 2),
+    ]
