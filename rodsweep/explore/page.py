@@ -1,7 +1,6 @@
 """One page, as one browser tab has it: its state, what is being solved, and its pictures."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -87,20 +86,7 @@ class Page:
             "load": self._move_load,
         }
 
-    @contextmanager
-    def _as_one_message(self) -> Iterator[None]:
-        """Sends all changes of the page to the browser together, which draws them once."""
-        self.document.hold("combine")
-        try:
-            yield
-        finally:
-            self.document.unhold()
-
     def _change_to(self, state: PageState) -> None:
-        with self._as_one_message():
-            self._follow(state)
-
-    def _follow(self, state: PageState) -> None:
         self.state = state
         self.contents.controls.show(state)
         try:
@@ -164,10 +150,6 @@ class Page:
     def _answered(self, question: Question, reply: Reply) -> None:
         kind = question.kind
         newest = self.asked.get(kind)
-        with self._as_one_message():
-            self._show(kind, newest, question, reply)
-
-    def _show(self, kind: str, newest: PageState | None, question: Question, reply: Reply) -> None:
         if newest is None:  # the values are bad by now
             return
         if newest == needs(kind, question.state):

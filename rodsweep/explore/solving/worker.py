@@ -62,6 +62,7 @@ def reply_to(question: Question, cancellation: Cancellation) -> Reply:
             outcome, content = "answer", answer_to(question)
         finally:
             cancellation.is_solving = False
+            signal.setitimer(signal.ITIMER_REAL, 0)  # or it would cancel the next question
     except KeyboardInterrupt:
         outcome, content = "cancelled", {}
     except Refusal as error:
