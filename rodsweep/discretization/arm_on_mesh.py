@@ -18,10 +18,6 @@ from ..model.rod import Rod
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
 
-INSIDE = 1e-9
-"""Distance of the outer nodes of an element from its ends, in units of its length, where coefficients are
-taken: at a jump an element has those of its own side."""
-
 
 def material_on(rod: Rod, grid: Mesh) -> Material:
     """The material of a rod on a mesh; an arm has arrays over the nodes, (3, nodes + 1).
@@ -33,7 +29,7 @@ def material_on(rod: Rod, grid: Mesh) -> Material:
         raise ValueError("the nonlinear motion of an arm with jumps is known for the linear law only")
     if rod.standard:
         return rod.material
-    compliance, drag, rest = _at_nodes(rod.sections(_points_of(grid)), grid)
+    compliance, drag, rest = _at_nodes(rod.sections(grid.points_inside.ravel()), grid)
     return Material(compliance, drag, rod.F, rest)
 
 
@@ -41,7 +37,7 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
     """The derivative of `material_on` by the coordinate of a parameter."""
     if rod.standard and name != "taper":
         return rod.material_change(name)
-    compliance, drag, rest = _at_nodes(rod.section_changes(name, _points_of(grid)), grid)
+    compliance, drag, rest = _at_nodes(rod.section_changes(name, grid.points_inside.ravel()), grid)
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
@@ -58,16 +54,8 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def _points_of(grid: Mesh) -> Array:
-    """Points at the nodes of every element, just inside it, (elements (order + 1),)."""
-    inner: Array = np.clip((gauss_lobatto(grid.order)[0] + 1) / 2, INSIDE, 1 - INSIDE)
-    starts: Array = np.array(grid.edges[:-1])
-    return np.ravel(starts[:, None] + grid.lengths[:, None] * inner)
-
-
-@lru_cache(maxsize=64)
 def _places_of(grid: Mesh) -> tuple[NDArray[np.int64], Array]:
-    """(node, weight in the quadrature) of each of the `_points_of` a mesh, (elements (order + 1),) each."""
+    """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
     nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
     return nodes.ravel(), weights.ravel()

@@ -11,6 +11,9 @@ from ...arrays import Array
 from .basis import interpolation
 from .quadrature import gauss_lobatto
 
+INSIDE = 1e-9
+"""Distance of `Elements.points_inside` from the ends of an element, in units of its length."""
+
 
 @dataclass(frozen=True)
 class Elements:
@@ -42,6 +45,17 @@ class Elements:
         positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
         positions[self.order :: self.order] = self.edges[1:]
         return positions
+
+    @cached_property
+    def points_inside(self) -> Array:
+        """u of the nodes of every element, the outer ones just inside it, (elements, order + 1).
+
+        At a jump between two elements coefficients at these points are those of its own side.
+        """
+        inner: Array = np.clip((gauss_lobatto(self.order)[0] + 1) / 2, INSIDE, 1 - INSIDE)
+        starts: Array = np.array(self.edges[:-1])
+        points: Array = starts[:, None] + self.lengths[:, None] * inner
+        return points
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""

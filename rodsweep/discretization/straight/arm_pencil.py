@@ -17,10 +17,6 @@ from ..elements.elements import Elements
 from ..elements.quadrature import gauss, gauss_lobatto
 from .pencil import LEAST_ANGLE_WEIGHT, SHEAR_WEIGHT
 
-INSIDE = 1e-9
-"""Distance of the outer nodes of an element from its ends, in units of its length, where coefficients are
-taken: at a jump an element has those of its own side."""
-
 
 class ArmMesh(Elements):
     """Elements that end where a coefficient jumps."""
@@ -60,8 +56,7 @@ class ArmPencil:
         self._value = interpolation(self._x, xg)
         self._slope = self._value @ differentiation(self._x)
         self._gauss_points: Array = edges[:-1, None] + self._h[:, None] * (xg + 1) / 2
-        inner: Array = np.minimum(np.maximum((self._x + 1) / 2, INSIDE), 1 - INSIDE)
-        self._lobatto_points: Array = edges[:-1, None] + self._h[:, None] * inner
+        self._lobatto_points = mesh.points_inside
         self._y: NDArray[np.int64] = (
             np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ..elements.elements import Elements
-from .arm_pencil import INSIDE, ArmPencil
+from ..elements.elements import INSIDE, Elements
+from .arm_pencil import ArmPencil
 from .pencil import Pencil, shear_force, slope
 
 AnyPencil = Pencil | ArmPencil
