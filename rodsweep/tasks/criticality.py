@@ -7,7 +7,7 @@ from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, count_of
+from .parts import NonlinearTask, before_crushed, count_of
 from .protocol import Part, Solver
 from .thresholds import search_record
 
@@ -23,7 +23,7 @@ class CriticalityTask(NonlinearTask):
 
     def headline(self) -> str:
         F_max = self.config.criticality.F_max
-        return f"{count_of(self.points)}, each searched from F = 0 to {F_max:g}, or to just below k1"
+        return f"{count_of(self.points)}, each searched from F = 0 to {F_max:g}{before_crushed(self.config)}"
 
     def asked(self) -> list[Part]:
         most = self.config.criticality.crossings

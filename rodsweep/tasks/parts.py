@@ -83,6 +83,14 @@ class NonlinearTask(ProvedTask):
     AXIAL: ClassVar[Part] = ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle")
 
 
+def before_crushed(config: Config) -> str:
+    """Where a search over F ends before its largest force, in words; empty where no force crushes an arm."""
+    if config.standard:
+        return ", or to just below k1"
+    crushed = np.isfinite(config.build.constitutive_law.largest_load)
+    return ", or to just below the force that crushes the weakest section" * bool(crushed)
+
+
 def count_of(points: Points) -> str:
     """The number of points and the shape of their grid."""
     shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"

@@ -9,7 +9,7 @@ from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
-from .parts import ProvedTask, count_of
+from .parts import ProvedTask, before_crushed, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -29,11 +29,7 @@ class ThresholdsTask(ProvedTask):
     not_proved: ClassVar[str] = "crossings may be missed"
 
     def headline(self) -> str:
-        until = f"{self.config.thresholds.F_max:g}"
-        if self.config.standard:
-            until += ", or to just below k1"
-        elif np.isfinite(self.config.build.constitutive_law.largest_load):
-            until += ", or to just below the force that crushes the weakest section"
+        until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
         return f"{count_of(self.points)}, each searched from F = 0 to {until}"
 
     def asked(self) -> list[Part]:
