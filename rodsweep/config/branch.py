@@ -30,7 +30,7 @@ class BranchOptions(Strict):
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
     """Smallest value of the parameter `along`; a branch ends there."""
     stop: Annotated[Number, Field(gt=-inf, lt=inf)] = 200.0
-    """Largest value of the parameter `along`. F ends just below k1 if k1 is smaller."""
+    """Largest value of the parameter `along`. F ends just below the force that crushes the rod."""
     cycles: Annotated[int, Field(ge=1, le=100_000)] = 500
     """Maximum number of stored cycles per rod, over all branches."""
     special: Annotated[int, Field(ge=1, le=10_000)] = 64

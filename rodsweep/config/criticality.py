@@ -16,7 +16,7 @@ class CriticalityOptions(Strict):
     """Range of the search, and the number of Hopf points that are stored."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
-    """Largest force of the search for Hopf points, which ends just below k1 if k1 is smaller."""
+    """Largest force of the search for Hopf points, which ends just below the force that crushes the rod."""
     crossings: Crossings = 16
     """Maximum number of stored Hopf points."""
     certify: bool = True

@@ -31,7 +31,7 @@ PLURALS = {
 LEADS_TO = {
     "where h1 = 0": "left_the_model",
     "the end of the range": "range_end",
-    "where F comes close to k1": "crushed",
+    "where F all but crushes the rod": "crushed",
     "where no further cycle is found": "no_cycle_found",
 }
 CURVED = 2e-3

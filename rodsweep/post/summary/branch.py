@@ -41,7 +41,7 @@ SPECIAL_WORDS = {
 ENDS = {
     "left_the_model": "where h1 = 0",
     "range_end": "the end of the range",
-    "crushed": "where F comes close to k1",
+    "crushed": "where F all but crushes the rod",
     "no_cycle_found": "where no further cycle is found",
     "list_full": "the last cycle that is stored",
     "none": "an end",
