@@ -11,7 +11,7 @@ from contextvars import ContextVar
 from typing import NamedTuple
 
 
-class Whereabouts(NamedTuple):
+class SolvePosition(NamedTuple):
     """Position of a solve in words, and the fraction of its work that is done, from 0 to 1; None if
     unknown.
     """
@@ -20,9 +20,9 @@ class Whereabouts(NamedTuple):
     share: float | None = None
 
 
-MakeWhereabouts = Callable[[], Whereabouts]
+MakePosition = Callable[[], SolvePosition]
 """Builds the text of a report. It is called only if a listener shows the report."""
-Listener = Callable[[MakeWhereabouts], None]
+Listener = Callable[[MakePosition], None]
 """Receives every report; raises `Stopped` to end the solve."""
 
 
@@ -38,13 +38,13 @@ class _Part(NamedTuple):
     name: str
     shares: tuple[float, float] | None
 
-    def of_whole(self, inner: Whereabouts) -> Whereabouts:
+    def of_whole(self, inner: SolvePosition) -> SolvePosition:
         """Converts a position within this part into a position within the whole solve."""
         share = None
         if self.shares is not None:
             begin, end = self.shares
             share = begin + (end - begin) * (inner.share or 0.0)
-        return Whereabouts(": ".join(filter(None, (self.name, inner.words))), share)
+        return SolvePosition(": ".join(filter(None, (self.name, inner.words))), share)
 
 
 _listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
@@ -56,7 +56,7 @@ def reporting_to(listener: Listener) -> Iterator[None]:
     """Sends the reports of all solves in the `with` block to the listener, after any outer listeners."""
     outer = _listener.get()
 
-    def both(place: MakeWhereabouts) -> None:
+    def both(place: MakePosition) -> None:
         if outer is not None:
             outer(place)
         listener(place)
@@ -82,14 +82,14 @@ def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]
         _parts.reset(token)
 
 
-def report(place: MakeWhereabouts = Whereabouts) -> None:
+def report(place: MakePosition = SolvePosition) -> None:
     """Reports the position of the solve. Called without a position, it only marks a safe place to stop."""
     listener = _listener.get()
     if listener is not None:
         listener(lambda: _in_whole(place()))
 
 
-def _in_whole(place: Whereabouts) -> Whereabouts:
+def _in_whole(place: SolvePosition) -> SolvePosition:
     """Converts a position within the innermost part into a position within the whole solve."""
     if not place.words:
         return place

@@ -71,9 +71,9 @@ def _arm_lines(job: Job) -> list[str]:
 
 def _material_text(arm: ArmSection) -> str:
     """Segments and law of an arm, as the end of a list."""
-    told = "".join(f"; segment {text}" for text in arm.segments or ())
+    segments = "".join(f"; segment {text}" for text in arm.segments or ())
     laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
-    return f"{told}; {', '.join(laws)}" if laws else told
+    return f"{segments}; {', '.join(laws)}" if laws else segments
 
 
 def _wall_lines(arm: ArmSection) -> list[str]:
@@ -86,7 +86,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     tubes = bore < radius
     effect = wall_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
     worst = int(np.argmax(effect.value))
-    warning = wall_check(replace(effect, value=effect.value[worst])).told
+    warning = wall_check(replace(effect, value=effect.value[worst])).text
     some = int((effect.validity > 0).sum())
     return [f"{warning} That is the worst of {counted(effect.value.size, 'tube')}."] if some else []
 

@@ -75,9 +75,9 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
             raise TypeError
         return float(given)
     except (TypeError, ValueError, OverflowError):
-        told = " ".join(str(given).split())
+        written = " ".join(str(given).split())
         raise InputError(
-            f"{name} = {told:.60} is not one quantity; write {allowed}, or one number in {unit}"
+            f"{name} = {written:.60} is not one quantity; write {allowed}, or one number in {unit}"
         ) from None
 
 
@@ -140,5 +140,5 @@ def compact(value: float, unit: str) -> tuple[float, str]:
     """(factor, unit): an SI unit with the prefix in which `value` of it is well read, and how many it is."""
     if not value or not math.isfinite(value):
         return 1.0, unit
-    told = registry().Quantity(value, unit).to_compact()
-    return float(told.magnitude) / value, f"{told.units:~}"
+    compacted = registry().Quantity(value, unit).to_compact()
+    return float(compacted.magnitude) / value, f"{compacted.units:~}"

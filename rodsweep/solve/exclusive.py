@@ -13,7 +13,7 @@ from threading import RLock, current_thread, main_thread
 from types import FrameType
 from typing import Any, ParamSpec, Self, TypeVar
 
-from ..watch import MakeWhereabouts, reporting_to
+from ..watch import MakePosition, reporting_to
 from .backend.kept import forget_all
 
 P = ParamSpec("P")
@@ -89,7 +89,7 @@ class HeldSignals:
         self._restore()
         self._call_handlers()
 
-    def hear(self, _: MakeWhereabouts) -> None:
+    def hear(self, _: MakePosition) -> None:
         """A safe place: calls the handlers of the signals that came, and raises what they raise."""
         if self._due and current_thread() is main_thread():
             self._call_handlers()

@@ -12,7 +12,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from ..watch import Whereabouts
+from ..watch import SolvePosition
 from .handout import OVER, Handout, Report
 from .points.ranges import IndexRange
 from .stop import StopRequest
@@ -57,7 +57,7 @@ class FirstRankClaims:
         """Ranks with an answer in advance to the next request."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
-        self.places: dict[int, Whereabouts] = {}
+        self.places: dict[int, SolvePosition] = {}
         """Latest reported progress of each rank within a long point."""
         self.serving = threading.Lock()
         self.served = 0.0
@@ -88,7 +88,7 @@ class FirstRankClaims:
             self.thread.join()
             self._hear_places()
 
-    def report_place(self, place: Whereabouts) -> None:
+    def report_place(self, place: SolvePosition) -> None:
         """Shows the progress of this rank within a long point."""
         self.places[0] = place
         self.show(place.words, self._begun())
@@ -193,7 +193,7 @@ class OtherRankClaims:
             self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
-    def report_place(self, place: Whereabouts) -> None:
+    def report_place(self, place: SolvePosition) -> None:
         """Sends the progress of this rank within a long point to the first rank."""
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from ..watch import MakeWhereabouts, Stopped, Whereabouts
+from ..watch import MakePosition, SolvePosition, Stopped
 from .stop import StopRequest
 
 POLL_SECONDS = 0.05
@@ -18,18 +18,18 @@ class Claims(Protocol):
 
     def between_points(self) -> None: ...
 
-    def report_place(self, place: Whereabouts) -> None: ...
+    def report_place(self, place: SolvePosition) -> None: ...
 
 
 class NoClaims:
     """Claims of a lone rank; `shown` receives the progress of a long solve."""
 
-    def __init__(self, shown: Callable[[Whereabouts], object] | None = None):
+    def __init__(self, shown: Callable[[SolvePosition], object] | None = None):
         self.shown = shown
 
     def between_points(self) -> None: ...
 
-    def report_place(self, place: Whereabouts) -> None:
+    def report_place(self, place: SolvePosition) -> None:
         """Shows the progress within a long point if `shown` is given."""
         if self.shown:
             self.shown(place)
@@ -46,13 +46,13 @@ class RankListener:
         self.next_poll = 0.0
         self.next_report = time.monotonic() + PLACE_SECONDS
 
-    def __call__(self, place: MakeWhereabouts) -> None:
+    def __call__(self, place: MakePosition) -> None:
         """Receives a report of a solver; raises Stopped if the solve has to end here."""
         now = time.monotonic()
         if now >= self.next_report and (here := place()).words:
             self.next_report = now + PLACE_SECONDS
             self.claims.report_place(
-                Whereabouts(": ".join(filter(None, (self.name(), here.words))), here.share)
+                SolvePosition(": ".join(filter(None, (self.name(), here.words))), here.share)
             )
         if now >= self.next_poll:
             self.next_poll = now + POLL_SECONDS

@@ -42,7 +42,7 @@ class ArmReport:
     def lines(self) -> Iterator[tuple[str, str]]:
         """Pairs (line of at most 80 columns, style); the style is "warning", "headline" or ""."""
         for check in self.warnings:
-            yield folded(check.told), "warning"
+            yield folded(check.text), "warning"
         for number, sentence in enumerate(self.verdict):
             yield folded(sentence), "" if number else "headline"
         yield "", ""
@@ -53,16 +53,16 @@ class ArmReport:
         yield OVER_DRAG, ""
         yield "", ""
         for check in self.checks:
-            yield folded(check.told), "" if check.fine else "warning"
+            yield folded(check.text), "" if check.fine else "warning"
 
     def _repr_html_(self) -> str:
-        warnings = "".join(f"<p>{escape(check.told)}</p>" for check in self.warnings)
+        warnings = "".join(f"<p>{escape(check.text)}</p>" for check in self.warnings)
         headline, *others = map(escape, self.verdict)
         verdict = f"<p><b>{headline}</b> {' '.join(others)}</p>"
         head = "".join(f"<th>{name}</th>" for name in ("quantity", "value", "formula", "source"))
         cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.rows)
         table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
-        checks = "".join(f"<li>{escape(check.told)}</li>" for check in self.checks)
+        checks = "".join(f"<li>{escape(check.text)}</li>" for check in self.checks)
         return f"{warnings}{verdict}{table}<p>{OVER_DRAG}</p><ul>{checks}</ul>"
 
 
@@ -75,8 +75,8 @@ def report_on(arm: SlenderArm) -> ArmReport:
     above = tuple(check for check in checks if applies and check.doubts_the_verdict)
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
-        told = str(getattr(arm, str(arm.load))).strip()
-        others.insert(0, f"{Load(first.arm).given} is {told} with the likeliest drag.")
+        load = str(getattr(arm, str(arm.load))).strip()
+        others.insert(0, f"{Load(first.arm).given} is {load} with the likeliest drag.")
     return ArmReport(
         validity=assessment.of_verdict,
         warnings=above,

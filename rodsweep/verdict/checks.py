@@ -43,7 +43,7 @@ class Check:
         return self.validity == Validity.applies
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The sentence, with the prefix "warning: " unless the effect is negligible."""
         return self.sentence if self.fine else f"warning: {self.sentence}"
 

@@ -34,8 +34,8 @@ def station_words(station: Station) -> str:
     sides = {"radius": station.section.drag_radius}
     if isinstance(station.section, Tube):
         sides["inner radius"] = station.section.inner_radius
-    told = [f"{name} {_in_prefix(value, 'm')}" for name, value in sides.items()]
-    return ", ".join([*told, _in_prefix(station.young, "Pa")])
+    parts = [f"{name} {_in_prefix(value, 'm')}" for name, value in sides.items()]
+    return ", ".join([*parts, _in_prefix(station.young, "Pa")])
 
 
 def _in_prefix(value: float, si: str) -> str:

@@ -521,7 +521,7 @@ def wrong_report(given):
     except rs.InputError as refused:  # "1.2 of flutter" of an arm that does not flutter
         return ([] if "of flutter" in given.get("pressure", "") else [(str(refused), "refused")]), 0
     rows = [f"row {row.name}: {row.value}" for row in report.rows]
-    checks = [check.told for check in (*report.warnings, *report.checks)]
+    checks = [check.text for check in (*report.warnings, *report.checks)]
     page = Page("\n".join(["", *report.verdict, *rows, *checks]))
     truth = ArmTruth(arm, report)
     found = truth.verdict(page) + truth.rows(page) + truth.checks(page)

@@ -145,21 +145,21 @@ def test_reports_are_heard_by_all_who_listen():
         watch.reporting_to(lambda place: heard.append("outer")),
         watch.reporting_to(lambda place: heard.append(place())),
     ):
-        watch.report(lambda: watch.Whereabouts("inner", 0.25))
+        watch.report(lambda: watch.SolvePosition("inner", 0.25))
     watch.report()
-    assert heard == ["outer", watch.Whereabouts("inner", 0.25)]
+    assert heard == ["outer", watch.SolvePosition("inner", 0.25)]
 
 
 def test_a_place_in_a_part_is_told_as_one_in_the_whole():
     heard = []
     with watch.reporting_to(lambda place: heard.append(place())), watch.part("branch 2", (0.5, 0.9)):
-        watch.report(lambda: watch.Whereabouts("F = 50", 0.25))
+        watch.report(lambda: watch.SolvePosition("F = 50", 0.25))
         with watch.part("corner"):
-            watch.report(lambda: watch.Whereabouts("F = 51", 0.5))
+            watch.report(lambda: watch.SolvePosition("F = 51", 0.5))
         watch.report()
     assert heard[0] == ("branch 2: F = 50", pytest.approx(0.6))
     assert heard[1] == ("branch 2: corner: F = 51", 0.5), "a part whose shares are unknown"
-    assert heard[2] == watch.Whereabouts(), "a safe place without words"
+    assert heard[2] == watch.SolvePosition(), "a safe place without words"
 
 
 def test_threads_wait_for_one_another():

@@ -19,7 +19,7 @@ from rodsweep.sweep.claims import (
 )
 from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
-from rodsweep.watch import Whereabouts
+from rodsweep.watch import SolvePosition
 
 
 @given(st.lists(st.integers(1, 40), min_size=1, max_size=4), st.integers(1, 4), st.integers(0, 2**32 - 1))
@@ -234,13 +234,13 @@ def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
 def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
     mail, shown = Mail(), []
     first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
-    mail.post(PLACE_TAG, Whereabouts("branch", 0.5))
+    mail.post(PLACE_TAG, SolvePosition("branch", 0.5))
     first.between_points()
-    first.report_place(Whereabouts("mesh"))  # its share is not known
-    first.report_place(Whereabouts("cycle", 0.25))
+    first.report_place(SolvePosition("mesh"))  # its share is not known
+    first.report_place(SolvePosition("cycle", 0.25))
     mail.post(REQUEST_TAG, Report(1, 9.0))
     first.between_points()
-    first.report_place(Whereabouts("cycle", 0.75))
+    first.report_place(SolvePosition("cycle", 0.75))
     assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
 
 

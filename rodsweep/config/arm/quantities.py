@@ -114,20 +114,20 @@ def typed_unit(name: str, axis: Axis) -> str:
 
 def given_text(quantities: Mapping[str, Axis]) -> str:
     """Quantities of an arm in words, in the typed units, with a remark on quantities given without a unit."""
-    told, bare = [], []
+    words, bare = [], []
     for name, axis in quantities.items():
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":
             names = drags_written(axis.array().tolist())
-            told.append(f"drag {RANGE if len(names) == len(DRAGS) else ' and '.join(names)}")
+            words.append(f"drag {RANGE if len(names) == len(DRAGS) else ' and '.join(names)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{written_in(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
-        told.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
+        words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
         if unit and not all(isinstance(one, str) for one in _each(axis.written)):
             bare.append(name)
     remark = f" ({' and '.join(bare)} without a unit: SI)" if bare else ""
-    return f"{', '.join(told)}{remark}".replace("_", " ")
+    return f"{', '.join(words)}{remark}".replace("_", " ")
 
 
 def _each(written: Any) -> list[Any]:

@@ -126,8 +126,8 @@ class ArmSection(Strict):
     @property
     def meaning(self) -> dict[str, Any]:
         """Given quantities in SI units, by name: a value if all points share it, else None; and material."""
-        told = AXIS_OF if self.is_grid else self.several
-        numbers = {n: None if n in told else float(axis.array()[0]) for n, axis in self.given.items()}
+        varied = AXIS_OF if self.is_grid else self.several
+        numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
 
     @property

@@ -69,8 +69,8 @@ def parse(text: str, where: str) -> Any:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
-        told = named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
-        raise InputError(f"{where}{place}: not valid YAML: {told}") from None
+        message = named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
+        raise InputError(f"{where}{place}: not valid YAML: {message}") from None
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{where}: not valid YAML: {named(error)}") from None
 

@@ -24,8 +24,8 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     text, where = read_text(path), named(path)
     tree = parse(text, where)
     if not isinstance(tree, dict):
-        told = "is empty" if tree is None else f"is {short(tree)}, not a mapping of keys to values"
-        raise InputError(f"{where}: the config {told}; give task and parameters")
+        problem = "is empty" if tree is None else f"is {short(tree)}, not a mapping of keys to values"
+        raise InputError(f"{where}: the config {problem}; give task and parameters")
     for override in overrides:
         _override(tree, override)
         text += f"\n# --set {override}"

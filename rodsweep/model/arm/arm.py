@@ -16,7 +16,7 @@ from ..material.build import STANDARD, Build
 from ..parameters import PARAMETERS
 from ..units import Given, share_of_flutter
 from .drag import DRAGS, Drag
-from .quantities import LOADS, UNITS, number_in_si, told
+from .quantities import LOADS, UNITS, number_in_si, quoted
 from .refusals import refuse_crushed, refuse_misfits, refuse_other_sets, refuse_words
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
@@ -76,9 +76,9 @@ class SlenderArm:
         """A parameter of the arm as a rod; the default of what no arm determines."""
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
-    def told(self, name: str) -> str:
+    def quoted(self, name: str) -> str:
         """A quantity as it was given, for a sentence."""
-        return told(name, getattr(self, name))
+        return quoted(name, getattr(self, name))
 
     @cached_property
     def shape(self) -> Shape:
@@ -160,7 +160,7 @@ class SlenderArm:
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
-            raise InputError(f"{self.told(self.load)} is no number yet; it takes the threshold of flutter")
+            raise InputError(f"{self.quoted(self.load)} is no number yet; it takes the threshold of flutter")
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property

@@ -76,11 +76,11 @@ def number_in_si(name: str, given: Given | None) -> float:
         return float("nan")
     value = in_si(name, given, *UNITS[name])
     if not (QUANTITIES[name].signed or value > 0):
-        raise InputError(f"{told(name, given)} is not above 0")
+        raise InputError(f"{quoted(name, given)} is not above 0")
     return value
 
 
-def told(name: str, given: Given) -> str:
+def quoted(name: str, given: Given) -> str:
     """A quantity of UNITS as it was given, for a sentence."""
     if isinstance(given, str):
         return f"{name} = '{given}'"

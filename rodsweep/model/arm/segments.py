@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from ...errors import InputError
 from ..units import Given
-from .quantities import number_in_si, told
+from .quantities import number_in_si, quoted
 from .section import Circle, NoWall, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
@@ -106,7 +106,7 @@ def _segment(number: int, written: WrittenSegment) -> ArmSegment:
     if "inner_radius" not in given:
         return ArmSegment(length, Circle(radius), young if "young" in given else None)
     if inner >= radius:
-        bore, outer = (told(name, given[name]) for name in ("inner_radius", "radius"))
+        bore, outer = (quoted(name, given[name]) for name in ("inner_radius", "radius"))
         raise NoWall(f"{where}: {bore} is not below {outer}")
     return ArmSegment(length, Tube(radius, inner), young if "young" in given else None)
 

@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 
 from ...model.parameters import PARAMETERS
-from ...watch import Whereabouts, report
+from ...watch import SolvePosition, report
 from ...wording import counted
 from ..continuation.follower import zero_along
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
@@ -108,13 +108,13 @@ def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> Branch
     return curve
 
 
-def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts:
+def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> SolvePosition:
     """Where on a branch its last cycle is, and the share of the branch's work that is done there."""
     name = here.scale.name
     aim = course.ends[1 if here.ahead[-1] > 0 else 0]
     there, end = PARAMETERS[name].value(here.at), PARAMETERS[name].value(aim)
     words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
-    return Whereabouts(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
+    return SolvePosition(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:

@@ -20,7 +20,7 @@ from ...discretization.elements.mesh import mesh_on
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from ...watch import Whereabouts, report
+from ...watch import SolvePosition, report
 from ..motion.integrator import Ending, RunLimit, Trajectory, forget_integrators, integrator, relaxed
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
@@ -145,7 +145,7 @@ class _Marching:
         last, rate = nan, 0.0
         most = self.request.most_periods
         while self.waited < most:
-            report(lambda: Whereabouts(f"{self.waited} of at most {most} returns of the tip"))
+            report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
             run = self._run(z, 3 * CHUNK * self.mode.period, step, until_returns(row, z, CHUNK))
             z, step = run.states[-1], float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]

@@ -18,7 +18,7 @@ from ...arrays import Array
 from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
-from ...watch import Whereabouts, report
+from ...watch import SolvePosition, report
 from ..continuation.follower import CurveStop, StepControl, Stepped, follow
 from ..point import FAILURES, Unsolvable
 from .generalised import FINEST, GeneralisedHopfPoint, HopfCurve
@@ -234,7 +234,7 @@ def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEn
 
 def _report(places: Sequence[_Place]) -> None:
     """Reports the number of points found so far."""
-    report(lambda: Whereabouts(f"curve of generalised Hopf points, {len(places)} points"))
+    report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(places)} points"))
 
 
 def _asked_between(space: BautinSpace, here: _Place, there: _Place) -> list[_Place]:

@@ -15,7 +15,7 @@ from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.parameter_path import determinant_along
 from ...determinant.parameter_plane import Plane
-from ...watch import Whereabouts, report
+from ...watch import SolvePosition, report
 from ..changes.boundary_curves import BoundaryCurve
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
@@ -108,7 +108,7 @@ class HopfCurve:
     def sign(self, i: int) -> float:
         """Sign of Re c at point i: -1 or 1, 0 where undecided, NaN where the normal form fails."""
         points = len(self.scaled)
-        report(lambda: Whereabouts(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
+        report(lambda: SolvePosition(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)

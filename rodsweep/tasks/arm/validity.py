@@ -103,7 +103,7 @@ class ArmValidity:
         (n,).
         """
         motion = MOTIONS[self.task](record)
-        return self._told(self._arm_of(int(np.ravel(index)[0])), motion, index)
+        return self._validity(self._arm_of(int(np.ravel(index)[0])), motion, index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at all points with a rod, (n,), for an arm at rest."""
@@ -114,13 +114,13 @@ class ArmValidity:
                 indices = indices[self.points.covered[indices] == SLENDER]
             if len(indices):
                 nothing = ArmMotion(np.full(len(indices), np.nan))
-                found.append(self._told(self._arm_of(first), nothing, indices))
+                found.append(self._validity(self._arm_of(first), nothing, indices))
         return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
         return self.arm(index // self.each if self.points.over else 0)
 
-    def _told(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
+    def _validity(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
         drag = arm.own_drag if "drag" in self.points.over else least_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force(arm, motion, index)

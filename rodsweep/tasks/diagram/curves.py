@@ -97,13 +97,15 @@ class DiagramCurves:
             Fc = filament_hopf()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
         variables = curve_record(found, names, **limit)
-        told = self._criticality(plane, found) if options.criticality or options.cycles else []
+        criticalities = self._criticality(plane, found) if options.criticality or options.cycles else []
         if options.criticality:
-            variables += criticality_record(told, names, self.task.config.gamma1)
+            variables += criticality_record(criticalities, names, self.task.config.gamma1)
         if options.third is not None:
-            variables += self._bautin_curves(plane, told, *options.third)
+            variables += self._bautin_curves(plane, criticalities, *options.third)
         if units is not None:
-            curves = with_hopf_ends(units.curves(results), plane, told, unstored_specials(view, self._finite))
+            curves = with_hopf_ends(
+                units.curves(results), plane, criticalities, unstored_specials(view, self._finite)
+            )
             variables += cycle_curve_record(curves, names)
         return variables
 
@@ -172,7 +174,7 @@ class DiagramCurves:
         ]
 
     def _bautin_curves(
-        self, plane: "Plane", told: Sequence["CurveCriticality"], name: str, axis: Axis
+        self, plane: "Plane", criticalities: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> list[Filled]:
         """Curves of generalised Hopf points over the third parameter, as variables of the file."""
         from ...determinant.parameter_plane import PlaneAxis
@@ -183,7 +185,7 @@ class DiagramCurves:
         third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
         space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
         curves: list[BautinCurve] = []
-        for point in (on_curve(found, here) for curve in told for found in curve.points):
+        for point in (on_curve(found, here) for curve in criticalities for found in curve.points):
             if not any(lies_on(space, point, curve) for curve in curves):
                 curves.append(bautin_curve(space, point))
         return bautin_curve_record(curves, (line, row), name)

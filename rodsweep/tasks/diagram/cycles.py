@@ -62,11 +62,14 @@ def unstored_specials(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "Boundaries[CycleCurve]", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
+    found: "Boundaries[CycleCurve]",
+    plane: "Plane",
+    criticalities: "Sequence[CurveCriticality]",
+    unstored: int,
 ) -> "Boundaries[CycleCurve]":
     """Curves whose ends at generalised Hopf points are replaced by the points located on Hopf curves."""
     from ...solve.branch.special.cycle_curves import ending_at
 
-    known = [point for curve in told for point in curve.points]
+    known = [point for curve in criticalities for point in curve.points]
     curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
     return replace(found, curves=curves, untraced=found.untraced + unstored)

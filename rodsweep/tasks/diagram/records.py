@@ -41,18 +41,18 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
 
 
 def criticality_record(
-    told: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
+    criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[Filled]:
     """Criticality of each curve, in the order of the curves, for rods with this gamma1."""
     rows, start = [], 0
-    for number, curve in enumerate(told, 1):
+    for number, curve in enumerate(criticalities, 1):
         for point in curve.points:
             rows.append(_located(point, plane, curve=number, curve_point=start + point.after + 1))
         start += len(curve.criticality)
     declared = criticality_variables(*plane)
     values = _columns(declared, "bautin", "bautin_", rows) | {
-        "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in told)]),
-        "bautin_unlocated": sum(curve.unlocated for curve in told),
+        "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in criticalities)]),
+        "bautin_unlocated": sum(curve.unlocated for curve in criticalities),
         "curve_gamma1": gamma1,
     }
     return _filled(declared, values)

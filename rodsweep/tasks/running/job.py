@@ -70,20 +70,22 @@ class Job:
         quantities = at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points)
 
-        def told(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
+        def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             return values | in_si(values, index, layout, quantities) | validity.of(values, index)
 
         if solver.stretched is None:
-            return replace(solver, record=lambda index, outcome: told(solver.record(index, outcome), index))
+            return replace(
+                solver, record=lambda index, outcome: complete(solver.record(index, outcome), index)
+            )
         stretches, solve_stretch = solver.stretched
 
         def together(indices: NDArray[np.int64]) -> StretchResult:
             found = solve_stretch(indices)
-            return replace(found, values=told(found.values, indices))
+            return replace(found, values=complete(found.values, indices))
 
         return replace(
             solver,
-            record=lambda index, outcome: told(solver.record(index, outcome), index),
+            record=lambda index, outcome: complete(solver.record(index, outcome), index),
             stretched=(stretches, together),
         )
 

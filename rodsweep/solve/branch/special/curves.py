@@ -7,7 +7,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
-from ....watch import Whereabouts, report
+from ....watch import SolvePosition, report
 from ....wording import counted
 from ...continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -84,7 +84,7 @@ class CurveCourse:
     def _report(self, points: Sequence[OnCurve]) -> None:
         """Says where the curve is."""
         report(
-            lambda: Whereabouts(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
+            lambda: SolvePosition(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
         )
 
     def step(self, behind: Sequence[OnCurve], length: float) -> Stepped[OnCurve]:

@@ -16,7 +16,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
-from ....watch import Whereabouts, report
+from ....watch import SolvePosition, report
 from ...motion.integrator import RELAXATION_SHARE, Ending, Trajectory, integrator, relaxed
 from ...motion.leading_mode import leading_mode
 from ...motion.time_scheme import TimeScheme
@@ -125,7 +125,7 @@ class Transient:
         """Outcome of the motion from z, shape (unknowns,)."""
         z, first = self._relaxed(z), True
         while self.waited < self.most_periods:
-            report(lambda: Whereabouts(f"{self.waited} of at most {self.most_periods} returns of the tip"))
+            report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._chunk(z, first)
             if why := early_end_reason(self.beam, run, self.waited):
                 left = run.ending == Ending.left_the_model
