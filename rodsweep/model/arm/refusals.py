@@ -88,13 +88,13 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         return
     if arm.inner_radius is not None:
         raise InputError(
-            f"{arm.quoted('tip_radius')} and {arm.quoted('inner_radius')} are both given, but a cone is solid; "
-            "give one of them, or segments"
+            f"{arm.quoted('tip_radius')} and {arm.quoted('inner_radius')} are both given, but a cone is "
+            "solid; give one of them, or segments"
         )
     if not SMALLEST_TAPER <= arm.si.tip_radius / arm.si.radius <= LARGEST_TAPER:
         raise InputError(
-            f"{arm.quoted('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; it must be "
-            f"from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g} of it"
+            f"{arm.quoted('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; it must "
+            f"be from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g} of it"
         )
 
 
@@ -103,8 +103,8 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
-                f"{arm.quoted(name)} and segments are both given; a segment has its own radius, so give one of "
-                "them"
+                f"{arm.quoted(name)} and segments are both given; a segment has its own radius, so give one "
+                "of them"
             )
     pieces = arm.pieces
     for number, piece in enumerate(pieces, 1):
