@@ -103,7 +103,7 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        ends = ((curve.breaking, 0), (curve.meets, len(curve.special) - 1))
+        ends = ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1))
         for breaking, place in ends:
             if breaking is not None:
                 numbers[number, place] = breaking.branch

@@ -1,1 +1,1 @@
-"""Branches of cycles: followed through folds, stable or not, with the points at which they change."""
+"""Branches of cycles, stable or not: followed through folds, with the special points on them."""

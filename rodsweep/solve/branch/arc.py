@@ -1,7 +1,7 @@
-"""Along a branch of cycles: from one to the next by a step of some length.
+"""Arc-length continuation of a branch of cycles: the step from one cycle to the next.
 
-The cubic through two cycles and their tangents predicts, Newton's method corrects with the length of the arc
-held (`bordered`). Steps are as long as the prediction is good and the branch bends little.
+The cubic through two cycles and their tangents predicts; Newton's method corrects at a given arc length
+(`bordered`). The step length follows from the prediction's error and from the branch's curvature.
 """
 
 from dataclasses import dataclass, replace
@@ -30,13 +30,13 @@ STEPS = StepControl(
     sharpest=0.45,
     growth=2.0,
 )
-"""Lengths in units of the scale: one of 0.1 changes the moment at the clamp, the period or the parameter by a
-tenth, at most."""
+"""Step lengths in units of the scale: a step of 0.1 changes the clamp's moment, the period or the parameter
+by at most a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
-class Passed:
-    """An orbit of a branch, and its derivative along it in any unit, (N + 1,)."""
+class PreviousCycle:
+    """The orbit one step back, and its derivative along the branch in any unit, (N + 1,)."""
 
     orbit: Orbit
     tangent: Array
@@ -44,9 +44,12 @@ class Passed:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ArcPoint:
-    """A cycle of a branch. length: of the next step; before: the cycle before it; calibration: the errors,
-    measured at this cycle if unmeasured is 0, else at the one so many cycles before it; way: length of the
-    branch since then."""
+    """A cycle of a branch.
+
+    length: of the next step. before: the previous cycle. calibration: errors of the last cycle at which they
+    were measured. unmeasured: number of steps since that cycle, 0 if it is this one. way: arc length since
+    that cycle.
+    """
 
     cycle: RefinedCycle
     place: Place
@@ -54,7 +57,7 @@ class ArcPoint:
     calibration: BranchCalibration
     unmeasured: int = 0
     way: float = 0.0
-    before: Passed | None = None
+    before: PreviousCycle | None = None
 
     @property
     def scale(self) -> Scale:
@@ -62,12 +65,12 @@ class ArcPoint:
 
     @property
     def tangent(self) -> Array:
-        """The place's, (N + 1,)."""
+        """Tangent of the branch, of unit length in the scale, (N + 1,)."""
         return self.place.tangent
 
     @property
     def ahead(self) -> Array:
-        """The place's, (3,)."""
+        """The tangent as a direction of `Scale.place`, (3,)."""
         return self.place.ahead
 
     @property
@@ -76,7 +79,7 @@ class ArcPoint:
 
     @property
     def workspace(self) -> NewtonWorkspace:
-        """The solver's, in which the cycle's matrix was made."""
+        """The solver's memory, which holds the cycle's matrix."""
         return self.cycle.fine.workspace
 
     @property
@@ -86,34 +89,36 @@ class ArcPoint:
 
     @property
     def rises(self) -> float:
-        """How fast the parameter's coordinate grows along the branch, of either sign; 0 at a fold."""
+        """Derivative of the parameter's coordinate by arc length, of either sign; 0 at a fold."""
         return self.place.rate
 
     @property
     def moment(self) -> float:
-        """At the clamp at t = 0."""
+        """Bending moment at the clamp at t = 0."""
         return moment_of(self.orbit)
 
     @cached_property
     def returns(self) -> Complex:
-        """Multipliers of half a period and the reflection, (rank - 1,), without the trivial one."""
+        """Nontrivial multipliers of the half-period map composed with the reflection, (rank - 1,); of the
+        whole period for a cycle without symmetry."""
         values = bordered(self.cycle.fine).returns
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> Condition:
-        """What holds at a length ahead."""
+        """The condition that prescribes the arc length, at a length ahead of this cycle."""
         return Condition.at(self.scale, self.ahead, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:
-        """What the cubic through this cycle and the one before predicts; raises Unsolvable."""
+        """Orbit at a length ahead on the cubic through this cycle and the previous one; raises Unsolvable."""
         change = length * self.tangent
         if self.before is not None:
             change = length ** np.arange(1, 4) @ self._taylor(self.before)
         return moved(self.orbit, self.scale.name, change)
 
-    def _taylor(self, before: Passed) -> Array:
-        """Coefficients of the cubic in the length, from the first, (3, N + 1)."""
-        name, mesh = self.scale.name, mesh_of(self.orbit)
+    def _taylor(self, before: PreviousCycle) -> Array:
+        """Coefficients of the cubic in powers 1 to 3 of the length, (3, N + 1)."""
+        name = self.scale.name
+        mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
         there = last.form.rod.coordinate(name)
         slope = np.append(carried(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
@@ -128,7 +133,7 @@ class ArcPoint:
 
 
 def placed(found: Converged, scale: Scale, tangent: Array) -> Place:
-    """Where a cycle stands on its branch, with its tangent, (N + 1,), of any length."""
+    """Place of a cycle on its branch, from a tangent of any length, (N + 1,)."""
     own = Scale.of(found.orbit, scale.name, scale.least)
     ahead = own.moved(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
@@ -136,49 +141,50 @@ def placed(found: Converged, scale: Scale, tangent: Array) -> Place:
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
-    """The tangent of the branch at an orbit on a side, (3,), by its matrix, (N + 1,)."""
+    """Tangent of the branch at an orbit from its matrix, (N + 1,), oriented to a side, (3,)."""
     tangent = matrix.direction(side)
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
 
 
 def next_point(here: ArcPoint, accuracy: float) -> ArcPoint:
-    """The next point of a branch; raises Unsolvable where there is none."""
+    """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
     there, length = advance(partial(_stepped, here, accuracy), here.length, STEPS)
     return replace(there.solution, length=STEPS.next_length(length, there, STEPS.order))
 
 
 def point_at(here: ArcPoint, length: float, accuracy: float) -> ArcPoint:
-    """The point at some length of the arc from another one; raises Unsolvable where it is no step from it."""
+    """The cycle at an arc length from `here`; raises Unsolvable if it may lie on another branch."""
     return STEPS.accepted(_stepped(here, accuracy, length)).solution
 
 
 def _stepped(here: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
-    """The point at some length of the arc from another one, with a step as long behind it.
+    """The cycle at an arc length from `here`; its own next step has the same length.
 
     Raises Unsolvable.
     """
-    condition, predicted = here.condition(length), here.predicted(length)
-    tolerance, distance = newton_tolerance(accuracy), matrix_distance(accuracy)
-    found = condition.solved(predicted, tolerance, here.workspace, distance)
+    condition = here.condition(length)
+    predicted = here.predicted(length)
+    tolerance = newton_tolerance(accuracy)
+    found = condition.solved(predicted, tolerance, here.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
     if here.before is None and off <= STEPS.far:
-        off = STEPS.aim  # a tangent alone does not tell how good a cubic would be
+        off = STEPS.aim  # the error of a tangent says nothing of the cubic of later steps
     tangent = tangent_at(found.orbit, here.scale, here.ahead, bordered(found))
-    cosine = float(here.scale.moved(found.orbit, tangent) @ here.ahead)  # both are of unit length
+    cosine = float(here.scale.moved(found.orbit, tangent) @ here.ahead)  # both have unit length
     return Stepped(there_from(here, found, tangent, length, length, accuracy), off, cosine)
 
 
 def arc_between(here: ArcPoint, there: ArcPoint) -> float:
-    """The length from one cycle to another one, as steps have it."""
+    """Arc length from one cycle to another, projected on the tangent at the first, as in a step."""
     return float(here.ahead @ (here.scale.place(there.orbit) - here.scale.place(here.orbit)))
 
 
 def there_from(
     here: ArcPoint, found: Converged, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a length from another one, its errors not measured.
+    """A cycle at a length from `here`, its errors not measured.
 
-    tangent: of the branch there, (N + 1,); ahead: length of the next step.
+    tangent: of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
     cycle = judged_by(here.calibration.known, found, accuracy)
     place = placed(found, here.scale, tangent)
@@ -191,5 +197,5 @@ def there_from(
         calibration=here.calibration,
         unmeasured=here.unmeasured + 1,
         way=here.way + length,
-        before=Passed(here.orbit, here.tangent),
+        before=PreviousCycle(here.orbit, here.tangent),
     )

@@ -1,8 +1,8 @@
-"""The first cycle of a branch, from the normal form of the Hopf point at which it is born.
+"""The first cycle of a branch, from the normal form of the Hopf point where the branch is born.
 
-The normal form says how large the cycles are at a distance of the parameter, on either side. Turned round: a
-cycle of a given small amplitude lies at a known distance; Newton's method finds it with its moment held,
-which is as well posed at a Hopf point as anywhere.
+The normal form relates the amplitude of a cycle to the parameter's distance from the Hopf point. Newton's
+method starts at the cycle predicted for a small amplitude and holds its bending moment at the clamp; this
+system is regular at the Hopf point too.
 """
 
 from dataclasses import dataclass
@@ -27,23 +27,25 @@ from .bordered import Condition, Scale, moment_of
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
-AMPLITUDES = (0.02, 0.008, 0.003)
-"""Largest tip y, in L, of the first cycle, tried one after the other."""
-SHARE = 0.05
-"""Largest one in units of the amplitude coefficient: beyond, the normal form's third order is not enough."""
-LEAST_UNIT = 0.1
-"""Tip y, in L, of the small cycle whose moment is the least unit of moments."""
+FIRST_AMPLITUDES = (0.02, 0.008, 0.003)
+"""Largest tip y, in L, of the first cycle; tried in this order."""
+AMPLITUDE_SHARE = 0.05
+"""Largest tip y of the first cycle, in units of the amplitude coefficient. Beyond it the third-order normal
+form is too inaccurate."""
+MIN_MOMENT_AMPLITUDE = 0.1
+"""Tip y, in L, of the cycle whose clamp moment is the smallest unit of moments."""
 FREQUENCY_ROUNDING = 1e-14
-"""Relative error of the frequency of a Hopf point that rounding leaves, a root of D."""
+"""Relative rounding error of the frequency of a Hopf point, a root of D."""
 MOMENT = np.array([1.0, 0.0, 0.0])
+"""Direction of `Scale.place` along the bending moment at the clamp."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBirth:
-    """A Hopf point along a parameter with what is born there.
+    """A Hopf point along a parameter, with the normal form of the cycles born there.
 
-    coordinate: the parameter's; slope: dw/d(coordinate); normal: the normal form at the rod, as accurate as
-    the start of a branch needs; coefficients: those of a finer one, with their errors.
+    coordinate: of the parameter. slope: dw/d(coordinate). normal: normal form on a mesh fine enough to start
+    a branch. coefficients: from a finer mesh, with errors.
     """
 
     crossing: Crossing
@@ -56,7 +58,7 @@ class HopfBirth:
 
     @property
     def period(self) -> float:
-        """Of the cycles as they are born, in tau2."""
+        """Period of the cycles in the limit of zero amplitude, in tau2."""
         return 2 * np.pi / self.crossing.frequency
 
     @property
@@ -79,12 +81,13 @@ class HopfBirth:
 
     @property
     def period_error(self) -> float:
-        """Relative error of the period: by how much the frequency changes within the error of the place."""
+        """Relative error of the period: the change of the frequency within the error of the Hopf point, and
+        rounding."""
         place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
         return abs(self.slope) * place / self.crossing.frequency + FREQUENCY_ROUNDING
 
     def moved_by(self, amplitude: float) -> tuple[float, float]:
-        """(change of the coordinate, frequency) of the cycle whose largest tip y is given."""
+        """(change of the coordinate, frequency) of the cycle with a given largest tip y, in L."""
         c = self.normal.c
         change = -c.real * amplitude**2 / self.slope.real
         return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
@@ -128,18 +131,18 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
     workspace: memory of the branch's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    for amplitude in AMPLITUDES:
+    for amplitude in FIRST_AMPLITUDES:
         try:
-            return _cycle_of(hopf, min(amplitude, SHARE * a), accuracy, workspace)
+            return _cycle_of(hopf, min(amplitude, AMPLITUDE_SHARE * a), accuracy, workspace)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
 
 
 def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
-    """The cycle of an amplitude that the normal form predicts, to an accuracy."""
+    """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable."""
     start = predicted_cycle(hopf, amplitude)
-    scale = Scale.of(start, hopf.name, abs(moment_of(start)) * LEAST_UNIT / amplitude)
+    scale = Scale.of(start, hopf.name, abs(moment_of(start)) * MIN_MOMENT_AMPLITUDE / amplitude)
     border = np.sign(moment_of(start)) * MOMENT
     condition = Condition.at(scale, border, start)
     rough = condition.solved(start, NEAR, workspace)
@@ -155,11 +158,12 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
-    """What the normal form predicts, with the largest tip y in L, on its mesh in space, coarse in time."""
+    """Cycle with a given largest tip y, in L, from the normal form: on the normal form's mesh in space,
+    coarse in time."""
     change, frequency = hopf.moved_by(amplitude)
     form = StressForm(hopf.rod, hopf.normal.form.mesh)
     try:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the branch leaves the rods: {error}") from error
+        raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
     return orbit_with(hopf.normal, form, amplitude, frequency)

@@ -1,10 +1,9 @@
-"""Newton's method for a cycle together with a parameter: a condition on the branch closes the system.
+"""Newton's method for a cycle together with a parameter; a condition on the branch closes the system.
 
-At a fold the parameter does not tell cycles apart. What is prescribed instead is a combination of three
-numbers that no mesh changes the meaning of: the bending moment at the clamp at t = 0, in units of about its
-largest over the cycle, the logarithm of the period, and the parameter's `Parameter.coordinate` in units
-of a scale. So a branch has a length, and steps along it; at a Hopf point it has a length too, for
-there the moment goes through 0 as any other number does.
+The parameter does not distinguish cycles beside a fold. The condition prescribes a linear combination of
+three numbers that mean the same on every mesh: the clamp's bending moment at t = 0, in units of about its
+largest value over the cycle; the logarithm of the period; the parameter's scaled coordinate. Arc length is
+measured in these numbers too; at a Hopf point the moment passes through 0 and keeps it regular.
 """
 
 from dataclasses import dataclass, replace
@@ -33,17 +32,15 @@ from ..orbit.orbit_mesh import OrbitMesh
 from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
-"""Largest relative change of an orbit in one iteration."""
-SLUGGISH = 0.1
-"""Ratio of a correction to the one before from which the matrix is made anew."""
+"""Largest relative change of an orbit in one iteration; a larger one means that no cycle is near."""
+SLOW_CONTRACTION = 0.1
+"""Ratio of successive corrections above which a new matrix is assembled."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """What moments at the clamp and the parameter's coordinate are measured in, and the parameter's name.
-
-    least: the least unit of moments, for small cycles.
-    """
+    """Units of the clamp moment (at least `least`) and of the parameter's coordinate; name of the
+    parameter."""
 
     name: str
     moment: float
@@ -52,40 +49,43 @@ class Scale:
 
     @classmethod
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
-        """The one at an orbit."""
+        """The scale at an orbit."""
         largest = float(np.abs(orbit.form.layout.at(orbit.points, "m3")).max())
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
     def place(self, orbit: Orbit) -> Array:
-        """(moment at the clamp, log of the period, coordinate), in these units, (3,)."""
+        """(clamp moment, log of the period, coordinate) in units of the scale, (3,)."""
         moment = moment_of(orbit) / self.moment
         at = orbit.form.rod.coordinate(self.name) / self.coordinate
         return np.array([moment, np.log(orbit.period), at])
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
-        """What a change of an orbit and the coordinate, (N + 1,), moves `place` by, (3,)."""
+        """Change of `place`, (3,), for a change of an orbit and the coordinate, (N + 1,)."""
         moment = change[orbit.form.layout.place("m3")] / self.moment
         return np.array([moment, change[-2] / orbit.period, change[-1] / self.coordinate])
 
 
 def moment_of(orbit: Orbit) -> float:
-    """The bending moment at the clamp at t = 0, when the tip's y is largest."""
+    """Bending moment at the clamp at t = 0, when the tip's y is largest."""
     return float(orbit.form.layout.at(orbit.start, "m3"))
 
 
 class BorderedMatrix:
-    """Newton's matrix at an orbit, with a parameter as a further unknown and one row still to be given.
+    """Newton's matrix at an orbit with the parameter as a further unknown; the caller gives the last row.
 
-    Steps are arrays like `Orbit.values`, (N,), with the parameter's coordinate behind them. They raise
-    RuntimeError once another matrix was made in the same workspace; the multipliers stay.
+    Steps, (N + 1,), are an orbit's values and the parameter's coordinate. Solving raises RuntimeError once
+    another matrix was assembled in the same workspace; the multipliers stay valid.
     """
 
     def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
         self.orbit, self.scale, self.workspace = orbit, scale, workspace
-        self.tangent: Array | None = None  # by which parameter is for the branch to say
-        p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
-        along, V = change_along(orbit.form, scale.name), np.empty((K, s, 3, len(p.matrices.weights)))
-        self._columns, self._memory = np.empty((K, s, 3, n)), MatrixMemory(workspace, K, s, n)
+        self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
+        p = orbit.semidiscrete
+        along = change_along(orbit.form, scale.name)
+        K, s, n = orbit.states.shape
+        V = np.empty((K, s, 3, len(p.matrices.weights)))
+        self._columns = np.empty((K, s, 3, n))
+        self._memory = MatrixMemory(workspace, K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
         shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
@@ -98,27 +98,25 @@ class BorderedMatrix:
         self._right = self._jump(orbit, ends[1])
 
     def step(self, border: Array, length: float) -> Array:
-        """Newton's step along which `border` . place, (3,), grows by a length, (N + 1,)."""
+        """Newton's step under the condition that `border` . place, (3,), grows by a length, (N + 1,)."""
         return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
-        """The same at another orbit near by, whose parameter may be another one."""
+        """`step` at a neighbouring orbit, which may have another parameter, by the factors of this matrix."""
         factors, p = self._memory.factors, self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, ends[0]), length)
         return self.solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
-        """The tangent of the branch, of unit length in `Scale.place`, on the side of a border, (N + 1,)."""
+        """Tangent, (N + 1,), of unit length in `Scale.place`, on the side of a border, (3,)."""
         right = np.append(np.zeros(len(self._right)), 1.0)
         change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
     def varied(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
-        """The changes, (K, s, m, n), of another orbit's residuals along variations, (m, N + 1), reduced.
-
-        With what they make of its end where its start stays, (m, n).
-        """
+        """Derivatives of residuals along variations, (m, N + 1), reduced, (K, s, m, n); of the end, (m,
+        n)."""
         along, rod, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete, self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
             orbit.values, rod, along, variations, p, self._memory.factors
@@ -126,7 +124,7 @@ class BorderedMatrix:
         return changed
 
     def spread(self, starts: Array, columns: Array) -> Array:
-        """The changes of states, (m, N + 1), from those of the start, (m, n), and reduced right sides."""
+        """Changes of states, (m, N + 1), from those of the start, (m, n), and reduced sides, (K, s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
@@ -134,35 +132,36 @@ class BorderedMatrix:
 
     @property
     def propagator(self) -> Array:
-        """P, (n, n)."""
+        """Monodromy matrix P over the solved interval, (n, n)."""
         return self._memory.propagator
 
     @cached_property
     def returns(self) -> Complex:
-        """The multipliers of the map over what is solved, half a period and the reflection, (rank,)."""
+        """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
         return returns_of(self.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
-        """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
+        """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
         return over_period(self.returns, self.orbit)
 
-    def other_way(self) -> Array:
-        """The change at a fixed parameter that the matrix all but ignores, (N + 1,), of any length and sign.
+    def approximate_null_vector(self) -> Array:
+        """Singular vector of the least singular value at a fixed parameter, (N + 1,), of any length and sign.
 
-        Where branches cross it leads along the one that the tangent does not.
+        At a crossing of branches it points along the branch that the tangent does not follow.
         """
         matrix = self._matrix.copy()
         matrix[-1, -1] = 1.0
         return self._spread(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def _jump(self, orbit: Orbit, end: Array) -> Array:
-        """Right side for an orbit's start and phase, (n + 1,), and what its stages make of its end, (n,)."""
+        """Right side of an orbit's start and phase, (n + 1,); `end`: contribution of its stages, (n,)."""
         p = orbit.semidiscrete
         jump = jump_of(orbit.points, p) - end
         return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
 
     def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
-        """The change for right sides of the ends and a share of those of the stages, (K, s, n)."""
+        """Change, (N + 1,), for right sides of the ends, (n + 2,), and a share of those of the stages, (K, s,
+        n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
         matrix[-1, self.orbit.form.layout.place("m3")] = border[0] / self.scale.moment
@@ -170,7 +169,7 @@ class BorderedMatrix:
         return self._spread(np.linalg.solve(matrix, right), sides, share)
 
     def _spread(self, found: Array, sides: Array, share: float) -> Array:
-        """The change of all, (N + 1,), from that of the ends, (n + 2,), and a share of the right sides."""
+        """Change of all, (N + 1,), from that of the ends, (n + 2,), and a share of right sides, (K, s, n)."""
         n = len(self.orbit.start)
         stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
         stages = np.ascontiguousarray(stages[:, :, None])
@@ -181,7 +180,7 @@ class BorderedMatrix:
 
 
 def bordered(found: Converged) -> BorderedMatrix:
-    """The matrix of an orbit that was found on a branch."""
+    """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
     if not isinstance(found.matrix, BorderedMatrix):
         raise TypeError("the matrix does not know the parameter")
     return found.matrix
@@ -189,7 +188,7 @@ def bordered(found: Converged) -> BorderedMatrix:
 
 @dataclass(frozen=True, eq=False)
 class Condition:
-    """What closes the system: border . place, (3,), in a scale, is a number."""
+    """The equation that closes the system: border . place, (3,), in a scale, has a prescribed value."""
 
     scale: Scale
     border: Array
@@ -197,11 +196,11 @@ class Condition:
 
     @classmethod
     def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "Condition":
-        """What holds at a length along a border from an orbit."""
+        """Condition at an arc length along a border, (3,), from an orbit."""
         return cls(scale, border, float(border @ scale.place(orbit)) + length)
 
     def missed(self, orbit: Orbit) -> float:
-        """By how much an orbit's is less."""
+        """Prescribed value minus an orbit's value."""
         return self.value - float(self.border @ self.scale.place(orbit))
 
     def solved(
@@ -209,8 +208,8 @@ class Condition:
     ) -> Converged:
         """The cycle near an orbit; raises Unsolvable.
 
-        tolerance: relative error that is left of the orbit. workspace: memory of the matrices. distance: the
-        largest relative distance of its matrix from it, an error of its multipliers and of its tangent.
+        tolerance: relative error of the orbit. workspace: memory of the matrices. distance: largest relative
+        distance of the matrix from the cycle, an error of its multipliers and tangent.
         """
         matrix, off, last = BorderedMatrix(orbit, self.scale, workspace), 0.0, np.inf
         step = matrix.step(self.border, self.missed(orbit))
@@ -220,11 +219,11 @@ class Condition:
             if not change <= LONGEST_STEP:
                 raise Unsolvable("there is no cycle near on the branch")
             orbit, off = moved(orbit, self.scale.name, step), off + change
-            rate = change / last if off > change else np.inf  # unknown before a second step of one matrix
-            settled = change * min(rate, 1.0) <= tolerance and rate <= SLUGGISH
+            rate = change / last if off > change else np.inf  # known from the second step with one matrix on
+            settled = change * min(rate, 1.0) <= tolerance and rate <= SLOW_CONTRACTION
             if (settled or change <= tolerance) and off <= distance:
                 return Converged(orbit, matrix, off)
-            if settled or change <= tolerance or (off > change and rate > SLUGGISH):
+            if settled or change <= tolerance or (off > change and rate > SLOW_CONTRACTION):
                 matrix, off = BorderedMatrix(orbit, self.scale, workspace), 0.0
                 step, last = matrix.step(self.border, self.missed(orbit)), np.inf
             else:
@@ -232,7 +231,7 @@ class Condition:
         raise Unsolvable(f"Newton's method on the branch is at {change:.0e}")
 
     def on(self, mesh: OrbitMesh, found: Converged, tolerance: float, distance: float = np.inf) -> Converged:
-        """A cycle that was found, on another mesh; raises Unsolvable. tolerance, distance: as in `solved`."""
+        """A known cycle solved on another mesh; raises Unsolvable. Other arguments as in `solved`."""
         return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 
 
@@ -241,10 +240,10 @@ def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
     try:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the branch leaves the rods: {error}") from error
+        raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
     there = replace(orbit, form=form, values=orbit.values + change[:-1])
     if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} needs other unknowns")
+        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
     if not there.period > 0:
         raise Unsolvable("Newton's method lost the cycle")
     return there

@@ -1,4 +1,4 @@
-"""A branch of cycles as it is stored: its cycles and its special points."""
+"""A branch as it is stored: numbers of its cycles, and its special points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -15,11 +15,11 @@ from .symmetry import Breaking
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchPoint:
-    """A cycle of a branch.
+    """Numbers of one cycle of a branch.
 
-    at: the parameter; at_error: relative, of the parameter where the moment at the clamp is the same; errors:
-    at the value of the parameter. multiplier: the largest nontrivial one's modulus; unstable: how many lie
-    outside the circle, -1 where one is on it within its error.
+    at: value of the parameter. at_error: relative error of the parameter at an equal clamp moment. errors: at
+    an equal parameter. multiplier: modulus of the largest nontrivial Floquet multiplier. unstable: number of
+    multipliers outside the unit circle, -1 if one lies on the circle within its error.
     """
 
     at: float
@@ -47,10 +47,10 @@ class BranchPoint:
 
 
 def _margin(point: ArcPoint) -> float:
-    """How far a multiplier's modulus near 1 must be from it to be told from it.
+    """Error of the moduli of multipliers near 1: a modulus closer to 1 is undecided.
 
-    The errors of others are as small as they are, in units of the largest one's; that of the trivial one is
-    known.
+    The largest multiplier's error, relative to that multiplier, holds for the others too; the trivial
+    multiplier's error is known, because its exact value is 1.
     """
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
@@ -59,59 +59,63 @@ def _margin(point: ArcPoint) -> float:
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """The special point at which a branch ends, and whether it is followed to an end that is one.
+    """The special point where a branch ends, and whether it is a true end of the branch.
 
-    arrives, meets and full: as in `BranchCurve`.
+    complete, end_hopf, end_breaking and full: as in `BranchCurve`.
     """
 
     special: SpecialPoint
     complete: bool
-    arrives: int = -1
-    meets: Breaking | None = None
+    end_hopf: int = -1
+    end_breaking: Breaking | None = None
     full: bool = False
 
 
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
-    """A branch: its cycles and its special points, both in order, from the Hopf point of a number, or -1.
+    """A branch: its cycles and its special points, each in order along the branch.
 
-    arrives: the number of the Hopf point at which it ends, -1 for none. breaking: the symmetry breaking where
-    a branch without symmetry is born; meets: that at which it ends. complete: whether it was followed to
-    an end that is one. full: whether it ends because no more cycles are kept. explained: whether the special
-    points explain all multipliers that cross the circle.
+    hopf: number of the Hopf point where it is born, or -1. end_hopf: number of the Hopf point where it ends,
+    or -1. breaking: symmetry breaking where a branch without symmetry is born. end_breaking: symmetry
+    breaking where it ends. complete: whether it was followed to a true end. full: whether it ends because the
+    limit on the number of cycles is reached. explained: whether the special points account for all
+    multipliers that cross the unit circle.
     """
 
     hopf: int
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
-    arrives: int = -1
+    end_hopf: int = -1
     breaking: Breaking | None = None
-    meets: Breaking | None = None
+    end_breaking: Breaking | None = None
     complete: bool = False
     full: bool = False
     explained: bool = True
 
     def add(self, special: SpecialPoint) -> None:
-        """A special point behind the last cycle."""
+        """Adds a special point behind the last cycle."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
     def add_found(self, between: Sequence[SpecialPoint], explained: bool) -> None:
-        """Special points behind the last cycle, and whether they explain the multipliers of the next one."""
+        """Adds special points behind the last cycle. explained: whether these account for the multipliers of
+        the next cycle."""
         for special in between:
             self.add(special)
         self.explained &= explained
 
     def judge(self, points: Sequence[BranchPoint]) -> None:
-        """Puts cycles with their errors in the place of as many at the end."""
+        """Replaces the last cycles by the same cycles with errors."""
         self.points[-len(points) :] = points
 
     def cut(self, count: int) -> None:
-        """Drops so many cycles at the end, and the special points behind them."""
+        """Drops a number of cycles at the end, and the special points behind them."""
         del self.points[-count:]
         self.special[:] = [point for point in self.special if point.after < len(self.points)]
 
     def end(self, end: BranchEnd) -> None:
-        """How it ends."""
+        """Ends the branch at a special point."""
         self.add(end.special)
-        self.complete, self.full = end.complete, end.full
-        self.arrives, self.meets = end.arrives, end.meets
+        self.complete = end.complete
+        self.full = end.full
+        self.end_hopf = end.end_hopf
+        self.end_breaking = end.end_breaking

@@ -1,8 +1,8 @@
-"""The task branch for one rod: the cycles born at its Hopf points along a parameter, followed to their ends.
+"""The task branch for one rod: all cycles born at its Hopf points along a parameter, followed to their ends.
 
-The Hopf points are those of `task: thresholds`, found by the same covering. A branch that arrives at another
-Hopf point of the rod is that one's too. Where the symmetry of cycles breaks on one of them, the branch of
-cycles without it is followed as well. Cycles that no such branch contains are not found.
+The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
+once, from the first. Where a branch loses its mirror symmetry, the branch of asymmetric cycles born there is
+followed too. Cycles on other branches are not found.
 """
 
 from dataclasses import dataclass, field, replace
@@ -17,50 +17,52 @@ from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
-from .following import Course, follow_branch, follow_without_symmetry
+from .following import BranchLimits, follow_branch, follow_without_symmetry
 from .special.point import EndReason
 from .symmetry import Breaking, breakings_of
 from .work import shares_of_branches
 
-SHORT_OF_CRUSHED = 1e-4
-"""How far below k1 a branch along F ends, relatively: beyond, the rod is all but crushed at rest."""
+BRANCH_CRUSHING_MARGIN = 1e-4
+"""Relative distance below the crushing force k1 at which a branch along F ends; nearer, the rod at rest is
+almost crushed."""
 TAPER_DIGITS = 1e-9
 """Relative accuracy of the smallest taper whose tip is not crushed."""
 
 
 class BranchStatus(PointStatus):
-    """Outcome of one rod: of the search for its Hopf points, and of the branches from them."""
+    """Outcome for one rod: of the search for Hopf points, and of following the branches."""
 
     ok = (
         0,
-        "every branch that is born at a Hopf point within the range, or where the symmetry of one breaks, is "
-        "followed to its end, as accurately as asked for, and what changes on it is located",
+        "every branch born at a Hopf point within the range, or where such a branch loses its symmetry, is "
+        "followed to its end to the requested accuracy, and all its special points are located",
         True,
     )
     stopped = (
         1,
-        "a branch stops short where no further cycle was found, the others are complete; the message says "
-        "where; a smaller or a larger number for the accuracy may lead on, or shorten the range",
+        "a branch stops before its end because no further cycle was found; the other branches are complete; "
+        "the message says where; change the accuracy in either direction, or shorten the range",
     )
-    list_full = 2, "there are more cycles or special points than are kept; raise cycles or special"
+    list_full = 2, "there are more cycles or special points than the file holds; raise cycles or special"
     special_undecided = (
         3,
-        "a special point is located less accurately than asked for, as its error says, or multipliers cross "
-        "the circle for which none was found; a smaller number for the accuracy may decide it",
+        "a special point misses the requested accuracy, as its error says, or multipliers cross the unit "
+        "circle where no special point was found; a smaller number for the accuracy may decide it",
     )
     search_open = (
         4,
-        "the branches are complete, but it is not proved that no Hopf point is missing: within an open range "
-        "two may be about to meet, or a count does not agree; `certify: false` accepts the latter",
+        "the branches are complete, but a Hopf point may be missing: two may nearly coincide within an open "
+        "range, or a count disagrees; `certify: false` accepts a count that disagrees",
     )
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
 
 
 @dataclass(frozen=True, slots=True)
 class BranchRequest:
-    """What is asked of every rod: the parameter that is followed, its range, a relative accuracy, a proof.
+    """Request for every rod: the continuation parameter, its range, the relative accuracy, and whether to
+    certify.
 
-    cycles, special: the most cycles and special points that are kept.
+    cycles, special: maximum number of cycles and of special points that are stored.
     """
 
     along: str
@@ -74,9 +76,9 @@ class BranchRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
-    """The branches of a rod. crossings: its Hopf points within the range, by the parameter.
+    """Branches of a rod. crossings: Hopf points within the range, ordered by the parameter.
 
-    unstable_at_start: unstable modes of the straight rod where the range starts, -1 where that is not known.
+    unstable_at_start: number of unstable modes of the straight rod at the start of the range, -1 if unknown.
     """
 
     status: BranchStatus
@@ -91,10 +93,10 @@ class BranchesOfRod:
 def solve_branches(
     rod: Rod, request: BranchRequest, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """All branches born at Hopf points of rods along a parameter; failures are a status, never an exception.
+    """All branches born at Hopf points of a rod along a parameter; a failure is a status, never an exception.
 
-    rod: with any value of that parameter. workspace: memory of Newton's matrices that rods share; without it
-    the rod has its own.
+    rod: with any value of the continuation parameter. workspace: shared memory of Newton's matrices; by
+    default the rod has its own.
     """
     memory = workspace or NewtonWorkspace()
     try:
@@ -107,7 +109,7 @@ def solve_branches(
 
 
 def warm_up() -> None:
-    """Loads what is compiled and created at first use, so that no point pays for it."""
+    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
     solve_branches(
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
     )
@@ -130,8 +132,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
     reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
     if path.inverse:
         ends, reasons = ends[::-1], reasons[::-1]
-    course = Course(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
-    curves = _followed(course, request.along)
+    limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
+    curves = _followed(limits, request.along)
     status, message = _judged(found, curves, failures, request)
     return BranchesOfRod(
         status=status,
@@ -144,13 +146,13 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 
 
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """(lowest value, highest value, which of the two is where the rod is crushed, -1 for none)."""
+    """(lowest value, highest value, index of the end at which the rod is crushed, -1 for neither)."""
     low, high = request.start, request.stop
     share = rod.build.crushing_share(rod.taper)
-    if request.along == "F" and high > (1 - SHORT_OF_CRUSHED) * share * rod.k1:
-        return low, (1 - SHORT_OF_CRUSHED) * share * rod.k1, 1
-    if request.along == "k1" and low < rod.F / share * (1 + SHORT_OF_CRUSHED):
-        return rod.F / share * (1 + SHORT_OF_CRUSHED), high, 0
+    if request.along == "F" and high > (1 - BRANCH_CRUSHING_MARGIN) * share * rod.k1:
+        return low, (1 - BRANCH_CRUSHING_MARGIN) * share * rod.k1, 1
+    if request.along == "k1" and low < rod.F / share * (1 + BRANCH_CRUSHING_MARGIN):
+        return rod.F / share * (1 + BRANCH_CRUSHING_MARGIN), high, 0
     if request.along == "taper":
         thinnest = _thinnest(rod, low, high)
         return thinnest, high, 0 if thinnest > low else -1
@@ -158,10 +160,10 @@ def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
 
 
 def _thinnest(rod: Rod, low: float, high: float) -> float:
-    """The smallest taper from `low` to `high` whose tip the force of a rod does not crush."""
+    """Smallest taper between `low` and `high` at which the force does not crush the tip."""
 
     def holds(taper: float) -> bool:
-        return (1 - SHORT_OF_CRUSHED) * rod.build.crushing_share(taper) * rod.k1 > rod.F
+        return (1 - BRANCH_CRUSHING_MARGIN) * rod.build.crushing_share(taper) * rod.k1 > rod.F
 
     if holds(low) or not holds(high):
         return low if holds(low) else high
@@ -171,19 +173,19 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
     return high
 
 
-def _followed(course: Course, name: str) -> list[BranchCurve]:
-    """The branches from all Hopf points, then those without symmetry; what ends at one another only once."""
+def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
+    """Branches from all Hopf points, then the asymmetric ones; a branch that connects two only once."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
-    left, count = course.most, len(course.hopfs)
-    shares = shares_of_branches([hopf.coordinate for hopf in course.hopfs], course.ends)
+    left, count = limits.max_cycles, len(limits.hopfs)
+    shares = shares_of_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
     for number in range(count):
         if number in arrived:
             continue
-        here = replace(course, most=left)
+        here = replace(limits, max_cycles=left)
         with part(f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])):
             curve = follow_branch(number, here)
-        arrived.add(curve.arrives)
+        arrived.add(curve.end_hopf)
         left -= len(curve.points)
         curves.append(curve)
     breakings = breakings_of([curve.special for curve in curves])
@@ -192,8 +194,10 @@ def _followed(course: Course, name: str) -> list[BranchCurve]:
         if breaking in met:
             continue
         with part(f"branch {len(curves) + 1}, without symmetry"):
-            curve = follow_without_symmetry(which, name, replace(course, most=left, breakings=breakings))
-        met += [curve.meets] if curve.meets else []
+            curve = follow_without_symmetry(
+                which, name, replace(limits, max_cycles=left, breakings=breakings)
+            )
+        met += [curve.end_breaking] if curve.end_breaking else []
         left -= len(curve.points)
         curves.append(curve)
     return curves
@@ -202,8 +206,8 @@ def _followed(course: Course, name: str) -> list[BranchCurve]:
 def _judged(
     found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
-    """(status, message): what matters most is said first."""
-    said = [
+    """(status, message); the gravest problem determines the status."""
+    messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)
         for special in curve.special
@@ -211,16 +215,16 @@ def _judged(
     ]
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
-    aim = max(request.accuracy, 1e-9)
-    rough = any(point.error > aim * abs(point.at) for point in special)
+    tolerance = max(request.accuracy, 1e-9)
+    inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.explained for curve in curves):
-        said.append("multipliers cross the circle where no special point is found")
+        messages.append("multipliers cross the unit circle where no special point was found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.full for curve in curves),
         BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
-        BranchStatus.special_undecided: rough or any(not curve.explained for curve in curves),
+        BranchStatus.special_undecided: inaccurate or any(not curve.explained for curve in curves),
         BranchStatus.search_open: request.certify and not found.proved,
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
-    return status, "; ".join(filter(None, [*failures, *said, found.why_not]))
+    return status, "; ".join(filter(None, [*failures, *messages, found.why_not]))

@@ -1,7 +1,8 @@
-"""Rows of a phase diagram with their cycles: which states are stable at each value along the row.
+"""Rows of a phase diagram with their cycles: the stable states at each value along the row.
 
-A stable cycle exists where the value lies in a stretch of a branch, between special points, whose
-multipliers lie inside the circle. The stretches end at located special points, not at values of the row.
+A branch is divided at its special points. A stable cycle exists at a value that lies within a part of a
+branch whose multipliers are inside the unit circle. The ends of a part are located special points, not values
+of the row.
 """
 
 from dataclasses import dataclass
@@ -20,17 +21,17 @@ from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
 from .special.point import EndReason, SpecialPoint
 
-MOST_CYCLES = 500
-"""Of the branches of one row."""
+MAX_CYCLES = 500
+"""Maximum number of cycles on all branches of one row."""
 
 
 def _as(status: ThresholdStatus) -> tuple[int, str, bool]:
-    """A status of the rows without cycles."""
+    """(value, sentence, success) of the status of a row without cycles."""
     return int(status), status.sentence, status.succeeded
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row whose cycles are followed: of its changes first, then of its branches."""
+    """Outcome of a row with cycles: of its stability changes first, then of its branches."""
 
     ok = _as(ThresholdStatus.ok)
     not_certified = _as(ThresholdStatus.not_certified)
@@ -40,20 +41,20 @@ class CoexistenceStatus(PointStatus):
     failed = _as(ThresholdStatus.failed)
     branches_stopped = (
         6,
-        "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: where "
-        "no stable cycle is known the stable states are undecided; the log says where it stopped",
+        "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: the "
+        "stable states are undecided where no stable cycle is known; the log says where the branch stopped",
     )
     special_undecided = (
         7,
-        "the branches are complete, but a special point is located less accurately than asked for or does "
-        "not explain the multipliers beside it; stretches whose multipliers disagree are undecided, and a "
-        "smaller number for the accuracy may decide them",
+        "the branches are complete, but a special point misses the requested accuracy or contradicts the "
+        "multipliers beside it; parts of a branch with contradictory multipliers are undecided; a smaller "
+        "number for the accuracy may decide them",
     )
     special_full = 8, "there are more special points on the branches of the row than the file holds"
 
 
 class Stable(IntEnum):
-    """Which states are stable. neither_known: the straight rod is not and no stable cycle is on a branch."""
+    """Stable states. neither_known: the straight rod is unstable and no branch has a stable cycle."""
 
     neither_known = 0
     straight = 1
@@ -65,7 +66,7 @@ class Stable(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
-    """A row, its stable states at each value, shape (values,), and all special points of its branches."""
+    """A row: its stable states at each value, (values,), and the special points of all its branches."""
 
     row: DiagramRow
     stable_states: NDArray[np.int8]
@@ -78,16 +79,16 @@ class CoexistenceRow:
 def solve_coexistence(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> CoexistenceRow:
-    """The row with its cycles; failures are a status, never an exception.
+    """A row with its cycles; a failure is a status, never an exception.
 
-    special: the most points kept. workspace: as in `solve_branches`.
+    special: maximum number of special points. workspace: as in `solve_branches`.
     """
     row = solve_row(rod, request)
     branches = row_branches(rod, request, special, workspace)
     status, message = _judged(row, branches, special)
     cycles = cycles_at(request.values, branches, request.certify)
     forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
-    # Without a force nothing feeds a motion: the elastic energy of the rod falls until it is straight.
+    # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
     return CoexistenceRow(
         row=row,
@@ -102,14 +103,14 @@ def solve_coexistence(
 def row_branches(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """The branches of cycles from the Hopf points of a row; other arguments as in `solve_coexistence`."""
+    """Branches of cycles from the Hopf points of a row; other arguments as in `solve_coexistence`."""
     asked = BranchRequest(
         along=request.name,
         start=float(request.values[0]),
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,
-        cycles=MOST_CYCLES,
+        cycles=MAX_CYCLES,
         special=special,
     )
     return solve_branches(rod, asked, workspace)
@@ -121,7 +122,7 @@ def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
 
 
 def _judged(row: DiagramRow, branches: BranchesOfRod, special: int) -> tuple[CoexistenceStatus, str]:
-    """(status, message): the changes along the row are said first."""
+    """(status, message); problems of the stability changes take precedence."""
     message = "; ".join(filter(None, [row.message, branches.message]))
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
@@ -135,8 +136,11 @@ def _judged(row: DiagramRow, branches: BranchesOfRod, special: int) -> tuple[Coe
 
 @dataclass(frozen=True, slots=True)
 class BranchStretch:
-    """A part of a branch between special points: for sure from the first to the second of `within`, at most
-    from the first to the second of `about`; stable: 1 yes, 0 no, -1 not known."""
+    """Part of a branch between two special points.
+
+    within: range of the parameter that it surely covers. about: range that it may cover. stable: 1 yes, 0 no,
+    -1 unknown.
+    """
 
     within: tuple[float, float]
     about: tuple[float, float]
@@ -144,12 +148,12 @@ class BranchStretch:
 
 
 def cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
-    """At each value whether a stable cycle exists: 1 yes, 0 none on the branches, -1 not known; (values,)."""
+    """Stable cycles at each value, (values,): 1 if one exists, 0 if no branch has one, -1 if unknown."""
     complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     known = complete and (branches.proved or not certify)
     found = np.full(len(values), 0 if known else -1, dtype=np.int8)
     stretches = [stretch for curve in branches.curves for stretch in stretches_of(curve)]
-    # Where stability is not known, or an end of a stable stretch is within its error, none is claimed.
+    # No stable cycle is claimed where the stability is unknown or within the error of the end of a part.
     for stretch in stretches:
         if stretch.stable:
             found[(values >= stretch.about[0]) & (values <= stretch.about[1])] = -1
@@ -160,7 +164,7 @@ def cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[
 
 
 def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
-    """The parts of a branch between its special points."""
+    """Parts of a branch between consecutive special points."""
     stretches = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
         signs = {point.unstable for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
@@ -173,12 +177,12 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
 
 
 def _closed(point: SpecialPoint) -> int:
-    """-1 at an end of the range, which has a cycle itself, else 1."""
+    """Sign of the error at an end: -1 at an end of the range, where the branch itself has a cycle, else 1."""
     return -1 if point.reason is EndReason.range_end else 1
 
 
 def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
-    """The stable states, (values,), of the straight rod's classes and the stable cycles at the values."""
+    """Stable states, (values,), from the straight rod's classes and the stable cycles, both (values,)."""
     straight = (motion == Motion.monotone) | (motion == Motion.oscillatory)
     states = np.where(straight, Stable.straight, Stable.neither_known).astype(np.int8)
     states[cycles > 0] += Stable.cycle

@@ -1,10 +1,10 @@
-"""The errors of a cycle of a branch, at the value of the parameter that is stored with it.
+"""Errors of a cycle of a branch at the stored value of the parameter.
 
-Two finer meshes, one in space and one in time, have the cycle at the same place of the branch: there a fold
-is a place like any other. The cycles found there lie at other values of the parameter. Slid along the branch
-to the stored value they tell the errors of period, extrema and multiplier at that value. What the parameter
-is off by where the moment at the clamp is the same is its own error: it is small beside a Hopf point and
-beside a fold, where all other numbers change fast with the parameter.
+Two finer meshes, one in space and one in time, have the cycle at the same arc length, which is regular at a
+fold. The cycles on the finer meshes lie at slightly different values of the parameter; slid along the branch
+to the stored value, they give the errors of period, extrema and multiplier. The difference of the parameter
+at an equal clamp moment is the error of the parameter. It stays small beside a Hopf point and beside a fold,
+where all other numbers vary steeply with the parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -24,26 +24,30 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 from .bordered import Condition, Scale, moved
 
-STEEP = 120.0
-"""|(p/y) dy/dp| of the parameter p and the largest y from which errors at an equal p may exceed the accuracy,
-beside a Hopf point or a fold: in proportion to it, since p itself cannot be known better. That is a fifth
-above the 100 that is promised, for slopes that are taken between cycles."""
-LEAST_SHARE = 0.1
-"""The least rate of the moment at the clamp, in units of the parameter's, both relative, with which errors at
-an equal moment are stated: where the moment is stationary the parameter at an equal moment means nothing."""
-BETWEEN, LEAST_ERROR = 2.0, 1e-16
-"""Factor on errors that are interpolated, and the least error that counts: below, it is rounding."""
-TOLERANCE = 0.01
-"""What Newton's method leaves on finer meshes, in units of the accuracy."""
+STEEP_SLOPE = 120.0
+"""Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may exceed
+the accuracy in proportion, as beside a Hopf point or a fold: p itself has an error. It is a fifth above the
+promised 100, since slopes are taken between cycles."""
+MIN_MOMENT_SHARE = 0.1
+"""Smallest derivative of the clamp's moment along the branch, in units of the parameter's derivative, used
+for the parameter's error at an equal moment; where the moment is stationary that error is undefined."""
+INTERPOLATION_FACTOR = 2.0
+"""Safety factor on interpolated errors."""
+MIN_ERROR = 1e-16
+"""Smallest error; smaller differences are rounding."""
+NEWTON_SHARE = 0.01
+"""Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
 SLOPE_STEP = 1e-4
-"""Length along the branch over which the rate of the largest y is measured, as a difference quotient."""
+"""Arc length of the difference quotient that gives the slope of the largest y."""
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a cycle stands on its branch: tangent, (N + 1,), of unit length in the scale; ahead: the same as
-    a direction of the scale's place, (3,); curvature: of the parameter along the branch, in the scale's
-    units; multiplier_rate: of the largest multiplier along the branch.
+    """Place of a cycle on its branch.
+
+    tangent: of unit length in the scale, (N + 1,). ahead: the tangent as a direction of `Scale.place`, (3,).
+    curvature: second derivative of the parameter along the branch, in the scale's units. multiplier_rate:
+    derivative of the largest multiplier along the branch.
     """
 
     scale: Scale
@@ -54,14 +58,14 @@ class Place:
 
     @property
     def rate(self) -> float:
-        """Of the parameter along the branch, in the scale's units."""
+        """Derivative of the parameter along the branch, in the scale's units."""
         return float(self.ahead[2])
 
     def slide(self, off: float) -> float:
-        """Length along the branch over which the parameter changes by off, in the scale's units.
+        """Arc length over which the parameter changes by `off`, in the scale's units.
 
-        Beside a fold it may change by no more than the curvature allows: then the length to the fold and as
-        far beyond it.
+        Beside a fold the parameter may not reach that change; the result is then twice the length to the
+        fold.
         """
         if self.rate**2 >= 4 * abs(self.curvature * off):
             return off / self.rate
@@ -71,10 +75,10 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class BranchCalibration:
-    """The errors of a mesh at a cycle of a branch.
+    """Errors of a mesh at a cycle of a branch.
 
-    known: those at the stored value of the parameter. parameter: relative error of the parameter at an equal
-    moment, in space and in time, (2,). slope: |(p/y) dy/dp|.
+    known: at an equal parameter. parameter: relative error of the parameter at an equal moment, in space and
+    in time, (2,). slope: |(p/y) dy/dp|.
     """
 
     known: Calibration
@@ -86,15 +90,15 @@ class BranchCalibration:
         return self.known.mesh
 
     def errors(self, accuracy: float) -> CycleErrors:
-        """Of the cycle at the stored value of the parameter."""
+        """Errors of the cycle at the stored value of the parameter."""
         return self.known.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
-        """Relative, of the parameter at an equal moment."""
+        """Relative error of the parameter at an equal moment."""
         return max(SAFETY * float(self.parameter.sum()), LEAST_CLAIM * accuracy, ROUNDING)
 
     def largest(self, accuracy: float) -> float:
-        """What must not exceed the accuracy."""
+        """The error that must not exceed the accuracy."""
         return self._demanded.errors(accuracy).largest
 
     def planned(self, accuracy: float) -> OrbitMesh:
@@ -102,13 +106,13 @@ class BranchCalibration:
         return self._demanded.planned(accuracy)
 
     def planned_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh that is expected to have the parameter at an equal moment to the accuracy."""
+        """The cheapest mesh whose parameter at an equal moment is expected to have the accuracy."""
         return self._of_parameter.planned(accuracy)
 
     @cached_property
     def _demanded(self) -> Calibration:
-        """The errors that a mesh is chosen by: the parameter's counts as the period's does."""
-        steep = max(1.0, self.slope / STEEP)
+        """Errors that determine the mesh; the parameter's error counts like the period's."""
+        steep = max(1.0, self.slope / STEEP_SLOPE)
         parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
             part[PERIOD] = max(part[PERIOD], own)
@@ -116,7 +120,7 @@ class BranchCalibration:
 
     @cached_property
     def _of_parameter(self) -> Calibration:
-        """The errors of the parameter alone, in the place of all others."""
+        """Calibration in which every error is the parameter's."""
         numbers = [PERIOD, HEIGHT, OTHERS, APART]
         parts = [self.known.space.copy(), self.known.time.copy()]
         for part, own in zip(parts, self.parameter, strict=True):
@@ -124,9 +128,10 @@ class BranchCalibration:
         return replace(self.known, space=parts[0], time=parts[1])
 
     def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
-        """The errors of a cycle of a slope at a share of the way to another one on the same mesh.
+        """Errors of a cycle between this one and another on the same mesh. share: of the way; slope: at that
+        cycle.
 
-        Each falls or grows along the way by a constant factor, and BETWEEN times that is stated.
+        Each error is interpolated geometrically and multiplied by INTERPOLATION_FACTOR.
         """
         mean = [
             _interpolated(one, there, share)
@@ -141,17 +146,18 @@ class BranchCalibration:
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """BETWEEN times the errors at a share of the way, of any shape, but no more than the larger ones."""
-    logarithms = np.log(np.maximum([one, other], LEAST_ERROR))
+    """Errors at a share of the way, times INTERPOLATION_FACTOR, at most the larger of both; of any shape."""
+    logarithms = np.log(np.maximum([one, other], MIN_ERROR))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(BETWEEN * means, np.maximum(one, other))
+    bounded: Array = np.minimum(INTERPOLATION_FACTOR * means, np.maximum(one, other))
     return bounded
 
 
 def measured_errors(
     found: Converged, place: Place, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
-    """The errors of the mesh of a cycle; raises Unsolvable. before: those of a cycle near by."""
+    """Errors of a cycle's mesh, from two finer meshes; raises Unsolvable. before: errors of a neighbouring
+    cycle."""
     mesh, orbit = mesh_of(found.orbit), found.orbit
     finer, share = finer_meshes(mesh)
     condition = Condition.at(place.scale, place.ahead, orbit)
@@ -159,7 +165,7 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, TOLERANCE * accuracy, DISTANCE)
+        fine = condition.on(target, found, NEWTON_SHARE * accuracy, DISTANCE)
         part[:] = _difference(rough, multipliers, fine, place)
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
@@ -167,10 +173,10 @@ def measured_errors(
 
 
 def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: Place) -> Array:
-    """What a cycle differs by from that of a finer mesh, (6,).
+    """Differences of a cycle from the same cycle on a finer mesh, (6,).
 
-    First as `Calibration.space` says, at the value of the parameter that the rough mesh has; then of the
-    parameter at an equal moment.
+    The first five, as in `Calibration.space`, are at the rough mesh's value of the parameter; the last is
+    that of the parameter at an equal moment.
     """
     orbit, scale = rough.orbit, place.scale
     moment, _, off = scale.place(orbit) - scale.place(fine.orbit)
@@ -181,12 +187,12 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
     by_moment, by_parameter = abs(place.ahead[0]), abs(place.rate)
     apart = abs(off * place.ahead[0] - moment * place.rate)
-    own = apart / max(by_moment, LEAST_SHARE * by_parameter)
+    own = apart / max(by_moment, MIN_MOMENT_SHARE * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
 def slope_at(path: CyclePath, place: Place) -> float:
-    """|(p/y) dy/dp| of the parameter p and the largest y along a branch."""
+    """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
     orbit: Orbit = path.orbit
     there = CyclePath(moved(orbit, place.scale.name, SLOPE_STEP * place.tangent))
     y, other = path.extrema["tip_y_max"], there.extrema["tip_y_max"]

@@ -1,4 +1,4 @@
-"""One branch of cycles, from the Hopf point or the symmetry breaking where it is born to where it ends."""
+"""One branch of cycles, from the Hopf point or symmetry breaking where it is born to its end."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -28,61 +28,62 @@ from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_
 from .trail import Trail, end_at
 from .work import share_done
 
-PARAMETER = np.array([0.0, 0.0, 1.0])
-SMALL = 0.06
-"""Largest tip y in L from which a branch may step to the Hopf point where it ends."""
-WITHIN, WITHIN_PERIOD = 0.3, 1e-3
-"""Distance of a Hopf point from where cycles shrink to nothing, in units of the last cycle's distance, and of
-its period, relative."""
-LANDING = 1e-6
-"""Share of a step to which the place of an end of the range is predicted; Newton's method then has it."""
-EXACT = 1e-15
-"""Relative error of an end of the range."""
-CLOSE = 1e-6
-"""Distance from a Hopf point, relative, that need not be less; nor need it be below the accuracy asked for,
-to which the branch knows its own end."""
+ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
+"""Direction of `Scale.place` along the parameter."""
+SMALL_CYCLE = 0.06
+"""Largest tip y, in L, of a cycle from which the branch may step across a Hopf point where it ends."""
+HOPF_WITHIN = 0.3
+"""Tolerance for the extrapolated place of a Hopf point, in units of the last cycle's distance from it."""
+HOPF_PERIOD_WITHIN = 1e-3
+"""Relative tolerance for the extrapolated period at a Hopf point."""
+RANGE_END_BRACKET = 1e-6
+"""Fraction of a step to which the range's end is predicted; Newton's method then places the cycle on it."""
+RANGE_END_ERROR = 1e-15
+"""Relative error of the parameter at an end of the range."""
+HOPF_ROUNDING = 1e-6
+"""Smallest relative tolerance for the extrapolated place of a Hopf point; the accuracy counts if larger."""
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
-    """What a branch is followed through: all Hopf points of the rod, the parameter's coordinates between
-    which it lies with why it ends there, an accuracy, and how many cycles are kept.
+class BranchLimits:
+    """Limits within which branches are followed, and known points where they may end.
 
-    breakings: known symmetry breakings of the rod. workspace: memory of all matrices on the way.
+    hopfs: of the rod. ends: coordinates of the parameter; reasons: why branches end there. max_cycles: number
+    of stored cycles. workspace: memory of all matrices. breakings: known symmetry breakings of the rod.
     """
 
     hopfs: Sequence[HopfBirth]
     ends: tuple[float, float]
     reasons: tuple[EndReason, EndReason]
     accuracy: float
-    most: int
+    max_cycles: int
     workspace: NewtonWorkspace
     breakings: Sequence[Breaking] = ()
 
 
-def follow_branch(number: int, course: Course) -> BranchCurve:
-    """The branch from a Hopf point, of a number among all; what stops it is its last special point."""
-    hopf = course.hopfs[number]
+def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
+    """The branch from Hopf point `number` of the list; a failure is its last special point."""
+    hopf = limits.hopfs[number]
     curve = BranchCurve(hopf=number)
     curve.add(special_hopf(hopf))
-    return _followed(curve, course, lambda: beginning(hopf, course.accuracy, course.workspace))
+    return _followed(curve, limits, lambda: beginning(hopf, limits.accuracy, limits.workspace))
 
 
-def follow_without_symmetry(which: int, name: str, course: Course) -> BranchCurve:
-    """The branch from a symmetry breaking, of a number among the known ones, along a parameter."""
-    breaking = course.breakings[which]
+def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:
+    """The branch of asymmetric cycles from symmetry breaking `which` of the list, along a parameter."""
+    breaking = limits.breakings[which]
     curve = BranchCurve(hopf=-1, breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
 
     def first() -> ArcPoint:
-        return beginning_without_symmetry(breaking, name, course.accuracy, course.workspace)
+        return beginning_without_symmetry(breaking, name, limits.accuracy, limits.workspace)
 
-    return _followed(curve, course, first)
+    return _followed(curve, limits, first)
 
 
-def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint]) -> BranchCurve:
-    """A branch that begins at a special point, and what gives its first cycle or raises Unsolvable."""
-    if course.most < 1:
+def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
+    """A branch from a special point to its end. first: gives the first cycle or raises Unsolvable."""
+    if limits.max_cycles < 1:
         curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
         return curve
     try:
@@ -90,35 +91,35 @@ def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint])
     except Unsolvable as why:
         curve.end(BranchEnd(_end_beside(curve, EndReason.no_cycle_found, str(why)), complete=False))
         return curve
-    outside = _beyond(here, course)
+    outside = _beyond(here, limits)
     if outside >= 0:
-        curve.end(BranchEnd(_end_beside(curve, course.reasons[outside]), complete=True))
+        curve.end(BranchEnd(_end_beside(curve, limits.reasons[outside]), complete=True))
         return curve
-    return followed_from(curve, here, course)
+    return followed_from(curve, here, limits)
 
 
-def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> BranchCurve:
+def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
     """A branch from its first cycle, whose errors are measured, to its end."""
-    trail = Trail(curve, course.accuracy, first)
+    trail = Trail(curve, limits.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
-        report(partial(_place_on, curve, going, course))
-        going = _next(trail, going, course)
+        report(partial(_place_on, curve, going, limits))
+        going = _next(trail, going, limits)
     trail.end(going)
     return curve
 
 
-def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> SolvePosition:
-    """Where on a branch its last cycle is, and the share of the branch's work that is done there."""
+def _place_on(curve: BranchCurve, here: ArcPoint, limits: BranchLimits) -> SolvePosition:
+    """Position of a branch's last cycle, and the fraction of the branch's work that is done."""
     name = here.scale.name
-    aim = course.ends[1 if here.ahead[-1] > 0 else 0]
+    aim = limits.ends[1 if here.ahead[-1] > 0 else 0]
     there, end = PARAMETERS[name].value(here.at), PARAMETERS[name].value(aim)
     words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch that has no cycles, where it begins."""
+    """The end of a branch without cycles, at its beginning."""
     born = curve.special[0]
     return replace(
         born,
@@ -130,114 +131,120 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
     )
 
 
-def _beyond(point: ArcPoint, course: Course) -> int:
-    """Which of the two ends of the range a cycle lies beyond, -1 for none."""
-    low, high = course.ends
+def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
+    """Index of the end of the range that a cycle lies beyond, -1 within the range."""
+    low, high = limits.ends
     return 0 if point.at < low else 1 if point.at > high else -1
 
 
-def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
-    """The next cycle, which the branch gets with what lies before it, or how the branch ends."""
+def _next(trail: Trail, here: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+    """The next cycle, added to the branch with the special points before it; or the end of the branch."""
     curve = trail.curve
-    if len(curve.points) >= course.most:
+    if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_at(here, EndReason.list_full), complete=False, full=True)
     try:
-        there = next_point(here, course.accuracy)
-        if _back(here, there, course):
-            return (_arrived if here.orbit.symmetric else _symmetric_again)(here, there, course)
-        outside = _beyond(there, course)
-        edge = _edge(here, course, outside) if outside >= 0 else None
-        if edge is not None:
-            there = _on_the_edge(here, there, edge, course)
+        there = next_point(here, limits.accuracy)
+        if _passed_mirror_image(here, there, limits):
+            return (_end_at_hopf if here.orbit.symmetric else _end_at_breaking)(here, there, limits)
+        outside = _beyond(there, limits)
+        range_end = _range_end(here, limits, outside) if outside >= 0 else None
+        if range_end is not None:
+            there = _at_range_end(here, there, range_end, limits)
         if stretch_at(there) <= 0:
-            return BranchEnd(located(SpecialKind.left_the_model, here, there, course.accuracy), complete=True)
-        _add_special_points(curve, here, there, course)
+            return BranchEnd(located(SpecialKind.left_the_model, here, there, limits.accuracy), complete=True)
+        _add_special_points(curve, here, there, limits)
         trail.append(there)
-        last = trail.settle(edge) if edge is not None or due(there) else there
+        last = trail.settle(range_end) if range_end is not None or due(there) else there
     except Unsolvable as why:
         message = f"no cycle is found beyond: {why}"
         return BranchEnd(end_at(here, EndReason.no_cycle_found, message), complete=False)
-    if edge is None:
+    if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
-    return BranchEnd(replace(end_at(last, course.reasons[outside]), error=EXACT * abs(at)), complete=True)
+    return BranchEnd(
+        replace(end_at(last, limits.reasons[outside]), error=RANGE_END_ERROR * abs(at)), complete=True
+    )
 
 
-def _add_special_points(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> None:
-    """The special points between two cycles, of which the second is not among the branch's yet."""
+def _add_special_points(curve: BranchCurve, here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> None:
+    """Adds the special points between two cycles; the second is not among the branch's cycles yet."""
 
     def step(point: ArcPoint, length: float) -> ArcPoint:
-        return point_at(point, length, course.accuracy)
+        return point_at(point, length, limits.accuracy)
 
-    curve.add_found(*special_points(here, there, step, course.accuracy))
+    curve.add_found(*special_points(here, there, step, limits.accuracy))
 
 
-def _back(here: ArcPoint, there: ArcPoint, course: Course) -> bool:
-    """Whether a branch comes to its own mirror image between two cycles."""
+def _passed_mirror_image(here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> bool:
+    """Whether the branch passes its own mirror image between two cycles."""
     if here.orbit.symmetric:
         return turned_round(here, there)
-    return mirrored(here, there, course.breakings, course.accuracy)
+    return mirrored(here, there, limits.breakings, limits.accuracy)
 
 
 def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
-    """Whether the bending moments at t = 0 have changed their sign between two cycles.
+    """Whether the bending moments at t = 0 have changed sign between two cycles, as they do beyond a Hopf
+    point.
 
-    They do beyond a Hopf point, where the branch is its own mirror image. The tip's y would not tell: an
-    extremum of it may pass through 0 on a large cycle.
+    The tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
     """
     mesh, layout = mesh_of(there.orbit), there.orbit.form.layout
-    one, other = (layout.field(orbit.start, "m3") for orbit in (mesh.carry(here.orbit), there.orbit))
-    return float(one @ other) < 0
+    one = layout.field(mesh.carry(here.orbit).start, "m3")
+    return float(one @ layout.field(there.orbit.start, "m3")) < 0
 
 
-def _arrived(here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
-    """The Hopf point where cycles shrink to nothing between two; or the first of them, for a shorter step."""
+def _end_at_hopf(here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+    """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
     shorter = arc_between(here, there) / 2
-    if here.cycle.measures.tip_y_max > SMALL:
+    if here.cycle.measures.tip_y_max > SMALL_CYCLE:
         if shorter < STEPS.shortest:
-            raise Unsolvable("the motion turns round within a step")
+            raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(here, length=shorter)
-    # About a Hopf point parameter and period go with the square of the moment.
+    # Near a Hopf point parameter and period are quadratic in the moment.
     tangent, scale = here.tangent, here.scale
     share = here.moment / (2 * here.ahead[0] * scale.moment)
-    at, period = here.at - share * tangent[-1], here.orbit.period - share * tangent[-2]
-    for number, hopf in enumerate(course.hopfs):
-        near = WITHIN * abs(here.at - hopf.coordinate) + max(CLOSE, course.accuracy) * abs(hopf.coordinate)
-        also = WITHIN * abs(here.orbit.period - hopf.period) + WITHIN_PERIOD * hopf.period
-        if abs(at - hopf.coordinate) <= near and abs(period - hopf.period) <= also:
-            return BranchEnd(special_hopf(hopf), complete=True, arrives=number)
-    why = "cycles shrink to nothing where no Hopf point is known"
+    at = here.at - share * tangent[-1]
+    period = here.orbit.period - share * tangent[-2]
+    rounding = max(HOPF_ROUNDING, limits.accuracy)
+    for number, hopf in enumerate(limits.hopfs):
+        tolerance = HOPF_WITHIN * abs(here.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
+        period_tolerance = HOPF_WITHIN * abs(here.orbit.period - hopf.period)
+        period_tolerance += HOPF_PERIOD_WITHIN * hopf.period
+        if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
+            return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
+    why = "cycles shrink to zero amplitude where no Hopf point is known"
     return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
-def _symmetric_again(here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
-    """The symmetry breaking where a branch ends between two; or the first of them, for a shorter step."""
-    which = symmetric_end(here, there, course.breakings, course.accuracy)
+def _end_at_breaking(here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+    """The symmetry breaking between two cycles where the branch ends; else the first, for a shorter step."""
+    which = symmetric_end(here, there, limits.breakings, limits.accuracy)
     if which is None:
         return replace(here, length=arc_between(here, there) / 2)
     if which >= 0:
-        breaking = course.breakings[which]
+        breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)
-        return BranchEnd(special, complete=True, meets=breaking)
-    why = "the cycles become symmetric at one that lies on no branch that was followed"
+        return BranchEnd(special, complete=True, end_breaking=breaking)
+    why = "the cycles become symmetric at a cycle of a branch that was not followed"
     return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
-def _edge(here: ArcPoint, course: Course, which: int) -> Condition:
-    """What holds for a cycle at an end of the range."""
-    return Condition(here.scale, PARAMETER, course.ends[which] / here.scale.coordinate)
+def _range_end(here: ArcPoint, limits: BranchLimits, which: int) -> Condition:
+    """The condition for the cycle at an end of the range."""
+    return Condition(here.scale, ALONG_PARAMETER, limits.ends[which] / here.scale.coordinate)
 
 
-def _on_the_edge(here: ArcPoint, there: ArcPoint, edge: Condition, course: Course) -> ArcPoint:
-    """The cycle at an end of the range that lies between two; raises Unsolvable."""
+def _at_range_end(here: ArcPoint, there: ArcPoint, range_end: Condition, limits: BranchLimits) -> ArcPoint:
+    """The cycle at an end of the range, between two cycles; raises Unsolvable."""
     scale, segment = here.scale, Segment(here, there)
 
     def beyond(length: float) -> float:
-        return -edge.missed(segment.predicted(length))
+        return -range_end.missed(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along(beyond, ends, segment.length, 0.0, LANDING)
-    tolerance, distance = newton_tolerance(course.accuracy), matrix_distance(course.accuracy)
-    found = edge.solved(segment.predicted(length), tolerance, here.workspace, distance)
+    length = zero_along(beyond, ends, segment.length, 0.0, RANGE_END_BRACKET)
+    tolerance = newton_tolerance(limits.accuracy)
+    distance = matrix_distance(limits.accuracy)
+    found = range_end.solved(segment.predicted(length), tolerance, here.workspace, distance)
     tangent = tangent_at(found.orbit, scale, here.ahead, bordered(found))
-    return there_from(here, found, tangent, length, length, course.accuracy)
+    return there_from(here, found, tangent, length, length, limits.accuracy)

@@ -1,6 +1,6 @@
-"""Errors of the cycles of a branch are measured, and the mesh is chosen that they ask for.
+"""Measurement of the errors of the cycles of a branch, and choice of the mesh from these errors.
 
-They are measured at every third cycle or so (`errors`) and interpolated at those between.
+Errors are measured at every third cycle or so (`errors`) and interpolated at the cycles between.
 """
 
 from collections.abc import Sequence
@@ -15,25 +15,29 @@ from .arc import STEPS, ArcPoint, placed, tangent_at
 from .bordered import Condition, Scale, bordered
 from .errors import BranchCalibration, measured_errors, slope_at
 
-MOST_MESHES = 8
-CHEAPER = 0.5
-"""Cost of another mesh, in units of the present one's, for which it is taken."""
-MARGIN = 0.5
-"""Share of the accuracy that a mesh is chosen for, so that it serves the cycles that follow."""
-SLOWER, SIMILAR = 0.7, 2.0
-"""Rate of the parameter at a cycle between two, in units of the smaller one of theirs, below which their
-errors do not bound its own, and growth of the errors since one of them beyond which they do not."""
-MOST_UNMEASURED = 3
-"""Cycles from one whose errors are measured to the next."""
-LARGEST_GROWTH = 4.0
-"""Growth of the errors, as the orbits' tails tell it, from which they are measured anew."""
+MAX_MESHES = 8
+"""Maximum number of meshes tried for one cycle."""
+CHEAPER_COST = 0.5
+"""A cheaper mesh is taken if its cost is below this fraction of the present cost."""
+PLANNED_SHARE = 0.5
+"""Fraction of the accuracy that a mesh is planned for, so that it also serves the next cycles."""
+MIN_RATE_SHARE = 0.7
+"""Errors are not interpolated where the parameter changes along the branch slower than this fraction of its
+slower rate at the two measured cycles: beside a fold they do not bound the errors between."""
+MAX_TAIL_GROWTH = 2.0
+"""Errors are not interpolated where the estimated errors have grown by more than this factor since either
+measured cycle."""
+MAX_UNMEASURED_CYCLES = 3
+"""Errors are measured at least at every third cycle."""
+REMEASURE_GROWTH = 4.0
+"""Errors are measured anew once the coefficient tails suggest growth by this factor."""
 
 
 def first_point(found: Converged, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
-    """The first cycle of a branch with its errors, on a finer mesh if need be; raises Unsolvable.
+    """The first cycle of a branch with its errors, on a finer mesh if necessary; raises Unsolvable.
 
-    side: on which the branch goes on, (3,); born: distance of the place where it is born, in the scale, about
-    which parameter and multipliers go with the square of the distance.
+    side: direction in which the branch goes on, (3,). born: distance from the point of birth, in the scale;
+    parameter and multipliers are quadratic in this distance.
     """
     place = placed(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
     multipliers = multipliers_of(found)[0]
@@ -45,39 +49,42 @@ def first_point(found: Converged, scale: Scale, side: Array, born: float, accura
 
 
 def due(point: ArcPoint) -> bool:
-    """Whether the errors of a cycle should be measured, not only be taken from those before it."""
+    """Whether the errors of a cycle must be measured."""
     known = point.calibration.known.on_branch(point.orbit)
-    return point.unmeasured >= MOST_UNMEASURED or float(known.growth.max()) > LARGEST_GROWTH
+    return point.unmeasured >= MAX_UNMEASURED_CYCLES or float(known.growth.max()) > REMEASURE_GROWTH
 
 
 def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
-    """The same cycle with errors that are measured at it; raises Unsolvable."""
-    found, before = point.cycle.fine, point.calibration
-    return with_calibration(point, measured_errors(found, point.place, accuracy, before.known), accuracy)
+    """The cycle with errors measured at it; raises Unsolvable."""
+    before = point.calibration.known
+    return with_calibration(point, measured_errors(point.cycle.fine, point.place, accuracy, before), accuracy)
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The same cycle with errors that are known."""
+    """The cycle with errors from a calibration."""
     cycle = judged_by(calibration.known, point.cycle.fine, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, way=0.0)
 
 
 def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None) -> ArcPoint:
-    """A cycle with measured errors on the mesh that they ask for; raises Unsolvable where none is allowed.
+    """The cycle with measured errors on a mesh that satisfies the accuracy; raises Unsolvable if none is
+    allowed.
 
-    condition: what holds on every mesh; without it the place on the branch.
+    condition: holds on every mesh; by default the arc length along the branch is kept.
     """
     condition = condition or point.condition(0.0)
     finest = False
-    for _ in range(MOST_MESHES):
+    for _ in range(MAX_MESHES):
         if point.unmeasured:
             point = measured(point, accuracy)
         known = point.calibration
-        enough, planned = known.largest(accuracy) <= accuracy, known.planned(MARGIN * accuracy)
-        if enough and (finest or planned.cost > CHEAPER * known.mesh.cost):
+        enough = known.largest(accuracy) <= accuracy
+        planned = known.planned(PLANNED_SHARE * accuracy)
+        if enough and (finest or planned.cost > CHEAPER_COST * known.mesh.cost):
             return point
         if not enough:
-            finest, planned = True, finer_mesh(known.mesh, planned)
+            finest = True
+            planned = finer_mesh(known.mesh, planned)
         if not planned.allowed:
             break
         point = on_mesh(point, planned, condition, accuracy)
@@ -85,7 +92,7 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
 
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: float) -> ArcPoint:
-    """The same cycle on another mesh, its errors not measured; raises Unsolvable."""
+    """The cycle on another mesh, its errors not measured; raises Unsolvable."""
     found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
     known = point.place
@@ -102,14 +109,15 @@ def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: fl
 def settled(
     last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: Condition | None
 ) -> list[ArcPoint]:
-    """Cycles that follow one whose errors are measured, with errors within the accuracy; raises Unsolvable.
+    """The cycles after a measured one, all with errors within the accuracy; raises Unsolvable.
 
-    condition: what holds for the last of them on every mesh; without it the place on the branch. Errors are
-    measured at the last of them and interpolated at those between; what is too inaccurate is solved again, on
-    the mesh that the last one asks for.
+    condition: holds for the last cycle on every mesh; by default its arc length is kept. Errors are measured
+    at the last cycle and interpolated between; a cycle that is too inaccurate is solved again on the mesh of
+    the last cycle.
     """
     *between, end = points
-    whole, end = end.way, measured(end, accuracy)
+    whole = end.way
+    end = measured(end, accuracy)
     known = [_with_errors_between(last, point, end, point.way / whole, accuracy) for point in between]
     end = refined(end, accuracy, condition)
     again = [
@@ -120,7 +128,7 @@ def settled(
 
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
-    """A cycle that is too inaccurate on the mesh of a later one, by that one's errors; raises Unsolvable."""
+    """A cycle solved on the mesh of a later cycle, with errors of that cycle; raises Unsolvable."""
     there = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
     there = _with_errors_between(end, there, end, 1.0, accuracy)
     return refined(there, accuracy)
@@ -129,15 +137,15 @@ def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
 def _with_errors_between(
     last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a share of the way between two on the same mesh, with errors between theirs or its own.
+    """A cycle at a share of the way between two on the same mesh, with interpolated errors.
 
-    Where its tails are larger than theirs, or where the parameter changes more slowly, as beside a fold, they
-    do not bound its errors, which are measured. Raises Unsolvable.
+    Its errors are measured instead if its coefficient tails are larger, or if the parameter changes more
+    slowly, as beside a fold: the errors at the ends are then no bound. Raises Unsolvable.
     """
     ends = (last, end)
-    slow = abs(point.rises) < SLOWER * min(abs(one.rises) for one in ends)
+    slow = abs(point.rises) < MIN_RATE_SHARE * min(abs(one.rises) for one in ends)
     grown = min(one.calibration.known.on_branch(point.orbit).growth.max() for one in ends)
-    if slow or float(grown) > SIMILAR:
+    if slow or float(grown) > MAX_TAIL_GROWTH:
         return measured(point, accuracy)
     known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))
     return with_calibration(point, known, accuracy)

@@ -1,10 +1,10 @@
-"""Where cycles lose their mirror symmetry, and the branch of cycles without it that is born there.
+"""Symmetry breaking of cycles, and the branch of asymmetric cycles born there.
 
-A symmetric cycle is its own mirror image half a period later. Where a multiplier of half a period and the
-reflection is -1 it meets a branch of cycles that are not: to either side of it one is the mirror image of the
-other, half a period later, and one of both is followed, over the whole period. About that point the asymmetry
-goes with the moment at the clamp at t = 0, the parameter and the period with its square. A branch
-that comes to such a point again goes through it to its mirror image, as one does at a Hopf point.
+A symmetric cycle equals its own mirror image half a period later. Where a multiplier of the half-period map
+composed with the reflection is -1, a branch of asymmetric cycles crosses. Its two sides are mirror images of
+each other, shifted by half a period; one side is followed, over the whole period. Near the crossing the
+clamp's moment at t = 0 is linear in the asymmetry, parameter and period are quadratic. A branch that returns
+to such a crossing continues on its mirror image, as a branch does at a Hopf point.
 """
 
 from collections.abc import Sequence
@@ -27,24 +27,30 @@ from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
-SHARES = (0.03, 0.01, 0.1)
-"""Relative change from the symmetric cycle to the first one without symmetry, tried one after the other."""
-SLIGHT, SLIGHTEST = 0.2, 0.02
-"""Asymmetry, in units of the moments, from which a branch may step to the symmetric cycle where it ends, and
-from which no shorter step is tried to see which it is."""
-LOST = 0.1
-"""Asymmetry left after a step, in units of that before it, below which a symmetric cycle lies between, or the
-step has come to symmetric ones."""
-WITHIN, CLOSE_PLACE, CLOSE_PERIOD = 0.3, 1e-6, 1e-3
-"""Distance of a symmetry breaking from where the asymmetry vanishes, in units of the last cycle's, and
-relative ones of the parameter and the period that need not be less; nor need they than the accuracy."""
-SAME_MOTION = 0.5, 2.0
-"""Of the asymmetry that is found in units of what was predicted."""
+FIRST_CHANGES = (0.03, 0.01, 0.1)
+"""Relative change from the symmetric cycle to the first asymmetric one; tried in this order."""
+SMALL_ASYMMETRY = 0.2
+"""Asymmetry, in units of the largest moment, from which a branch may step across the symmetric cycle where it
+ends."""
+MIN_ASYMMETRY = 0.02
+"""Asymmetry, in units of the largest moment, below which shorter steps cannot identify that cycle better."""
+LOST_ASYMMETRY = 0.1
+"""A step whose asymmetry falls below this fraction has passed a symmetric cycle or has come to symmetric
+ones."""
+BREAKING_WITHIN = 0.3
+"""Tolerance for the extrapolated place of a symmetry breaking, in units of the last cycle's distance."""
+CLOSE_PLACE = 1e-6
+"""Relative tolerance for the extrapolated parameter that is always granted, as the accuracy is."""
+CLOSE_PERIOD = 1e-3
+"""Relative tolerance for the extrapolated period that is always granted, as the accuracy is."""
+ASYMMETRY_RATIOS = 0.5, 2.0
+"""Allowed range of the asymmetry found, in units of the predicted asymmetry."""
 
 
 @dataclass(frozen=True, slots=True)
 class Breaking:
-    """A symmetry breaking: the number of its branch, from 1, its place among that one's special points."""
+    """A symmetry breaking: the number of its branch, from 1, and its place among the special points of that
+    branch."""
 
     branch: int
     place: int
@@ -52,7 +58,7 @@ class Breaking:
 
 
 def breakings_of(branches: Sequence[Sequence[SpecialPoint]]) -> list[Breaking]:
-    """Those of branches with their special points, of which the cycle is known."""
+    """Symmetry breakings among the special points of branches, if their cycle is known."""
     return [
         Breaking(number, place, point)
         for number, special in enumerate(branches, 1)
@@ -62,7 +68,7 @@ def breakings_of(branches: Sequence[Sequence[SpecialPoint]]) -> list[Breaking]:
 
 
 def over_whole_period(orbit: Orbit) -> Orbit:
-    """A symmetric orbit over its whole period, as its polynomials have it, on twice the intervals."""
+    """A symmetric orbit extended to its whole period by the symmetry, on twice as many intervals."""
     intervals = 2 * orbit.intervals
     times = 2 * node_times(intervals, orbit.stages)
     later = times > 1
@@ -73,31 +79,31 @@ def over_whole_period(orbit: Orbit) -> Orbit:
 
 
 def asymmetry(orbit: Orbit) -> Array:
-    """By how much the bending moments half a period apart are not opposite, (nodes,), linear in states."""
+    """Sum of the bending moments at t = 0 and half a period later, (nodes,): 0 for a symmetric orbit."""
     return _moments(orbit.start, orbit) + _moments(orbit.at(np.array([0.5]))[0], orbit)
 
 
 def _moments(states: Array, orbit: Orbit) -> Array:
-    """The bending moments of states, (..., n), of an orbit's mesh, (..., nodes)."""
+    """Bending moments of states, (..., n), at the nodes of an orbit's mesh, (..., nodes)."""
     return orbit.form.layout.field(states, "m3")
 
 
 def beginning_without_symmetry(
     breaking: Breaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
-    """The first cycle of the branch from a symmetry breaking along a parameter; raises Unsolvable.
+    """The first cycle of the asymmetric branch from a symmetry breaking along a parameter; raises Unsolvable.
 
-    workspace: memory of the branch's matrices. Of the two cycles that are mirror images it is the
-    one whose tip goes further to y > 0.
+    Of the two mirror images it is the one whose tip goes further to y > 0. workspace: memory of the branch's
+    matrices.
     """
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = over_whole_period(breaking.point.orbit)
     scale = Scale.of(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
-    way = matrix.other_way()
+    way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])
-    for share in SHARES:
+    for share in FIRST_CHANGES:
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
@@ -108,9 +114,9 @@ def beginning_without_symmetry(
 
 
 def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
-    """The cycle near a prediction, with the branch on the side of its moment; raises Unsolvable.
+    """The cycle near a prediction; the branch goes on towards larger change of the moment. Raises Unsolvable.
 
-    whole: the matrix of the symmetric cycle; change: of the moment since.
+    whole: matrix of the symmetric cycle. change: of the clamp's moment from that cycle.
     """
     scale = whole.scale
     border = np.sign(change) * MOMENT
@@ -119,7 +125,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not SAME_MOTION[0] < found < SAME_MOTION[1]:
+    if not ASYMMETRY_RATIOS[0] < found < ASYMMETRY_RATIOS[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
     aim = max(accuracy, FIRST_ACCURACY)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
@@ -128,58 +134,58 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
 
 
 def mirrored(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:
-    """Whether the asymmetry has changed its sign between two cycles, or has all but gone.
+    """Whether the asymmetry has changed sign between two cycles, or has almost vanished.
 
-    Meshes that are not their own mirror image half a period later round off the corner where the branches
-    meet: there the parameter turns back beside a known symmetry breaking before the asymmetry is gone.
+    On a mesh that lacks the symmetry of the cycle, the corner where the branches cross is rounded off: the
+    parameter then turns back beside a known symmetry breaking before the asymmetry vanishes.
     """
     start = asymmetry(here.orbit)
     other = there.orbit.on(here.orbit.form.mesh, there.orbit.intervals, there.orbit.stages)
-    if float(asymmetry(other) @ start) < LOST * float(start @ start):
+    if float(asymmetry(other) @ start) < LOST_ASYMMETRY * float(start @ start):
         return True
-    return here.rises * there.rises < 0 and _slight(here) and _nearest(here, known, accuracy) >= 0
+    return here.rises * there.rises < 0 and _nearly_symmetric(here) and _nearest(here, known, accuracy) >= 0
 
 
-def _share(here: ArcPoint) -> float:
-    """The asymmetry of a cycle in units of its largest moment."""
+def _relative_asymmetry(here: ArcPoint) -> float:
+    """Largest asymmetry of a cycle in units of its largest moment."""
     orbit = here.orbit
     return float(np.abs(asymmetry(orbit)).max() / np.abs(_moments(orbit.points, orbit)).max())
 
 
-def _slight(here: ArcPoint) -> bool:
-    return _share(here) <= SLIGHT
+def _nearly_symmetric(here: ArcPoint) -> bool:
+    return _relative_asymmetry(here) <= SMALL_ASYMMETRY
 
 
 def symmetric_end(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int | None:
-    """Which of the known symmetry breakings lies between two cycles, -1 for none of them.
+    """Index of the known symmetry breaking that lies between two cycles, -1 for none.
 
-    None where the cycles are still too far from it to tell. Raises Unsolvable where no shorter step helps.
+    None if the cycles are too far away to decide. Raises Unsolvable if no shorter step is allowed.
     """
-    which = _nearest(here, known, accuracy) if _slight(here) else -1
-    if which >= 0 or _share(here) <= SLIGHTEST:
+    which = _nearest(here, known, accuracy) if _nearly_symmetric(here) else -1
+    if which >= 0 or _relative_asymmetry(here) <= MIN_ASYMMETRY:
         return which
     if arc_between(here, there) / 2 < STEPS.shortest:
-        raise Unsolvable("the motion becomes its mirror image within a step")
+        raise Unsolvable("the motion becomes its mirror image within the shortest step")
     return None
 
 
 def _nearest(here: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int:
-    """Which symmetry breaking is where the asymmetry vanishes ahead of a cycle, -1 for none."""
+    """Index of the symmetry breaking at the extrapolated place where the asymmetry vanishes, -1 for none."""
     orbit = here.orbit
     start, change = asymmetry(orbit), asymmetry(replace(orbit, values=here.tangent[:-1]))
     falls = -float(start @ change)
     if falls <= 0:
         return -1
-    # Parameter and period go with the square of the asymmetry.
+    # Parameter and period are quadratic in the asymmetry.
     period, at = (orbit.period, here.at) + float(start @ start) / falls / 2 * here.tangent[-2:]
     for which, breaking in enumerate(known):
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
         place = symmetric.form.rod.coordinate(here.scale.name)
-        near = WITHIN * abs(here.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
-        also = WITHIN * abs(here.orbit.period - symmetric.period)
-        also += max(CLOSE_PERIOD, accuracy) * symmetric.period
-        if abs(at - place) <= near and abs(period - symmetric.period) <= also:
+        tolerance = BREAKING_WITHIN * abs(here.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
+        period_tolerance = BREAKING_WITHIN * abs(here.orbit.period - symmetric.period)
+        period_tolerance += max(CLOSE_PERIOD, accuracy) * symmetric.period
+        if abs(at - place) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which
     return -1

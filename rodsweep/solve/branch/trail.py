@@ -1,4 +1,4 @@
-"""The cycles of a branch as they are found: errors are measured at some, the others wait for these."""
+"""Cycles of a branch in the order of the steps; errors are measured at some and interpolated between."""
 
 from dataclasses import replace
 from math import nan
@@ -14,8 +14,9 @@ from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
 def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch at a cycle, whose errors may not be known yet."""
-    measures, at = point.cycle.measures, getattr(point.orbit.form.rod, point.scale.name)
+    """The end of a branch at a cycle; the error of the parameter is still nan."""
+    measures = point.cycle.measures
+    at = getattr(point.orbit.form.rod, point.scale.name)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,
@@ -28,32 +29,37 @@ def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoin
 
 
 class Trail:
-    """The cycles of a branch as they are found: errors are measured at some, the others wait for these."""
+    """Cycles of a branch in the order of the steps. A cycle waits until errors are measured at it or beyond
+    it."""
 
     def __init__(self, curve: BranchCurve, accuracy: float, first: ArcPoint) -> None:
-        """first: the first cycle, whose errors are measured."""
-        self.curve, self.accuracy = curve, accuracy
-        self._measured, self._waiting = first, list[ArcPoint]()
+        """first: the first cycle, with measured errors."""
+        self.curve = curve
+        self.accuracy = accuracy
+        self._measured = first
+        self._waiting: list[ArcPoint] = []
         curve.points.append(BranchPoint.of(first, accuracy))
 
     def append(self, point: ArcPoint) -> None:
-        """The next cycle, whose errors are not measured."""
+        """Appends a cycle whose errors are not measured yet."""
         self._waiting.append(point)
         self.curve.points.append(BranchPoint.of(point, self.accuracy))
 
     def settle(self, condition: Condition | None = None) -> ArcPoint:
-        """Gives the waiting cycles their errors; returns the last one. Raises Unsolvable.
+        """Gives errors to the waiting cycles and returns the last cycle. Raises Unsolvable.
 
-        condition: what holds for the last one on every mesh; without it the place on the branch.
+        condition: holds for the last cycle on every mesh; by default its arc length along the branch is kept.
         """
         if self._waiting:
             points = settled(self._measured, self._waiting, self.accuracy, condition)
             self.curve.judge([BranchPoint.of(point, self.accuracy) for point in points])
-            self._measured, self._waiting = points[-1], []
+            self._measured = points[-1]
+            self._waiting = []
         return self._measured
 
     def end(self, end: BranchEnd) -> None:
-        """The end of the branch; where waiting cycles have no errors it ends before them."""
+        """Ends the branch. If the errors of the waiting cycles cannot be measured, the branch ends before
+        these."""
         curve = self.curve
         try:
             self.settle()
@@ -62,7 +68,8 @@ class Trail:
             message = f"the errors of the cycles beyond cannot be measured: {why}"
             special = end_at(self._measured, EndReason.no_cycle_found, message)
             end = replace(end, special=special, complete=False)
-        special, last = end.special, curve.points[-1]
+        special = end.special
+        last = curve.points[-1]
         if np.isnan(special.error):
             special = replace(special, error=last.at_error * abs(special.at))
         if np.isnan(special.period_error):  # the end is the last cycle

@@ -33,7 +33,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
 def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
     """Folds and torus points of all finite rows in the file. rows: value of every row, (rows,)."""
-    from ...solve.branch.special.boundaries import CURVE_KINDS, RowSpecial
+    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecial
     from ...solve.branch.special.point import SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
@@ -48,7 +48,7 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
             tip_y_max=float(height[i, j]),
         )
         for i in np.flatnonzero(np.isfinite(rows))
-        for j in np.flatnonzero(np.isin(kinds[i], CURVE_KINDS))
+        for j in np.flatnonzero(np.isin(kinds[i], FOLLOWED_KINDS))
     ]
 
 

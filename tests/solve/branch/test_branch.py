@@ -13,9 +13,9 @@ from rodsweep.solve.branch import bordered, branches, following
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.bordered import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
-from rodsweep.solve.branch.following import Course, follow_branch
+from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented import crossing_pair
-from rodsweep.solve.branch.special.curves import CurveCourse
+from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -49,7 +49,7 @@ def first_branch(rod, stop, accuracy=1e-7):
     crossing = pair_crossings(Path(straight, "F"), 0.0, stop).crossings[0]
     hopf = hopf_point(Path(rod, "F"), crossing)
     return follow_branch(
-        0, Course([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace())
+        0, BranchLimits([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace())
     )
 
 
@@ -165,7 +165,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert abs(cycle.multipliers[0].imag) > 0.5
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
-    points, end = CurveCourse(
+    points, end = CurveLimits(
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).followed(torus, 100.0)
     assert end is CurveEnd.edge

@@ -17,7 +17,12 @@ from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
-from rodsweep.solve.branch.following import Course, follow_branch, follow_without_symmetry, followed_from
+from rodsweep.solve.branch.following import (
+    BranchLimits,
+    follow_branch,
+    follow_without_symmetry,
+    followed_from,
+)
 from rodsweep.solve.branch.settling import refined
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
@@ -38,26 +43,26 @@ ROUGH, STOP = 1e-3, 20.5
 
 
 @pytest.fixture(scope="module")
-def course():
+def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     path = Path(straight, "F")
     hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "ACCURACY", 1e-5)
-        yield Course([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
+        yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
 
 
 @pytest.fixture(scope="module")
-def symmetric(course):
-    return follow_branch(0, course)
+def symmetric(limits):
+    return follow_branch(0, limits)
 
 
 @pytest.fixture(scope="module")
-def known(course, symmetric):
-    """The course with the one symmetry breaking."""
+def known(limits, symmetric):
+    """The limits with the one symmetry breaking."""
     (breaking,) = breakings_of([symmetric.special])
-    return following.replace(course, breakings=[breaking])
+    return following.replace(limits, breakings=[breaking])
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +139,7 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
         here = next_point(here, ROUGH)
     curve = followed_from(BranchCurve(hopf=-1), turned_back(refined(here, ROUGH)), known)
     assert curve.complete
-    assert curve.meets is known.breakings[0]
+    assert curve.end_breaking is known.breakings[0]
     assert kinds(curve) == ["symmetry_breaking"]
 
 

@@ -21,7 +21,7 @@ from rodsweep.solve.branch.bordered import BorderedMatrix, Condition, Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
 from rodsweep.solve.branch.special.augmented import FoldFunction
-from rodsweep.solve.branch.special.curves import CurveCourse
+from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
@@ -101,7 +101,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = CurveCourse(SpecialKind.fold, *plane, NewtonWorkspace(), side).followed(fold, 149.9)
+        points, end = CurveLimits(SpecialKind.fold, *plane, NewtonWorkspace(), side).followed(fold, 149.9)
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
     curve = CycleCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)

@@ -1,1 +1,1 @@
-"""Special points of branches: what happens there, where they lie, their curves over two parameters."""
+"""Special points of branches: their kinds, their location, and their curves over two parameters."""

@@ -1,8 +1,9 @@
-"""What is zero at a fold or a torus point, at any cycle near one with an eliminated matrix.
+"""Test functions of folds and torus points, evaluated at any cycle near a cycle with an eliminated matrix.
 
-Minimally augmented systems (Govaerts 2000, ch. 4 and 10): a number g of a cycle comes from a linear system of
-the cycle's linearised equations with a border. Here that system is solved with the factors of a cycle near
-by, a vector of the cycle before as the start, and its residual at the cycle itself: no further elimination.
+Minimally augmented systems (Govaerts 2000, ch. 4 and 10): the test function g of a cycle follows from a
+bordered linear system of the linearised equations. That system is corrected here with the factors of a
+neighbouring cycle, the previous vector as the start and the residual at the cycle itself, without another
+elimination.
 """
 
 from dataclasses import replace
@@ -19,27 +20,31 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...point import Unsolvable
 from ..bordered import LONGEST_STEP, BorderedMatrix, Condition, Scale, moment_of, moved
-from .locating import REAL
+from .locating import REAL_MULTIPLIER
 
-TOLERANCE = 1e-9
-"""Relative, to which a cycle and its function are solved: the latter is known to some 1e-8."""
-SHARE = 0.01
-"""The same in units of what the function says is left across the curve, where that is larger."""
-LEAST_CONTRACTION, CAREFUL = 10.0, 3.0
-"""Ratio of a correction to the one before in units of the distance from the matrix's cycle, 2 or 3 for
-large cycles: the least that is believed, and by what factor one that was met may be too small at the next."""
-SLUGGISH = 0.3
-"""Ratio of a correction to the one before from which the matrix is made anew."""
-STALLED = 1e-8
-"""Correction that is rounding where it is not much smaller than the one before."""
-MOST_CORRECTIONS = 30
+CORRECTION_TOLERANCE = 1e-9
+"""Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""
+FUNCTION_SHARE = 0.01
+"""Tolerance in units of the distance from the curve that the test function indicates; the larger tolerance
+counts."""
+MIN_CONTRACTION = 10.0
+"""Smallest contraction rate that is assumed: ratio of successive corrections over the distance from the
+matrix's cycle. Large cycles have 2 or 3."""
+CONTRACTION_SAFETY = 3.0
+"""Safety factor on a measured contraction rate, for the next cycle."""
+SLOW_CORRECTION = 0.3
+"""Ratio of successive corrections above which a new matrix is assembled."""
+ROUNDING_CORRECTION = 1e-8
+"""A correction this small that hardly decreases is rounding error: iteration stops."""
+MAX_CYCLE_CORRECTIONS = 30
+"""Maximum number of corrections of one cycle."""
 
 
 class FamilyOfCycles(Protocol):
-    """Cycles of two numbers about a curve, as far as what is zero on it must know them.
+    """The two-parameter family of cycles about a curve, as far as test functions need it.
 
-    border: direction of the branch in the scale, (3,); small: whether cycles are nearly as small as at a Hopf
-    point; workspace: memory of the matrices.
+    border: direction of the branch in the scale, (3,). small: whether the cycles are almost as small as at a
+    Hopf point. workspace: memory of the matrices.
     """
 
     @property
@@ -52,35 +57,41 @@ class FamilyOfCycles(Protocol):
     def workspace(self) -> NewtonWorkspace: ...
 
     def function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
-        """What is zero on the curve, at the cycle of a matrix."""
+        """The test function that is zero on the curve, at the cycle of a matrix."""
 
 
 class NearbyCycles:
-    """Cycles of a family near one whose matrix is eliminated, with what is zero on the curve."""
+    """Cycles of a family near a cycle with an eliminated matrix, with the test function of the curve."""
 
     def __init__(self, family: FamilyOfCycles, start: Orbit, contraction: float) -> None:
-        """contraction: of corrections in the family before, or inf; it is learnt but for small cycles."""
-        self.scale, self.border, self._family = family.scale, family.border, family
+        """contraction: rate of earlier corrections in the family, or inf; updated here unless cycles are
+        small."""
+        self.scale = family.scale
+        self.border = family.border
+        self._family = family
         self.contraction = contraction
-        """Ratio of a correction to the one before in units of the matrix's distance."""
+        """Ratio of successive corrections over the distance from the matrix's cycle."""
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
-        """Makes the matrix at an orbit, from which the cycles are at a relative distance."""
-        self.matrix, self.distance = BorderedMatrix(orbit, self.scale, self._family.workspace), 0.0
+        """Assembles a new matrix at an orbit; `distance` from it restarts at 0."""
+        self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
+        self.distance = 0.0
         self.function = self._family.function(self.matrix)
 
     def predict(self, vectors: Array) -> None:
-        """Takes vectors of the function, (count, N + 1) or (N + 1,), from which the next cycle's start."""
+        """Sets the test function's vectors, (count, N + 1) or (N + 1,), from which the next correction
+        starts."""
         self.function.start_from(vectors)
 
     def solved(self, orbit: Orbit, condition: Condition, slope: float, enough: float) -> tuple[Orbit, float]:
-        """(the cycle near an orbit, the value there of the function); raises Unsolvable.
+        """(the cycle near an orbit, its test function); raises Unsolvable.
 
-        slope: modulus of the function's about, across the curve; enough: relative error that is small enough.
+        slope: approximate modulus of the test function's derivative across the curve. enough: relative
+        tolerance.
         """
         last = 0.0
-        for _ in range(MOST_CORRECTIONS):
+        for _ in range(MAX_CYCLE_CORRECTIONS):
             report()
             orbit, change = self._corrected(orbit, condition)
             distance = self.distance
@@ -90,11 +101,11 @@ class NearbyCycles:
             off = max(change, abs(value - before) / slope)
             rate = off / last if last else min(1.0, self.contraction * distance)
             if last and not self._family.small:
-                self.contraction = max(LEAST_CONTRACTION, CAREFUL * rate / distance)
-            if off * min(rate, 1.0) <= max(enough, SHARE * abs(value) / slope):
+                self.contraction = max(MIN_CONTRACTION, CONTRACTION_SAFETY * rate / distance)
+            if off * min(rate, 1.0) <= max(enough, FUNCTION_SHARE * abs(value) / slope):
                 return orbit, value
-            if last and rate > SLUGGISH:
-                if off <= STALLED:
+            if last and rate > SLOW_CORRECTION:
+                if off <= ROUNDING_CORRECTION:
                     return orbit, value
                 self._eliminate(orbit)
                 off = 0.0
@@ -112,27 +123,29 @@ class NearbyCycles:
 
 
 class FoldFunction:
-    """dp/dl, the rise of the parameter along the branch, from its tangent; l is what the border measures.
+    """Test function of folds: the derivative dp/dl of the parameter along the branch; the border measures l.
 
-    small: whether the moment is divided out, for at a Hopf point it is zero too.
+    small: whether the function is divided by the moment, because it vanishes at a Hopf point too.
     """
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
-        self.matrix, self.border, self.small = matrix, border, small
+        self.matrix = matrix
+        self.border = border
+        self.small = small
         tangent = matrix.direction(border)
         self.vectors = tangent / (matrix.scale.moved(matrix.orbit, tangent) @ border)
 
     def value(self, orbit: Orbit) -> float:
-        """That of the tangent as it is."""
+        """The test function from the present tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
         return rises * self.matrix.scale.moment / moment_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
-        """Takes the tangent, (N + 1,), that is corrected next."""
+        """Sets the tangent, (N + 1,), that is corrected next."""
         self.vectors = tangent
 
     def correct(self, orbit: Orbit) -> None:
-        """One correction of the tangent at a cycle, where what is corrected to 0 is linear in it."""
+        """Corrects the tangent once at a cycle; the equation for the tangent is linear."""
         matrix, tangent, p = self.matrix, self.vectors, orbit.semidiscrete
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.varied(orbit, tangent[None])
@@ -148,14 +161,16 @@ class FoldFunction:
 
 
 class TorusFunction:
-    """|mu| - 1 of the pair of multipliers nearest to the circle, from its eigenvector."""
+    """Test function of torus points: |mu| - 1 of the complex pair nearest to the unit circle, from its
+    eigenvector."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
         pair = crossing_pair(matrix)
         if pair is None:
-            raise Unsolvable("the multipliers that cross the circle have become real")
-        self.multiplier, p = pair, matrix.orbit.semidiscrete
+            raise Unsolvable("the multipliers that cross the unit circle have become real")
+        self.multiplier = pair
+        p = matrix.orbit.semidiscrete
         self.shifted = matrix.propagator - (1 + INVERSE_SHIFT) * pair * p.symmetry
         start = np.ones(len(p.mass), dtype=complex)
         for _ in range(INVERSE_ITERATIONS):
@@ -171,15 +186,15 @@ class TorusFunction:
         self.bordered[n, :n] = self.border
 
     def value(self, orbit: Orbit) -> float:
-        """That of the multiplier as it is."""
+        """The test function from the present multiplier."""
         return abs(self.multiplier) - 1
 
     def start_from(self, parts: Array) -> None:
-        """Takes the eigenvector, its real and imaginary part, (2, N + 1), that is corrected next."""
+        """Sets the real and imaginary part of the eigenvector, (2, N + 1), that is corrected next."""
         self.vectors = parts
 
     def correct(self, orbit: Orbit) -> None:
-        """One correction of multiplier and eigenvector at a cycle."""
+        """Corrects the multiplier and its eigenvector once at a cycle."""
         columns, ends = self.matrix.varied(orbit, self.vectors)
         n = ends.shape[1]
         start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
@@ -190,8 +205,10 @@ class TorusFunction:
         self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
 
 
-INVERSE_SHIFT, INVERSE_ITERATIONS = 1e-9, 2
-"""Relative distance of the shift of inverse iteration from the eigenvalue, and how often."""
+INVERSE_SHIFT = 1e-9
+"""Relative distance of inverse iteration's shift from the eigenvalue, which keeps the matrix regular."""
+INVERSE_ITERATIONS = 2
+"""Number of inverse iterations; each damps other eigenvectors by the shift over their distance."""
 
 
 def _parts(vector: Array) -> Array:
@@ -200,7 +217,8 @@ def _parts(vector: Array) -> Array:
 
 
 def crossing_pair(matrix: BorderedMatrix) -> complex | None:
-    """Of complex multipliers, over half a period and the reflection, the one nearest to the circle."""
+    """Complex multiplier nearest to the unit circle, over half a period and the reflection; None if all are
+    real."""
     h = matrix.returns
-    pairs = h[np.abs(h.imag) > REAL * np.abs(h)]
+    pairs = h[np.abs(h.imag) > REAL_MULTIPLIER * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

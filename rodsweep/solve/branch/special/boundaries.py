@@ -1,8 +1,8 @@
-"""The curves through the special points of all rows: each followed once, every point then found on one.
+"""Curves through the special points of all rows; each curve is followed once, from one of its points.
 
-As `changes.boundaries` does with the changes of the straight rod. A curve is followed in two halves, each a
-unit of work that depends on nothing but the special points. Which halves make up the curves follows from
-their results alone, not from who computed them, when, or what else was computed.
+As `changes.boundaries` for the straight rod. A curve is followed in two halves. Each half is a unit of work
+that depends on the special points alone. The results of the halves determine the set of curves, whoever
+computed them, in whatever order.
 """
 
 import math
@@ -13,29 +13,31 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import VANISHING, CurveCourse
+from .curves import VANISHING, CurveLimits
 from .cycle_curves import Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
 from .on_curve import OnCurve
 from .point import SpecialKind, SpecialPoint
 
-CURVE_KINDS = (SpecialKind.fold, SpecialKind.torus)
-"""Special points that are followed as curves."""
-AGREE = 1e-6
-"""Distance, in units of the line's axis, within which a special point of a row lies on a curve."""
-NEAR, SAME_CYCLE = 0.1, 0.1
-"""Distance from the chord of a curve, in units of the line's axis, and of the period from its, relative,
-beyond which a special point is of another curve."""
-SAME_PERIOD = 1e-4
-"""Relative distance of the periods of one cycle."""
-SAME_ENDS = 1e-4
-"""Distance of both ends, scaled, within which two curves are one."""
-ON_CHORD = 1e-3
-"""Distance, in units of the line's axis, from the last part of a curve, where cycles vanish."""
+FOLLOWED_KINDS = (SpecialKind.fold, SpecialKind.torus)
+"""Kinds of special points that are followed as curves."""
+ON_CURVE_DISTANCE = 1e-6
+"""A special point of a row this close to a curve lies on it; in units of the line's axis."""
+NEAR_CHORD = 0.1
+"""A special point further from a chord of a curve, in units of the line's axis, is not on that part."""
+NEAR_PERIOD = 0.1
+"""A special point whose period differs by more than this, relatively, is not on that part of a curve."""
+EQUAL_PERIOD = 1e-4
+"""Relative difference of the periods of two solutions that are the same cycle."""
+EQUAL_ENDS = 1e-4
+"""Two curves are the same if both their ends agree within this scaled distance."""
+ON_LAST_CHORD = 1e-3
+"""A special point this close to the last part of a curve, where cycles vanish, lies on it; in units of the
+line's axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecial:
-    """A special point of a row: the row's number and value, and what the file holds of it."""
+    """A special point of a row as the file holds it; number, row: number of the row, and its value."""
 
     number: int
     row: float
@@ -47,10 +49,11 @@ class RowSpecial:
 
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
-    """The curves through all folds and torus points of the rows, over a line's parameter and the rows'.
+    """Curves through all folds and torus points of the rows, over the line's parameter and the rows'
+    parameter.
 
-    A unit of work is a half of a curve: 2 i from the special point of place i towards larger values of the
-    rows' parameter, 2 i + 1 towards smaller ones.
+    Unit of work 2 i is the half of a curve from special point i towards larger values of the rows' parameter,
+    2 i + 1 the half towards smaller values.
     """
 
     line: PlaneAxis
@@ -58,7 +61,8 @@ class SpecialBoundaries:
     special: Sequence[RowSpecial]
 
     def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Units whose results the curves need next, then some that they may need; none once all are there."""
+        """Units whose results are needed next, then units that may be needed; empty once the curves are
+        complete."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
@@ -67,7 +71,7 @@ class SpecialBoundaries:
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, once nothing is wanted any more."""
+        """All curves, once no result is lacking."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -76,29 +80,30 @@ class SpecialBoundaries:
         self, results: Mapping[int, Arrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """The curves of each kind, as far as the results go."""
-        for kind in CURVE_KINDS:
+        for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, boundary_search(curves, seeds, AGREE)
+            yield curves, boundary_search(curves, seeds, ON_CURVE_DISTANCE)
 
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of a unit, arrays of the shapes that `TracedHalf` has.
+        """The result of a unit: arrays with the shapes of `TracedHalf`.
 
-        located: the special points of a row of a number, solved anew; workspace: memory of Newton's matrices.
+        located: solves the special points of a row anew, by the row's number. workspace: memory of Newton's
+        matrices.
         """
         place, behind = divmod(unit, 2)
         one = self.special[place]
-        course = CurveCourse(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _traced(course, one, located(one.number), self.special).arrays()
+        limits = CurveLimits(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
+        return _traced(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, unit: int) -> int:
         """The number of the row on which a unit starts."""
         return self.special[unit // 2].number
 
     def where(self, unit: int) -> str:
-        """Which half of which curve a unit is, in words."""
+        """Description of a unit: curve, starting row and direction."""
         place, behind = divmod(unit, 2)
         one, way = self.special[place], "down" if behind else "up"
         return f"curve of {one.kind.name}s from {self.rows.name} = {one.row:.5g} {way}"
@@ -106,7 +111,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """A curve of its halves, and how far special points lie from it, by their places, those near only."""
+    """A curve made of its halves, and the distances of nearby special points from it, by their index."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -114,7 +119,7 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """The curves of one kind, as far as the results of units go."""
+    """Curves of one kind, as far as the results of units go."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -123,11 +128,11 @@ class _CurvesOfKind:
     results: Mapping[int, Arrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """The special point in the middle: the halves of its curve are of about equal length."""
+        """The middle special point in order: the two halves of its curve are then about equally long."""
         return sorted(left, key=self._place)[len(left) // 2]
 
     def lacking(self, seed: int) -> list[int]:
-        """The halves from a special point that are needed and not there."""
+        """The halves from a special point whose results are needed and lacking."""
         ahead, behind = 2 * seed, 2 * seed + 1
         if ahead not in self.results:
             return [unit for unit in (ahead, behind) if unit not in self.results]
@@ -136,13 +141,13 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Units from which other curves may start: of special points on the row of the next one."""
+        """Units from which other curves may start: special points on the row of the next seed."""
         rows = {self.special[unit // 2].row for unit in search.needed}
         beside = sorted((i for i in search.left if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.lacking(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve from a special point, of its halves."""
+        """The curve through a special point, joined from its halves; None if it cannot be followed."""
         ahead = TracedHalf.of(self.results[2 * seed])
         if ahead.half is None:
             return None
@@ -157,25 +162,25 @@ class _CurvesOfKind:
         return _TracedCurve(curve, near)
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
-        """How far a special point lies from a curve, in units of the line's axis; inf unless it is near."""
+        """Distance of a special point from a curve in units of the line's axis; inf unless it is near."""
         near = curve.distances.get(seed, math.inf)
-        return 0.0 if near > AGREE and self._vanishes(curve.curve, self.special[seed]) else near
+        return 0.0 if near > ON_CURVE_DISTANCE and self._vanishes(curve.curve, self.special[seed]) else near
 
     def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves share both ends."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
-        return all(abs(a - b) <= SAME_ENDS for p, q in pairs for a, b in zip(p, q, strict=True))
+        return all(abs(a - b) <= EQUAL_ENDS for p, q in pairs for a, b in zip(p, q, strict=True))
 
     def _place(self, i: int) -> tuple[float, float]:
-        """By which special points are in order."""
+        """Sort key of special points: row, then value."""
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
-        """Both ends of a curve, scaled, the lower first."""
+        """Both ends of a curve in scaled coordinates, the lower end first."""
         return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
     def _vanishes(self, curve: CycleCurve, one: RowSpecial) -> bool:
-        """Whether a special point lies on the last part of a curve, where cycles vanish at a Hopf point."""
+        """Whether a special point lies on the last part of a curve, where cycles shrink to a Hopf point."""
         if one.tip_y_max >= VANISHING:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
@@ -184,58 +189,59 @@ class _CurvesOfKind:
             x, y = self.line.scaled(end.at), self.rows.scaled(end.row)
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
-            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= ON_CHORD:
+            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= ON_LAST_CHORD:
                 return True
         return False
 
 
 def _traced(
-    course: CurveCourse,
+    limits: CurveLimits,
     one: RowSpecial,
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecial],
 ) -> TracedHalf:
-    """The half of a curve from a special point of a row; without a curve where none is found."""
-    width = abs(course.line.stretch(one.at))
+    """The half of a curve from a special point of a row; its `half` is None if no curve is found."""
+    width = abs(limits.line.stretch(one.at))
     same = [
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= AGREE * width
-        and abs(point.period / one.period - 1) <= SAME_PERIOD
+        and abs(point.at - one.at) <= ON_CURVE_DISTANCE * width
+        and abs(point.period / one.period - 1) <= EQUAL_PERIOD
     ]
     if not same:
         return TracedHalf(None)
     try:
-        points, end = course.followed(same[0], one.row)
-    except (*FAILURES, ValueError):  # an axis of ratios has no place for what is not positive
+        points, end = limits.followed(same[0], one.row)
+    except (*FAILURES, ValueError):  # a logarithmic axis has no place for a value that is not positive
         return TracedHalf(None)
-    distances = {i: _distance(course, points, other) for i, other in enumerate(special)}
-    near = {i: distance for i, distance in distances.items() if distance <= AGREE}
+    distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
+    near = {i: distance for i, distance in distances.items() if distance <= ON_CURVE_DISTANCE}
     return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
-def _distance(course: CurveCourse, points: Sequence[OnCurve], one: RowSpecial) -> float:
-    """How far a special point lies from the points of a curve on its row, in units of the line's axis."""
-    if course.kind != one.kind:
+def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -> float:
+    """Distance of a special point from a curve on the point's row, in units of the line's axis; inf if not
+    near."""
+    if limits.kind != one.kind:
         return math.inf
-    place, best = course.rows.scaled(one.row), math.inf
-    at = course.line.scaled(one.at)
+    place, best = limits.rows.scaled(one.row), math.inf
+    at = limits.line.scaled(one.at)
     for a, b in zip(points[:-1], points[1:], strict=True):
-        if not min(a.place, b.place) <= place <= max(a.place, b.place) or not _near(course, a, b, one):
+        if not min(a.place, b.place) <= place <= max(a.place, b.place) or not _near(limits, a, b, one):
             continue
         try:
-            there = course.on_row(a, b, place)
+            there = limits.on_row(a, b, place)
         except Unsolvable:
             continue
-        if abs(there.orbit.period / one.period - 1) <= SAME_PERIOD:
-            best = min(best, abs(course.line.scaled(there.at) - at))
+        if abs(there.orbit.period / one.period - 1) <= EQUAL_PERIOD:
+            best = min(best, abs(limits.line.scaled(there.at) - at))
     return best
 
 
-def _near(course: CurveCourse, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
+def _near(limits: CurveLimits, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
     """Whether a special point may lie on the part of a curve between two points."""
-    x, ends = course.line.scaled(one.at), sorted(course.line.scaled(p.at) for p in (a, b))
+    x, ends = limits.line.scaled(one.at), sorted(limits.line.scaled(p.at) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = ends[0] - NEAR <= x <= ends[1] + NEAR
-    return on_line and periods[0] / (1 + SAME_CYCLE) <= one.period <= periods[1] * (1 + SAME_CYCLE)
+    on_line = ends[0] - NEAR_CHORD <= x <= ends[1] + NEAR_CHORD
+    return on_line and periods[0] / (1 + NEAR_PERIOD) <= one.period <= periods[1] * (1 + NEAR_PERIOD)

@@ -1,4 +1,4 @@
-"""Curves of folds and torus points of cycles, from where they were located on rows to where they end."""
+"""Curves of folds and torus points of cycles, from a point located on a row to their ends."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,13 +17,14 @@ from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
 from ..bordered import BorderedMatrix
 from .augmented import crossing_pair
+from .curve_start import first_on_curve
 from .cycle_curves import PREDICTED_BY, CurveEnd, weights_at
-from .family import CycleFamily, first_on_curve
+from .family import CycleFamily
 from .least_stretch import stretch_of
 from .on_curve import OnCurve, errors_between, with_parameters
 from .point import SpecialKind, SpecialPoint
 
-STEPS = StepControl(
+CURVE_STEPS = StepControl(
     first=0.01,
     longest=0.1,
     shortest=1e-4,
@@ -34,31 +35,36 @@ STEPS = StepControl(
     growth=2.0,
     most=400,
 )
-"""Lengths along a curve: the axis of the rows has length 1, a branch the length of `Scale.place`."""
-LEAST_LOOP = 5
-"""Points of a closed curve, at least."""
-LANDED, LAST_BRACKET = 1e-8, 1e-10
-"""Distance from an edge, scaled, that is none, and share of a step to which its place is sought."""
-SHORT_OF_CRUSHED = 1e-3
-"""How far below k1 a curve ends, relatively."""
+"""Step lengths along a curve; the rows' axis has length 1, the other three directions are those of
+`Scale.place`."""
+MIN_LOOP_POINTS = 5
+"""Minimum number of points of a closed curve."""
+ON_EDGE = 1e-8
+"""A point within this scaled distance of an edge lies on it."""
+LAST_BRACKET = 1e-10
+"""Fraction of a step to which the crossing of an edge is located."""
+CURVE_CRUSHING_MARGIN = 1e-3
+"""Relative distance below the crushing force k1 at which a curve ends."""
 VANISHING = 0.01
-"""Largest tip y, in L, of cycles from which a curve is extrapolated to the Hopf point where they vanish."""
+"""Largest tip y, in L, from which a curve is extrapolated to the Hopf point where its cycles vanish."""
 ALMOST_REAL = 0.2
-"""Angle in radians from the real axis of multipliers that are about to meet on it."""
+"""Angle of a multiplier from the real axis, in radians, below which its pair is about to become real."""
 ALONG_BRANCH = np.array([1.0, 0.0])
 
 
-EDGES, ROW_EDGES = 4, (2, 3)
-"""The margins of a curve begin with the distances from the edges of the plane, of which these are rows."""
+EDGES = 4
+"""Number of edges of the plane; the margins of a curve begin with the distances from these."""
+ROW_EDGES = (2, 3)
+"""Indices of the margins whose edges are rows."""
 END_AT_MARGIN = (*EDGES * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
-"""Why a curve ends where a margin is 0."""
+"""Reason for the end of a curve, by the margin that becomes 0."""
 
 
 @dataclass(frozen=True, slots=True)
-class CurveCourse:
-    """A kind of special points, over the line's parameter between two values and the rows' axis.
+class CurveLimits:
+    """Limits of the curves of one kind of special points: the line's and the rows' axis.
 
-    side: 1 or -1, to which the curve goes first along the rows' axis. workspace: memory of all matrices.
+    side: 1 or -1, first direction along the rows' axis. workspace: memory of all matrices.
     """
 
     kind: SpecialKind
@@ -68,13 +74,14 @@ class CurveCourse:
     side: float = 1.0
 
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
-        """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
+        """(points from a special point of a row to an end of its curve, reason for the end); raises
+        Unsolvable."""
         first = first_on_curve(special, self.line.name, self.rows, row, self.workspace)
-        curve = follow(self, first, STEPS, self._report)
+        curve = follow(self, first, CURVE_STEPS, self._report)
         return errors_between(curve.solutions), self._why_ended(curve)
 
     def _why_ended(self, curve: Curve[OnCurve]) -> CurveEnd:
-        """Why a curve ends."""
+        """Reason for the end of a curve."""
         if curve.end is CurveStop.margin:
             return END_AT_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
@@ -82,7 +89,7 @@ class CurveCourse:
         return self._why_lost(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[OnCurve]) -> None:
-        """Says where the curve is."""
+        """Reports the position along the curve."""
         report(
             lambda: SolvePosition(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
         )
@@ -94,15 +101,15 @@ class CurveCourse:
             start, place = last.orbit, last.place + self.side * length
             across, slope, rates = ALONG_BRANCH, 0.0, None
         else:
-            start, place = self._predicted(behind, self._alive(behind, length))
+            start, place = self._predicted(behind, self._step_before_crushing(behind, length))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
             across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
         there = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(there.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         off = relative_change(predicted, there.orbit.values - predicted.values)
-        if len(behind) == 1:  # the cycle of another row was the prediction
-            return Stepped(there, min(off, STEPS.far), 1.0)
+        if len(behind) == 1:  # the prediction was the cycle of another row
+            return Stepped(there, min(off, CURVE_STEPS.far), 1.0)
         one, other = last.step_from(behind[-2]), there.step_from(last)
         return Stepped(there, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
@@ -114,8 +121,8 @@ class CurveCourse:
         known = points[-PREDICTED_BY:]
         return self._mixed(known, weights_at(lengths_of(known), step), mesh_of(known[-1].orbit))
 
-    def _alive(self, points: Sequence[OnCurve], step: float) -> float:
-        """A step, or the longest one whose prediction is a rod that is all but crushed."""
+    def _step_before_crushing(self, points: Sequence[OnCurve], step: float) -> float:
+        """The step length, shortened if its prediction would lie beyond the crushing margin."""
         from scipy.optimize import brentq  # a tenth of a second of every start
 
         known = points[-PREDICTED_BY:]
@@ -125,7 +132,7 @@ class CurveCourse:
             weights, rod = weights_at(lengths, longest), known[-1].orbit.form.rod
             at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
-            return 1 - SHORT_OF_CRUSHED / 2 - values["F"] / values["k1"]
+            return 1 - CURVE_CRUSHING_MARGIN / 2 - values["F"] / values["k1"]
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
@@ -134,26 +141,27 @@ class CurveCourse:
     def _mixed(
         self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, place) by weights of some points; raises Unsolvable."""
+        """(orbit, place): weighted means of some points, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
         at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
     def margins(self, point: OnCurve) -> Array:
-        """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
+        """Scaled distances from the four edges, distance from crushing, least h1, and the cycle's size,
+        (7,)."""
         x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
-        alive = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1
+        crushing = 1 - CURVE_CRUSHING_MARGIN - rod.F / rod.k1
         stretch = stretch_of(point.orbit)
-        return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
+        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - VANISHING])
 
     def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
-        """The point between the last of some and the next at which a margin is 0; None if not found."""
+        """The point between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
         inner = behind[-1]
         if END_AT_MARGIN[margin] is CurveEnd.hopf:
-            return outer  # cycles vanish where no branch leads on: what lies beyond is extrapolated
+            return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= LANDED:
+        if ends[0] <= ON_EDGE:
             return None
         try:
             if margin in ROW_EDGES:
@@ -165,7 +173,7 @@ class CurveCourse:
         return replace(there, errors=outer.errors and outer.errors.carried)
 
     def _where_zero(self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]) -> OnCurve:
-        """The point between two at which a margin is 0; ends: its values there. Raises Unsolvable."""
+        """The point between two at which a margin is 0. ends: margin at the two points. Raises Unsolvable."""
         found: dict[float, OnCurve] = {1.0: outer}
 
         def left(share: float) -> float:
@@ -175,27 +183,28 @@ class CurveCourse:
         return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
 
     def closes(self, behind: Sequence[OnCurve], there: OnCurve) -> bool:
-        """Whether the first point lies between the last one and the next."""
+        """Whether the first point of the curve lies between its last point and the next."""
         first, last = behind[0], behind[-1]
         step, back = there.step_from(last), there.step_from(first)
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-        return len(behind) > LEAST_LOOP and 0 <= passed <= 1 and near
+        return len(behind) > MIN_LOOP_POINTS and 0 <= passed <= 1 and near
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
-        """The point at a share of the way between two, without error; raises Unsolvable."""
+        """The point at a fraction of the way between two, without error; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
         return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
-        """The point at a place of the rows' axis, scaled, between two, without error; raises Unsolvable."""
+        """The point at a scaled place of the rows' axis between two points, without error; raises
+        Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
 
     def _why_lost(self, last: OnCurve) -> CurveEnd:
-        """Why a curve cannot be followed beyond a point."""
+        """Reason why a curve cannot be followed beyond a point."""
         if self.kind == SpecialKind.torus:
             pair = crossing_pair(BorderedMatrix(last.orbit, last.scale, self.workspace))
             if pair is None or abs(pair.imag) < ALMOST_REAL * abs(pair):
@@ -204,13 +213,13 @@ class CurveCourse:
 
 
 def lengths_of(points: Sequence[OnCurve]) -> Array:
-    """Lengths from the last of some points to each, not positive, (points,)."""
+    """Arc lengths of points relative to the last, (points,), none positive."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
     lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
     return lengths
 
 
 def slope_of(one: OnCurve, other: OnCurve) -> float:
-    """d(line's value)/d(place) between two points, 0 where they do not tell."""
+    """d(line's value)/d(place) between two points; 0 if they have the same place."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0

@@ -1,4 +1,4 @@
-"""A curve of folds or torus points of cycles as numbers: its points, why it ends, where its cycles vanish."""
+"""A curve of folds or torus points as numbers: its points, the reasons for its ends, its vanishing cycles."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -14,17 +14,18 @@ from .on_curve import OnCurve
 from .point import SpecialKind
 
 PREDICTED_BY = 4
-"""Points of a curve through which the prediction goes, at most."""
-SAFETY = 10.0
-"""Of the extrapolation: on a mesh the Hopf point moves along the curve, which no point's error tells."""
+"""Maximum number of points through which a prediction is interpolated."""
+EXTRAPOLATION_FACTOR = 10.0
+"""Safety factor of the extrapolation: a mesh displaces the Hopf point along the curve, which the points'
+errors do not include."""
 AT_HOPF = 0.01
-"""Scaled distance of an extrapolated Hopf point from a generalised one that is located on a Hopf curve."""
+"""Scaled distance within which an extrapolated Hopf point is a generalised Hopf point of a Hopf curve."""
 Arrays = dict[str, Array]
-"""What a unit of work gives, as it is stored."""
+"""Result of a unit of work, as it is stored."""
 
 
 class CurveEnd(IntEnum):
-    """Where a curve of special points ends; none is within a curve."""
+    """Reason for the end of a curve of special points; `none` marks points within a curve."""
 
     none = 0
     edge = 1
@@ -38,7 +39,7 @@ class CurveEnd(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class VanishingPoint:
-    """A Hopf point at which a curve ends: both parameters, the error of the line's, the period in tau2."""
+    """A Hopf point at which a curve ends: both parameters, error of the line's parameter, period in tau2."""
 
     at: float
     row: float
@@ -48,9 +49,9 @@ class VanishingPoint:
 
 @dataclass(frozen=True, slots=True)
 class CurvePoint:
-    """The numbers of a point of a curve: both parameters, the place on the rows' axis, scaled, from 0 to 1.
+    """Numbers of a point of a curve: both parameters, and the scaled place on the rows' axis, from 0 to 1.
 
-    error: absolute, of the line's parameter. period in tau2, tip_y_max in L.
+    error: absolute, of the line's parameter. period: in tau2. tip_y_max: in L.
     """
 
     at: float
@@ -77,16 +78,17 @@ class HalfCurve:
 
 @dataclass(frozen=True, slots=True)
 class TracedHalf:
-    """What came of following a half: None where no curve is found; how far special points lie from it.
+    """Result of following a half; half: None if no curve is found.
 
-    distances: in units of the line's axis, by the special point's place in the list of all; those near only.
+    distances: of nearby special points from the half, in units of the line's axis, by index in the list of
+    all.
     """
 
     half: HalfCurve | None
     distances: dict[int, float] = field(default_factory=dict)
 
     def arrays(self) -> Arrays:
-        """The same as arrays."""
+        """The half as arrays: points (points, 6), end (1,), distances (near, 2)."""
         points = [] if self.half is None else [_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
@@ -108,9 +110,9 @@ def _numbers(point: CurvePoint) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class CycleCurve:
-    """A curve of folds or torus points: its points in order, and why it ends before and behind them.
+    """A curve of folds or torus points: its points in order, and the reasons for its two ends.
 
-    vanishing: the Hopf points where the cycles vanish, if it ends at such.
+    vanishing: Hopf points at which the cycles vanish, for the ends with such a point.
     """
 
     kind: SpecialKind
@@ -120,7 +122,7 @@ class CycleCurve:
 
     @classmethod
     def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
-        """The curve of its two halves from one point. Of a closed curve the half ahead is all of it."""
+        """The curve of its two halves from one point; for a closed curve `ahead` is the whole curve."""
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
         points = (*before.points[:0:-1], *ahead.points)
         vanishing = [
@@ -131,7 +133,7 @@ class CycleCurve:
 
 
 def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
-    """A curve of folds with the Hopf points at its ends as they are located on Hopf curves."""
+    """A curve of folds with its ends replaced by the generalised Hopf points located on Hopf curves."""
 
     def located(end: VanishingPoint | None) -> VanishingPoint | None:
         if end is None or curve.kind != SpecialKind.fold:
@@ -147,19 +149,21 @@ def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPo
 
 
 def weights_at(places: Array, at: float) -> Array:
-    """Of the values at some places, (n,), n > 1, in the polynomial through them at another place, (n,)."""
+    """Lagrange weights, (n,), that evaluate the polynomial through values at n > 1 places, (n,), at one
+    place."""
     apart = places[:-1] - places[-1]
     weights = polynomial_weights(apart, np.zeros(len(apart)), at - places[-1])
     return np.append(weights, 1 - weights.sum())
 
 
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
-    """Where the largest y is 0 behind the last point, by polynomials in its square."""
+    """Extrapolation to amplitude 0 beyond the last point, by polynomials in the squared amplitude."""
     known = points[-PREDICTED_BY:]
     if len(known) < PREDICTED_BY:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])
+    # The difference of the polynomials with and without the first point is the error estimate.
     best, other = (np.dot(weights_at(squares[i:], 0.0), table[i:]) for i in (0, 1))
-    error = SAFETY * (abs(best[0] - other[0]) + max(point.error for point in known))
+    error = EXTRAPOLATION_FACTOR * (abs(best[0] - other[0]) + max(point.error for point in known))
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

@@ -1,12 +1,11 @@
-"""Folds and torus points of cycles as curves over two parameters, continued from one that was located.
+"""Continuation of folds and torus points of cycles as curves over two parameters.
 
-The cycles near a special point are a family of two numbers: a length along the branch on which it lies, as
-`bordered` has it, and the place on the axis of the rows. In these two the special points are the zeros of one
-function on a smooth curve, also where both parameters turn back, at a cusp. It is followed by its length: a
-polynomial through the points before predicts cycle and place; the secant method across the curve corrects,
-every cycle and the function's vectors with the factors of one elimination (`augmented`). How the function and
-the cycles change across is known from the point before. What two meshes differ by is the error, at every
-third point or so.
+Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and place
+on the rows' axis. In this plane the special points are the zeros of one test function along a smooth curve,
+also at a cusp, where both parameters turn back. The curve is followed by arc length. A polynomial through the
+previous points predicts cycle and place. The secant method across the curve corrects; every cycle and the
+test function's vectors are solved with the factors of one elimination (`augmented`). Derivatives across the
+curve come from the previous point. Errors are differences of two meshes, measured at every third point or so.
 """
 
 from dataclasses import dataclass, replace
@@ -19,38 +18,51 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_of, stages_for
+from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import LEAST_UNIT, MOMENT
-from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
-from .augmented import SHARE, TOLERANCE, FoldFunction, NearbyCycles, TorusFunction
-from .on_curve import ACCURACY, Across, CurveErrors, OnCurve, with_parameters
-from .point import SpecialKind, SpecialPoint
+from ..bordered import BorderedMatrix, Condition, Scale, moved
+from .augmented import CORRECTION_TOLERANCE, FUNCTION_SHARE, FoldFunction, NearbyCycles, TorusFunction
+from .on_curve import CURVE_ACCURACY, Across, CurveErrors, OnCurve, with_parameters
+from .point import SpecialKind
 
-ORDER_SHARE, INTERVAL_SHARE = 0.6, 0.5
-"""Of the mesh of a special point's 1e-9, with which a curve starts."""
-SMALL = 0.05
-"""Largest tip y, in L, of cycles whose folds are told from their Hopf point by a division by the moment."""
-FIRST_SECANT, FARTHEST, MOST_SECANTS = 1e-3, 0.1, 12
-"""First step of the secant method across a curve where its rate is unknown, and the longest one."""
-LINEAR, LINEAR_HERE, LINEAR_BEFORE = 1e-9, 1e-6, 1e-7
-"""The last step is taken along a line, without a solution at its end: along that through the last two cycles,
-where its product with their distance is so small; with the rates between other cycles at the same point, on
-this mesh or another, which are known to 1e-3; or with those at the point before, to a tenth.
-The test function is known to some 1e-8."""
-ALIKE = 0.9
-"""Least cosine of the angle between two ways across for which the rates of one serve the other."""
-LEAST_SPAN = 1e-6
-"""Least distance of two cycles that tell the rates across the curve: the test function is known to 1e-8."""
-SAFETY, LOCATED = 3.0, 3e-9
-"""Of the difference of two meshes, and relative error of the line's value beside it."""
-MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
+SMALL_FOLD_CYCLE = 0.05
+"""Largest tip y, in L, of cycles whose fold function is divided by the moment, since it vanishes at the Hopf
+point too."""
+FIRST_SECANT = 1e-3
+"""First step of the secant method across a curve if the derivatives are unknown."""
+LONGEST_SECANT_STEP = 0.1
+"""A longer step of the secant method has left the curve."""
+MAX_SECANTS_ACROSS = 12
+"""Maximum number of secant steps for one point."""
+MAX_LINEAR_PRODUCT = 1e-9
+"""The last step is taken along the line through the last two cycles, without solving at its end, if the
+product of its length and their distance is below this; the test function is known to about 1e-8."""
+MAX_LINEAR_STEP = 1e-6
+"""The same, if the derivatives come from other cycles at this point: these are known to 1e-3."""
+MAX_CARRIED_STEP = 1e-7
+"""The same, if the derivatives come from the previous point: these are known to a tenth."""
+MIN_COSINE = 0.9
+"""Derivatives across the curve are reused if the cosine of the angle between both directions is at least
+this."""
+MIN_SPAN = 1e-6
+"""Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
+1e-8."""
+CURVE_ERROR_FACTOR = 3.0
+"""Safety factor on the difference of two meshes."""
+SECANT_ERROR = 3e-9
+"""Relative error of the line's value that the secant method leaves."""
+CURVE_MORE_ORDERS = 2
+"""Increase of the order on the next finer mesh."""
+CURVE_MORE_INTERVALS = 1.2
+"""Factor on the number of intervals on the next finer mesh."""
+MAX_FINER_MESHES = 5
+"""Maximum number of finer meshes for one point."""
 
 
-class _Tried(NamedTuple):
-    """A cycle at a length across a curve, with the vectors and the value of the function there."""
+class _CycleAcross(NamedTuple):
+    """A cycle at a length across a curve, with its test function and the vectors of that function."""
 
     orbit: Orbit
     vectors: Array
@@ -60,9 +72,9 @@ class _Tried(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CycleFamily:
-    """The cycles about a point of a curve of a kind: border, (3,), is the direction of its branch in a scale.
+    """Cycles about a point of a curve. border: direction of its branch in the scale, (3,).
 
-    small: whether cycles are so small that Hopf points count as folds unless these are divided out.
+    small: whether the fold function is divided by the moment, because the cycles are near a Hopf point.
     workspace: memory of the matrices.
     """
 
@@ -78,15 +90,15 @@ class CycleFamily:
         cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The cycles about a point."""
-        small = kind == SpecialKind.fold and point.tip_y_max < SMALL
+        small = kind == SpecialKind.fold and point.tip_y_max < SMALL_FOLD_CYCLE
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def placed(self, orbit: Orbit, place: float) -> Orbit:
-        """The values of an orbit for the rod at a place on the rows' axis; raises Unsolvable."""
+        """The orbit's values for the rod at a place on the rows' axis; raises Unsolvable."""
         return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
-        """What is zero at special points of the kind, at the cycle of a matrix."""
+        """The test function that is zero at special points of this kind, at the cycle of a matrix."""
         if self.kind == SpecialKind.fold:
             return FoldFunction(matrix, self.border, self.small)
         return TorusFunction(matrix)
@@ -94,18 +106,19 @@ class CycleFamily:
     def nearest(
         self, start: Orbit, place: float, across: Array, rates: Across | None = None, same: bool = False
     ) -> OnCurve:
-        """The point of the curve near an orbit at a place, across the curve in a direction, (2,).
+        """The point of the curve near an orbit, searched across the curve in a direction, (2,). Raises
+        Unsolvable.
 
-        rates: about those across the curve; same: whether they are of this very point, on another mesh.
-        Raises Unsolvable.
+        rates: approximate derivatives across the curve. same: whether these belong to this point on another
+        mesh.
         """
-        known = rates if rates and rates.way @ across >= ALIKE else None
+        known = rates if rates and rates.way @ across >= MIN_COSINE else None
         search = _SecantAcross(self, start, place, across, known, same)
-        for _ in range(MOST_SECANTS):
+        for _ in range(MAX_SECANTS_ACROSS):
             found = search.next()
             if found is not None:
                 return found
-        raise Unsolvable("the secant method does not settle")
+        raise Unsolvable("the secant method across the curve does not converge")
 
     def point(
         self,
@@ -116,24 +129,24 @@ class CycleFamily:
         rates: Across | None = None,
         before: OnCurve | None = None,
     ) -> OnCurve:
-        """The same with its error, on a finer mesh if need be; raises Unsolvable.
+        """`nearest` with an error estimate, on a finer mesh if necessary; raises Unsolvable.
 
-        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error. before: the
-        point before, whose errors may tell this one's.
+        slope: d(line's value)/d(place) along the curve; a difference along the curve is no error. before: the
+        previous point, whose errors are reused while they apply.
         """
         last = self.nearest(start, place, across, rates)
-        if before and before.errors and before.errors.tells(last):
+        if before and before.errors and before.errors.hold_at(last):
             return replace(last, errors=before.errors.carried)
-        for _ in range(MOST_FINER_MESHES):
+        for _ in range(MAX_FINER_MESHES):
             mesh = mesh_of(last.orbit)
-            longer = ceil(MORE_INTERVALS * mesh.intervals)
-            finer = replace(mesh, order=mesh.order + MORE_ORDERS, intervals=longer)
+            longer = ceil(CURVE_MORE_INTERVALS * mesh.intervals)
+            finer = replace(mesh, order=mesh.order + CURVE_MORE_ORDERS, intervals=longer)
             if not finer.allowed:
                 break
             here = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
             off = abs(here.at - last.at - slope * (here.place - last.place))
-            error = SAFETY * off + LOCATED * abs(here.at)
-            if error <= ACCURACY * abs(here.at):
+            error = CURVE_ERROR_FACTOR * off + SECANT_ERROR * abs(here.at)
+            if error <= CURVE_ACCURACY * abs(here.at):
                 return replace(
                     last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
                 )
@@ -142,33 +155,38 @@ class CycleFamily:
 
 
 class _SecantAcross:
-    """The secant method across a curve: each next cycle is corrected with the factors of the first one."""
+    """The secant method across a curve; all its cycles are corrected with the factors of the first."""
 
     def __init__(
         self, family: CycleFamily, start: Orbit, place: float, way: Array, rates: Across | None, same: bool
     ) -> None:
-        self.family, self.place, self.way, self.rates = family, place, way, rates
-        self.orbit, self.at = family.placed(start, place), 0.0
-        self.before: _Tried | None = None
+        self.family = family
+        self.place = place
+        self.way = way
+        self.rates = rates
+        self.orbit = family.placed(start, place)
+        self.at = 0.0
+        self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.place(start))
-        self.trusted = LINEAR_HERE if same else LINEAR_BEFORE
-        """Longest step along a line by rates that are not of two cycles here."""
+        self.trusted = MAX_LINEAR_STEP if same else MAX_CARRIED_STEP
+        """Longest last step along a line with derivatives that do not come from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycles(family, self.orbit, contraction)
 
     def next(self) -> OnCurve | None:
-        """The point of the curve, if the next cycle tells it; raises Unsolvable."""
-        here = self._tried()
+        """The point of the curve, once a step is short enough; None while more steps are needed. Raises
+        Unsolvable."""
+        here = self._solved_here()
         enough = self.trusted
         if own := self._rates_since(here):
-            self.rates, self.trusted, enough = own, LINEAR_HERE, LINEAR / own.span
+            self.rates, self.trusted, enough = own, MAX_LINEAR_STEP, MAX_LINEAR_PRODUCT / own.span
         rates = self.rates
         step = -here.test / rates.test if rates else FIRST_SECANT
-        if not abs(step) <= FARTHEST:
+        if not abs(step) <= LONGEST_SECANT_STEP:
             raise Unsolvable("the secant method leaves the curve")
         if rates and abs(step) <= enough:
             return self._point(step, replace(rates, contraction=self.near.contraction))
-        if self.before:  # as the cycle, its vectors go on along a line
+        if self.before:  # the vectors are extrapolated along a line, like the cycle
             change = (here.vectors - self.before.vectors) / (here.at - self.before.at)
             self.near.predict(here.vectors + step * change)
         if rates:
@@ -176,20 +194,23 @@ class _SecantAcross:
         self.before, self.at = here, self.at + step
         return None
 
-    def _tried(self) -> _Tried:
-        """The cycle at the present length across; raises Unsolvable."""
+    def _solved_here(self) -> _CycleAcross:
+        """The cycle at the present length across the curve; raises Unsolvable."""
         family, rates = self.family, self.rates
         length = self.length + self.at * float(self.way[0])
         self.orbit = family.placed(self.orbit, self.place + self.at * float(self.way[1]))
-        slope, enough = (abs(rates.test), TOLERANCE) if rates else (1.0, SHARE * FIRST_SECANT)
+        slope, enough = (
+            (abs(rates.test), CORRECTION_TOLERANCE) if rates else (1.0, FUNCTION_SHARE * FIRST_SECANT)
+        )
         condition = Condition(family.scale, family.border, length)
         self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
-        return _Tried(self.orbit, self.near.function.vectors, test, self.at)
+        return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
 
-    def _rates_since(self, here: _Tried) -> Across | None:
-        """The rates across between the last two cycles; None where they are too near, or there is one."""
+    def _rates_since(self, here: _CycleAcross) -> Across | None:
+        """Derivatives across the curve from the last two cycles; None if there is one only or both are too
+        near."""
         before = self.before
-        if before is None or abs(here.at - before.at) < LEAST_SPAN or here.test == before.test:
+        if before is None or abs(here.at - before.at) < MIN_SPAN or here.test == before.test:
             return None
         name, span = self.family.scale.name, here.at - before.at
         one, other = before.orbit, here.orbit
@@ -198,11 +219,11 @@ class _SecantAcross:
         return Across(self.way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
 
     def _moved(self, step: float, rates: Across) -> Orbit:
-        """The last cycle moved a step across."""
+        """The last cycle moved by a step across the curve."""
         return moved(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
 
     def _point(self, step: float, rates: Across) -> OnCurve:
-        """The point of the curve a short step across from the last cycle."""
+        """The point of the curve at a short step across from the last cycle."""
         family, matrix = self.family, self.near.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         place = self.place + (self.at + step) * float(self.way[1])
@@ -218,29 +239,3 @@ class _SecantAcross:
             row=getattr(orbit.form.rod, family.rows.name),
             rates=rates,
         )
-
-
-def first_on_curve(
-    special: SpecialPoint, line: str, rows: PlaneAxis, row: float, workspace: NewtonWorkspace
-) -> OnCurve:
-    """A special point that was located on a row as the first point of a curve; raises Unsolvable."""
-    orbit = special.orbit
-    if orbit is None:
-        raise Unsolvable(special.message or "the special point has no cycle")
-    mesh = mesh_of(orbit)
-    rough = replace(
-        mesh,
-        order=ceil(ORDER_SHARE * mesh.order),
-        intervals=ceil(INTERVAL_SHARE * mesh.intervals),
-        stages=stages_for(ACCURACY),
-    )
-    orbit = rough.carry(orbit)
-    scale = Scale.of(orbit, line, abs(moment_of(orbit)) * LEAST_UNIT / special.tip_y_max)
-    matrix = BorderedMatrix(orbit, scale, workspace)
-    ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, matrix))
-    place = rows.scaled(row)
-    start = OnCurve(
-        orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
-    )
-    family = CycleFamily.about(special.kind, rows, start, workspace)
-    return family.point(orbit, place, np.array([1.0, 0.0]))

@@ -1,4 +1,4 @@
-"""The least stretch h1 of a cycle over the whole rod and the whole period: at h1 = 0 the model ends."""
+"""The least stretch h1 of a cycle over the whole rod and period; the model is valid for h1 > 0 only."""
 
 from math import inf
 
@@ -10,22 +10,23 @@ from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
 from ..arc import ArcPoint
 
-PLACES = 8
-"""Places in a node's neighbourhood at which the least stretch is looked for."""
+PLACES_PER_NODE = 8
+"""Number of places per node at which the least stretch is sampled."""
 SAFE_STRETCH = 0.2
-"""Least h1 at the nodes above which it is positive between them too."""
+"""If h1 exceeds this at all nodes, it is positive between the nodes too."""
 SAFE_AT_PLACES = 0.02
-"""The same at PLACES places between two nodes, which a polynomial that is resolved hardly leaves."""
+"""If h1 exceeds this at all sampled places, it is positive between these too: a resolved polynomial hardly
+varies more."""
 
 
 def stretch_at(point: ArcPoint) -> float:
-    """The least h1 of a cycle in space and time, or of its nodes where that is far from 0."""
+    """The least h1 of a cycle in space and time; the least nodal value if that is far from 0."""
     rough = point.cycle.measures.least_stretch
     return rough if rough > SAFE_STRETCH else least_stretch(point.cycle.path, SAFE_AT_PLACES)
 
 
 def stretch_of(orbit: Orbit) -> float:
-    """The same of an orbit alone."""
+    """`stretch_at` for an orbit alone."""
     rod, pull = orbit.form.nodal, orbit.form.layout.field(orbit.points, "n1")
     nodes = pull.shape[-1]
     rough = float((rod.rest[0, :nodes] + rod.compliance[0, :nodes] * pull).min())
@@ -35,9 +36,10 @@ def stretch_of(orbit: Orbit) -> float:
 def least_stretch(path: CyclePath, enough: float = inf) -> float:
     """The least h1 of a cycle over the whole rod and the whole period.
 
-    enough: a least value at PLACES times as many places as nodes that is as good as the true one.
+    enough: if the least sampled value exceeds this, that value is returned without a search between the
+    samples.
     """
-    from scipy.optimize import minimize_scalar  # a tenth of a second of every start
+    from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     grid, c = path.orbit.form.mesh, path.strain_coefficients[:, 0]
 
@@ -45,7 +47,7 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
         at = -np.ascontiguousarray(c @ grid.evaluation(u).T)
         return -maxima(at, samples_of(at, 8 * len(c)))
 
-    places = np.linspace(0.0, 1.0, PLACES * len(grid.positions))
+    places = np.linspace(0.0, 1.0, PLACES_PER_NODE * len(grid.positions))
     values = least(places)
     best = int(np.argmin(values))
     if values[best] > enough:

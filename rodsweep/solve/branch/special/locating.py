@@ -1,7 +1,7 @@
-"""Special points located on a branch: the zero of a test function, with a cycle solved at each place.
+"""Location of special points on a branch: the zero of a test function, with a cycle solved at each place.
 
-The zero is enclosed on the mesh of the branch and found by the secant method on two fine meshes: what they
-differ by is the error.
+The zero is bracketed on the branch's own mesh, then found by the secant method on two finer meshes; their
+difference is the error.
 """
 
 from dataclasses import replace
@@ -21,100 +21,114 @@ from ..bordered import BorderedMatrix, bordered, moved
 from .least_stretch import least_stretch
 from .point import SpecialKind, SpecialPoint
 
-REAL = 1e-7
-"""Imaginary part of a multiplier, relative, below which it is real."""
-ACCURACY = 1e-9
-"""Relative, to which the parameter at a special point is located, where the branch is no more accurate."""
-MESH_SHARE = 0.1
-"""Share of it that the first of the two meshes is chosen for."""
-TOLERANCE = 1e-10
-"""To which a cycle is solved on the way: the square of it is left."""
-MOST_SECANTS, STALLED = 12, 1e-6
-"""Steps of the secant method, and the length, in units of the step of the branch, from which a step that is
-no shorter than half of the one before is rounding."""
-ZERO, ZERO_OF_A_FOLD = 1e-9, 1e-5
-"""Last step of the secant method in units of the step of the branch: beside a fold the parameter changes with
-the square of the distance."""
-MATRIX_SHARE = 1e-2
-"""Relative distance of a matrix from its cycle, in units of the step that led there, for a test function that
-tells the next step to two digits."""
-ROUGHLY = 1e-3
-"""Where a zero is known roughly: value in units of those at the ends, bracket in units of the step."""
-MOST_PAIRS, MORE_ORDERS, MORE_INTERVALS, SAFETY = 4, 4, 1.3, 3.0
-ROUNDING = 1e-13
+REAL_MULTIPLIER = 1e-7
+"""A multiplier is real if its relative imaginary part is below this."""
+LOCATION_ACCURACY = 1e-9
+"""Relative accuracy of the parameter at a special point; the accuracy of the branch if that is smaller."""
+FIRST_MESH_SHARE = 0.1
+"""Fraction of that accuracy for which the first of the two meshes is planned."""
+CYCLE_TOLERANCE = 1e-10
+"""Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
+left."""
+MAX_SECANTS = 12
+"""Maximum number of secant steps."""
+STALLED_SECANT = 1e-6
+"""A secant step this small, in units of the step of the branch, that did not halve is rounding error."""
+SECANT_END = 1e-9
+"""Length of the last secant step, in units of the step of the branch."""
+SECANT_END_AT_FOLD = 1e-5
+"""The same at a fold, where the parameter is quadratic in arc length."""
+MATRIX_STEP_SHARE = 1e-2
+"""Relative distance of a matrix from its cycle, in units of the last secant step: the test function then
+gives the next step to two digits."""
+ENCLOSURE_SHARE = 1e-3
+"""Tolerance of the bracketing: test function in units of its values at the ends, bracket in units of the
+step."""
+MAX_MESH_PAIRS = 4
+"""Maximum number of pairs of meshes that are compared."""
+LOCATION_MORE_ORDERS = 4
+"""Increase of the order on the next finer mesh."""
+LOCATION_MORE_INTERVALS = 1.3
+"""Factor on the number of intervals on the next finer mesh."""
+LOCATION_ERROR_FACTOR = 3.0
+"""Safety factor on the difference of two meshes."""
+LOCATION_ROUNDING = 1e-13
+"""Relative rounding error of the parameter, the period and the size."""
 
 
 def through_minus_one(orbit: Orbit) -> SpecialKind:
-    """What a multiplier of the map over what is solved means that passes -1."""
+    """Kind of special point where a multiplier over the solved interval passes -1."""
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
 
 
 class Segment:
-    """The branch from one cycle to the next, on any mesh."""
+    """The part of a branch from one cycle to the next, solved on any mesh."""
 
     def __init__(self, here: ArcPoint, there: ArcPoint) -> None:
-        self.here, self.there = here, there
+        self.here = here
+        self.there = there
         self.length = arc_between(here, there)
         self._back = float(there.ahead @ (there.scale.place(there.orbit) - there.scale.place(here.orbit)))
         self._known: tuple[float, Orbit, Array] | None = None
 
     def predicted(self, length: float) -> Orbit:
-        """What the cubic through both predicts at a length from `here`, on the mesh of `there`."""
+        """Orbit at a length from `here`, on the cubic through both cycles and on the mesh of `there`."""
         return self.there.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """What follows is on a mesh, from what was found last."""
+        """Continues on another mesh; the last cycle found is not used as a start there."""
         self.mesh, self._known = mesh, None
 
-    def at(self, length: float, distance: float = TOLERANCE) -> Converged:
-        """The cycle at a length from `here`, with a matrix at a relative distance; raises Unsolvable."""
+    def at(self, length: float, distance: float = CYCLE_TOLERANCE) -> Converged:
+        """The cycle at a length from `here`, with a matrix within a relative distance; raises Unsolvable."""
         scale, name = self.here.scale, self.here.scale.name
         if self._known is None:
             start = self.mesh.carry(self.predicted(length))
         else:
             last, orbit, tangent = self._known
             start = moved(orbit, name, (length - last) * tangent)
-        found = self.here.condition(length).solved(start, TOLERANCE, self.here.workspace, distance)
+        found = self.here.condition(length).solved(start, CYCLE_TOLERANCE, self.here.workspace, distance)
         tangent = tangent_at(found.orbit, scale, self.here.ahead, bordered(found))
         rate = float(scale.moved(found.orbit, tangent) @ self.here.ahead)
         self._known = length, found.orbit, tangent / rate
         return found
 
     def rises(self) -> float:
-        """How fast the parameter grows at the cycle that was found last."""
+        """Derivative of the parameter along the branch at the last cycle found."""
         if self._known is None:
             raise ValueError("nothing is found yet")
         return float(self._known[2][-1]) / self.here.scale.coordinate
 
 
 def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> float:
-    """What is zero at a special point of a kind, at a cycle that was just found; raises Unsolvable."""
+    """The test function of a kind, zero at its special points, at the cycle just found; raises Unsolvable."""
     if kind == SpecialKind.fold:
         return segment.rises()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
     h = BorderedMatrix(found.orbit, segment.here.scale, found.workspace).returns
-    real = np.abs(h.imag) <= REAL * np.abs(h)
+    real = np.abs(h.imag) <= REAL_MULTIPLIER * np.abs(h)
     if kind == through_minus_one(found.orbit):
-        # Its sign is that of det(h + 1): it tells the one that crosses from others that are nearer elsewhere.
+        # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
     if kind == SpecialKind.torus and not real.all():
         beyond = np.abs(h[~real]) - 1
         return float(beyond[np.argmin(np.abs(beyond))])
-    raise Unsolvable("the multiplier that crosses the circle is lost")
+    raise Unsolvable("the multiplier that crosses the unit circle is lost")
 
 
 def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles; where it is not found, the error says between which."""
-    aim = min(accuracy, ACCURACY)
+    """The special point of a kind between two cycles; if it is not found, its error is the distance of the
+    two."""
+    aim = min(accuracy, LOCATION_ACCURACY)
     try:
         segment = Segment(here, there)
         segment.start_on(mesh_of(there.orbit))
         length, slope = _enclosed(kind, segment)
-        mesh = there.calibration.planned_for_parameter(MESH_SHARE * aim)
+        mesh = there.calibration.planned_for_parameter(FIRST_MESH_SHARE * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         last, point = None, None
-        for _ in range(MOST_PAIRS + 1):
+        for _ in range(MAX_MESH_PAIRS + 1):
             segment.start_on(mesh)
             length, found, slope = _zero(kind, segment, length, slope)
             last, point = point, _point_at(kind, found)
@@ -123,7 +137,9 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
                 if point.error <= aim * abs(point.at):
                     break
             mesh = replace(
-                mesh, order=mesh.order + MORE_ORDERS, intervals=ceil(MORE_INTERVALS * mesh.intervals)
+                mesh,
+                order=mesh.order + LOCATION_MORE_ORDERS,
+                intervals=ceil(LOCATION_MORE_INTERVALS * mesh.intervals),
             )
             if not mesh.allowed:
                 break
@@ -135,19 +151,22 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
 
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, here: ArcPoint, there: ArcPoint) -> SpecialPoint:
-    """A special point with its errors: by how much it differs from that on a coarser mesh.
+    """A special point with errors: the differences from the same point on a coarser mesh, with a safety
+    factor.
 
-    The place on the branch is known to the last step of the secant method, and period and size as well.
+    Period and size also have the error of the last secant step in arc length.
     """
-    place = ZERO_OF_A_FOLD if point.kind is SpecialKind.fold else ZERO
+    place = SECANT_END_AT_FOLD if point.kind is SpecialKind.fold else SECANT_END
     one, other = here.cycle.measures, there.cycle.measures
-    period = SAFETY * abs(point.period - last.period) + place * abs(one.period - other.period)
-    size = SAFETY * abs(point.tip_y_max - last.tip_y_max) + place * abs(one.tip_y_max - other.tip_y_max)
+    period = LOCATION_ERROR_FACTOR * abs(point.period - last.period) + place * abs(one.period - other.period)
+    size = LOCATION_ERROR_FACTOR * abs(point.tip_y_max - last.tip_y_max) + place * abs(
+        one.tip_y_max - other.tip_y_max
+    )
     return replace(
         point,
-        error=SAFETY * abs(point.at - last.at) + ROUNDING * abs(point.at),
-        period_error=period / point.period + ROUNDING,
-        size_error=size / point.tip_y_max + ROUNDING,
+        error=LOCATION_ERROR_FACTOR * abs(point.at - last.at) + LOCATION_ROUNDING * abs(point.at),
+        period_error=period / point.period + LOCATION_ROUNDING,
+        size_error=size / point.tip_y_max + LOCATION_ROUNDING,
     )
 
 
@@ -164,15 +183,17 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
 
 
 def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -> SpecialPoint:
-    """A special point of which only is known between which cycles it lies."""
-    name, measures, before = here.scale.name, there.cycle.measures, here.cycle.measures
+    """A special point that is known only to lie between two cycles."""
+    name = here.scale.name
+    measures = there.cycle.measures
+    before = here.cycle.measures
     at, other = (getattr(point.orbit.form.rod, name) for point in (there, here))
     return SpecialPoint(
         kind=kind,
         at=at,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
-        error=max(abs(at - other), ACCURACY * abs(at)),
+        error=max(abs(at - other), LOCATION_ACCURACY * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
@@ -180,11 +201,11 @@ def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -
 
 
 def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
-    """Where the test function of a kind is about zero, enclosed by the ends, and its slope.
+    """(approximate zero of the test function, its slope), bracketed by the ends of the segment.
 
     Raises Unsolvable.
     """
-    rough = MATRIX_SHARE * ROUGHLY * segment.length
+    rough = MATRIX_STEP_SHARE * ENCLOSURE_SHARE * segment.length
 
     def value(length: float) -> float:
         return test_function(kind, segment, segment.at(length, rough))
@@ -196,30 +217,30 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = ROUGHLY * min(map(abs, ends))
-    at = zero_along(kept, ends, segment.length, least, ROUGHLY)
-    # The nearest other place tells the slope with this one.
+    least = ENCLOSURE_SHARE * min(map(abs, ends))
+    at = zero_along(kept, ends, segment.length, least, ENCLOSURE_SHARE)
+    # The nearest other place and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     return at, (values[at] - values[other]) / (at - other)
 
 
 def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Converged, float]:
-    """Where the test function of a kind is zero near a guess, the cycle there, and the function's slope.
+    """(zero of the test function near a guess, the cycle there, the slope of the test function).
 
-    slope: about its slope, as a coarser mesh has it. Raises Unsolvable.
+    slope: approximate, as on a coarser mesh. Raises Unsolvable.
     """
-    enough = segment.length * (ZERO_OF_A_FOLD if kind == SpecialKind.fold else ZERO)
-    at, step, before = guess, ROUGHLY * segment.length, None
-    for _ in range(MOST_SECANTS):
-        found = segment.at(at, max(TOLERANCE, MATRIX_SHARE * abs(step)))
+    enough = segment.length * (SECANT_END_AT_FOLD if kind == SpecialKind.fold else SECANT_END)
+    at, step, before = guess, ENCLOSURE_SHARE * segment.length, None
+    for _ in range(MAX_SECANTS):
+        found = segment.at(at, max(CYCLE_TOLERANCE, MATRIX_STEP_SHARE * abs(step)))
         f = test_function(kind, segment, found)
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
         last, step = abs(step), -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step")
-        if abs(step) <= enough or last / 2 < abs(step) <= STALLED * segment.length:
+        if abs(step) <= enough or last / 2 < abs(step) <= STALLED_SECANT * segment.length:
             return at, found, slope
         before = at, f
         at += step
-    raise Unsolvable("the secant method does not settle")
+    raise Unsolvable("the secant method does not converge")

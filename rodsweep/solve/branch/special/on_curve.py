@@ -1,4 +1,4 @@
-"""A point of a curve of special points: its cycle, its error, and how cycles change across the curve."""
+"""A point of a curve of special points: its cycle, its error, and derivatives of cycles across the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,19 +13,19 @@ from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..bordered import Scale
 
-ACCURACY = 1e-7
-"""Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
-MOST_UNMEASURED = 3
-"""Points from one whose error is measured to the next."""
+CURVE_ACCURACY = 1e-7
+"""Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
+MAX_UNMEASURED_POINTS = 3
+"""The error is measured at least at every third point."""
 
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """How the cycles of a family change across its curve, by the length across.
+    """Derivatives of a family's cycles across its curve, by the length across.
 
-    way: across, along the branch and along the rows, (2,). test: of what is zero on the curve. orbit: of
-    values and the line's coordinate, (N + 1,); mesh: theirs. span: length between the cycles that tell them.
-    contraction: of corrections, as `NearbyCycles` has it.
+    way: unit direction across, (along the branch, along the rows), (2,). test: of the test function. orbit:
+    of the orbit's values and the line's coordinate, (N + 1,). mesh: of that orbit. span: length between the
+    two cycles of the difference quotient. contraction: of corrections, as in `NearbyCycles`.
     """
 
     way: Array
@@ -36,7 +36,7 @@ class Across:
     contraction: float = inf
 
     def on(self, orbit: Orbit) -> Array:
-        """How an orbit changes across its curve on its own mesh, (N + 1,)."""
+        """Derivative of an orbit across its curve, on the orbit's own mesh, (N + 1,)."""
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit
@@ -46,9 +46,11 @@ class Across:
 
 @dataclass(frozen=True, eq=False)
 class CurveErrors:
-    """The relative error of the line's value at a point of a curve; it grows as the squared tails do.
+    """Relative error of the line's parameter at a point of a curve; it scales with the squared coefficient
+    tails.
 
-    tails: of the orbit where it was measured, in space and time, (2,); mesh: the orbit's; age: points since.
+    tails: of the orbit where it was measured, in space and time, (2,). mesh: of that orbit. age: number of
+    points since.
     """
 
     measured: float
@@ -57,18 +59,18 @@ class CurveErrors:
     age: int = 0
 
     def at(self, point: "OnCurve") -> float:
-        """The absolute error of another point near by on this mesh."""
+        """Absolute error of a neighbouring point on the same mesh."""
         growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
-    def tells(self, point: "OnCurve") -> bool:
-        """Whether they tell that of the next point."""
-        recent = self.age < MOST_UNMEASURED - 1 and mesh_of(point.orbit) == self.mesh
-        return recent and self.at(point) <= ACCURACY * abs(point.at)
+    def hold_at(self, point: "OnCurve") -> bool:
+        """Whether the measured error still applies to the next point and is within the accuracy."""
+        recent = self.age < MAX_UNMEASURED_POINTS - 1 and mesh_of(point.orbit) == self.mesh
+        return recent and self.at(point) <= CURVE_ACCURACY * abs(point.at)
 
     @property
     def carried(self) -> "CurveErrors":
-        """The same, known at the next point."""
+        """The same error, one point further along the curve."""
         return replace(self, age=self.age + 1)
 
 
@@ -76,8 +78,9 @@ class CurveErrors:
 class OnCurve:
     """A point of a curve: a cycle with its values of the line's and the rows' parameter.
 
-    place: on the rows' axis, scaled. ahead: direction of its branch in `Scale.place`, (3,). error: absolute,
-    of the line's value on the curve. period in tau2, tip_y_max in L. rates: across the curve, where known.
+    ahead: direction of its branch in `Scale.place`, (3,). place: scaled, on the rows' axis. at: the line's
+    parameter; row: the rows' parameter. error: absolute, of `at`. errors: measured error that applies. rates:
+    derivatives across the curve, if known.
     """
 
     orbit: Orbit
@@ -92,32 +95,34 @@ class OnCurve:
 
     @property
     def tip_y_max(self) -> float:
+        """Modulus of the tip y at t = 0, in L."""
         return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
 
     def step_from(self, other: "OnCurve") -> Array:
-        """From another point to this one: in `Scale.place`, and along the rows, (4,)."""
+        """Difference from another point: `Scale.place` and place on the rows' axis, (4,)."""
         moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
         return np.append(moved, self.place - other.place)
 
     def across(self, step: Array) -> Array:
-        """Square to a step, (4,), along the branch and along the rows, (2,)."""
+        """Unit direction perpendicular to a step, (4,), in the plane (along the branch, along the rows),
+        (2,)."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
 def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
-    """Points of a curve in order, with the larger of the errors that the measured ones beside tell."""
+    """Points of a curve in order; the error of each is the larger of those measured before and behind it."""
     found: list[OnCurve] = []
     behind: CurveErrors | None = None
     for point in reversed(points):
         if point.errors is None:
             raise ValueError("the point was located without error")
-        told = [point.errors]
+        candidates = [point.errors]
         if point.errors.age == 0:
             behind = point.errors
         elif behind and behind.mesh == mesh_of(point.orbit):
-            told.append(behind)
-        found.append(replace(point, error=max(errors.at(point) for errors in told)))
+            candidates.append(behind)
+        found.append(replace(point, error=max(errors.at(point) for errors in candidates)))
     return found[::-1]
 
 
@@ -126,7 +131,7 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     try:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the curve leaves the rods: {error}") from error
+        raise Unsolvable(f"the curve leaves the range of possible rods: {error}") from error
     if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} needs other unknowns")
+        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
     return replace(orbit, form=form)

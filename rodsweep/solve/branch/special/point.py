@@ -1,4 +1,4 @@
-"""What happens at a special point of a branch, and what is known of it."""
+"""Special points of a branch: their kinds, and their stored numbers."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -8,7 +8,7 @@ from ...orbit.orbit import Orbit
 
 
 class SpecialKind(IntEnum):
-    """What happens at a special point of a branch."""
+    """Kind of a special point of a branch."""
 
     hopf = 1
     fold = 2
@@ -20,7 +20,7 @@ class SpecialKind(IntEnum):
 
 
 class EndReason(IntEnum):
-    """Why a branch ends where it does; the first two are its ends, the others are not."""
+    """Reason for the end of a branch: the first two are true ends, the others are failures."""
 
     range_end = 1
     crushed = 2
@@ -30,12 +30,12 @@ class EndReason(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpecialPoint:
-    """A special point: the parameter's value there, the cycle's period in tau2 and largest tip y in L.
+    """A special point: value of the parameter, period in tau2 and largest tip y in L of its cycle.
 
-    error: absolute, of the parameter's value; period_error, size_error: relative, of the period and the
-    largest tip y at the special point itself. after: the place on its branch of the last cycle before it, -1
-    for none. reason: of an end. message: why no cycle was found, or why the error is large. orbit: of a point
-    that was located, the cycle.
+    error: absolute, of the parameter. period_error, size_error: relative, of the period and the largest tip y
+    at the special point itself. after: index of the last cycle before it on its branch, -1 for none. reason:
+    for an end. message: why no cycle was found, or why the error is large. orbit: the cycle of a located
+    point.
     """
 
     kind: SpecialKind
@@ -50,6 +50,7 @@ class SpecialPoint:
     message: str = ""
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     amplitude_coefficient: float = nan
-    """At a Hopf point how fast the amplitude grows from there."""
+    """At a Hopf point: largest tip y in L over the square root of the relative distance of the parameter, as
+    in `HopfBirth`."""
     coefficient_error: float = nan
-    """Relative, of amplitude_coefficient."""
+    """Relative error of amplitude_coefficient."""

@@ -1,9 +1,9 @@
-"""Where a branch changes: folds, torus points, broken symmetry, doubled periods.
+"""Special points of a branch: folds, torus points, symmetry breakings, period doublings.
 
-Between two cycles of a branch a number changes its sign: at a fold how fast the parameter grows along the
-branch; at a torus point the modulus of a complex pair of multipliers less 1; where the symmetry breaks the
-multiplier of half a period and the reflection plus 1, and the same of a whole period where a cycle without
-symmetry doubles its period. The multipliers outside the circle must change as these points say.
+Each is a sign change of a test function between two cycles. Fold: derivative of the parameter along the
+branch. Torus point: modulus of a complex pair of multipliers minus 1. Symmetry breaking: a multiplier of half
+a period and the reflection, plus 1. Period doubling of an asymmetric cycle: a multiplier of the whole period,
+plus 1. The number of multipliers outside the unit circle must change accordingly.
 """
 
 from collections.abc import Callable
@@ -12,25 +12,26 @@ import numpy as np
 
 from ...point import Unsolvable
 from ..arc import ArcPoint, arc_between
-from .locating import REAL, located, through_minus_one
+from .locating import REAL_MULTIPLIER, located, through_minus_one
 from .point import SpecialKind, SpecialPoint
 
 NEAR_ONE = 3e-3
-"""Distance of a multiplier from 1 within which rounding may put it on the other side; a fold has two."""
-MOST_HALVINGS = 7
-"""Of a step between two cycles in which more than one thing happens, or a special point is not located."""
+"""A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
+MAX_STEP_HALVINGS = 7
+"""Maximum number of halvings of a step with several special points, or with one that is not located."""
 
 Step = Callable[[ArcPoint, float], ArcPoint]
-"""The point at a length from another one; raises Unsolvable."""
+"""Gives the cycle at a length from another cycle; raises Unsolvable."""
 
 
 def unstable_returns(point: ArcPoint) -> int:
-    """How many multipliers lie outside the circle."""
+    """Number of multipliers outside the unit circle."""
     return int((np.abs(point.returns) > 1).sum())
 
 
 def changes_between(here: ArcPoint, there: ArcPoint) -> tuple[list[SpecialKind], bool]:
-    """(what happens between two cycles of a branch, whether that explains the multipliers that change)."""
+    """(kinds of special points between two cycles, whether they account for the change of the
+    multipliers)."""
     found = []
     if here.rises * there.rises < 0:
         found.append(SpecialKind.fold)
@@ -44,9 +45,9 @@ def changes_between(here: ArcPoint, there: ArcPoint) -> tuple[list[SpecialKind],
 
 
 def _beyond_minus_one(point: ArcPoint) -> int:
-    """Real multipliers below -1."""
+    """Number of real multipliers below -1."""
     h = point.returns
-    return int(((h.real < -1) & (np.abs(h.imag) <= REAL * np.abs(h))).sum())
+    return int(((h.real < -1) & (np.abs(h.imag) <= REAL_MULTIPLIER * np.abs(h))).sum())
 
 
 def _near_one(point: ArcPoint) -> bool:
@@ -55,7 +56,7 @@ def _near_one(point: ArcPoint) -> bool:
 
 def _has_pair(point: ArcPoint) -> bool:
     h = point.returns
-    return bool((np.abs(h.imag) > REAL * np.abs(h)).any())
+    return bool((np.abs(h.imag) > REAL_MULTIPLIER * np.abs(h)).any())
 
 
 def special_points(
@@ -65,14 +66,14 @@ def special_points(
     accuracy: float,
     depth: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """(the special points between two cycles, whether they explain all), in their order along the branch.
+    """(special points between two cycles, in order, whether they account for the change of the multipliers).
 
-    accuracy: of the branch. The step between the cycles is halved where more than one thing happens, or where
-    a special point is not located: close to crushing a prediction over the whole step may leave the model.
+    accuracy: of the branch. The step is halved if several changes lie within it, or if a special point is not
+    located: near crushing a prediction over the whole step may leave the model.
     """
     kinds, explained = changes_between(here, there)
     points = [located(kind, here, there, accuracy) for kind in kinds] if explained else []
-    if depth < MOST_HALVINGS and (not explained or any(point.message for point in points)):
+    if depth < MAX_STEP_HALVINGS and (not explained or any(point.message for point in points)):
         try:
             middle = step(here, arc_between(here, there) / 2)
         except Unsolvable:

@@ -1,0 +1,48 @@
+"""The first point of a curve of special points, from a special point located on a row."""
+
+from dataclasses import replace
+from math import ceil
+
+import numpy as np
+
+from ....determinant.parameter_plane import PlaneAxis
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.orbit_mesh import mesh_of, stages_for
+from ...point import Unsolvable
+from ..arc import tangent_at
+from ..beginning import MIN_MOMENT_AMPLITUDE, MOMENT
+from ..bordered import BorderedMatrix, Scale, moment_of
+from .family import CycleFamily
+from .on_curve import CURVE_ACCURACY, OnCurve
+from .point import SpecialPoint
+
+START_ORDER_SHARE = 0.6
+"""Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
+START_INTERVAL_SHARE = 0.5
+"""Intervals of a curve's first mesh, in units of those that located the special point."""
+
+
+def first_on_curve(
+    special: SpecialPoint, line: str, rows: PlaneAxis, row: float, workspace: NewtonWorkspace
+) -> OnCurve:
+    """The first point of a curve, from a special point located on a row; raises Unsolvable."""
+    orbit = special.orbit
+    if orbit is None:
+        raise Unsolvable(special.message or "the special point has no cycle")
+    mesh = mesh_of(orbit)
+    rough = replace(
+        mesh,
+        order=ceil(START_ORDER_SHARE * mesh.order),
+        intervals=ceil(START_INTERVAL_SHARE * mesh.intervals),
+        stages=stages_for(CURVE_ACCURACY),
+    )
+    orbit = rough.carry(orbit)
+    scale = Scale.of(orbit, line, abs(moment_of(orbit)) * MIN_MOMENT_AMPLITUDE / special.tip_y_max)
+    matrix = BorderedMatrix(orbit, scale, workspace)
+    ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, matrix))
+    place = rows.scaled(row)
+    start = OnCurve(
+        orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
+    )
+    family = CycleFamily.about(special.kind, rows, start, workspace)
+    return family.point(orbit, place, np.array([1.0, 0.0]))
