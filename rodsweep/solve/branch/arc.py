@@ -120,13 +120,13 @@ class ArcPoint:
         name = self.scale.name
         mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
-        there = last.form.rod.coordinate(name)
+        coordinate = last.form.rod.coordinate(name)
         slope = np.append(carried(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        apart = np.append(last.values - self.orbit.values, there - self.at)
+        apart = np.append(last.values - self.orbit.values, coordinate - self.at)
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
@@ -146,56 +146,56 @@ def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) 
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
 
 
-def next_point(here: ArcPoint, accuracy: float) -> ArcPoint:
+def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
-    there, length = advance(partial(_stepped, here, accuracy), here.length, STEPS)
-    return replace(there.solution, length=STEPS.next_length(length, there, STEPS.order))
+    end, length = advance(partial(_stepped, start, accuracy), start.length, STEPS)
+    return replace(end.solution, length=STEPS.next_length(length, end, STEPS.order))
 
 
-def point_at(here: ArcPoint, length: float, accuracy: float) -> ArcPoint:
-    """The cycle at an arc length from `here`; raises Unsolvable if it may lie on another branch."""
-    return STEPS.accepted(_stepped(here, accuracy, length)).solution
+def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
+    """The cycle at an arc length from `start`; raises Unsolvable if it may lie on another branch."""
+    return STEPS.accepted(_stepped(start, accuracy, length)).solution
 
 
-def _stepped(here: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
-    """The cycle at an arc length from `here`; its own next step has the same length.
+def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
+    """The cycle at an arc length from `start`; its own next step has the same length.
 
     Raises Unsolvable.
     """
-    condition = here.condition(length)
-    predicted = here.predicted(length)
+    condition = start.condition(length)
+    predicted = start.predicted(length)
     tolerance = newton_tolerance(accuracy)
-    found = condition.solved(predicted, tolerance, here.workspace, matrix_distance(accuracy))
+    found = condition.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if here.before is None and off <= STEPS.far:
+    if start.before is None and off <= STEPS.far:
         off = STEPS.aim  # the error of a tangent says nothing of the cubic of later steps
-    tangent = tangent_at(found.orbit, here.scale, here.ahead, bordered(found))
-    cosine = float(here.scale.moved(found.orbit, tangent) @ here.ahead)  # both have unit length
-    return Stepped(there_from(here, found, tangent, length, length, accuracy), off, cosine)
+    tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered(found))
+    cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
+    return Stepped(cycle_ahead(start, found, tangent, length, length, accuracy), off, cosine)
 
 
-def arc_between(here: ArcPoint, there: ArcPoint) -> float:
+def arc_between(start: ArcPoint, end: ArcPoint) -> float:
     """Arc length from one cycle to another, projected on the tangent at the first, as in a step."""
-    return float(here.ahead @ (here.scale.place(there.orbit) - here.scale.place(here.orbit)))
+    return float(start.ahead @ (start.scale.place(end.orbit) - start.scale.place(start.orbit)))
 
 
-def there_from(
-    here: ArcPoint, found: Converged, tangent: Array, length: float, ahead: float, accuracy: float
+def cycle_ahead(
+    start: ArcPoint, found: Converged, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a length from `here`, its errors not measured.
+    """A cycle at a length from `start`, its errors not measured.
 
     tangent: of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
-    cycle = judged_by(here.calibration.known, found, accuracy)
-    place = placed(found, here.scale, tangent)
-    curvature = (place.rate - here.rises) / length
-    changed = multiplier_change(cycle.multipliers, here.cycle.multipliers) / length
+    cycle = judged_by(start.calibration.known, found, accuracy)
+    place = placed(found, start.scale, tangent)
+    curvature = (place.rate - start.rises) / length
+    changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(
         cycle=cycle,
         place=replace(place, curvature=curvature, multiplier_rate=changed),
         length=ahead,
-        calibration=here.calibration,
-        unmeasured=here.unmeasured + 1,
-        way=here.way + length,
-        before=PreviousCycle(here.orbit, here.tangent),
+        calibration=start.calibration,
+        unmeasured=start.unmeasured + 1,
+        way=start.way + length,
+        before=PreviousCycle(start.orbit, start.tangent),
     )

@@ -241,9 +241,9 @@ def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
-    there = replace(orbit, form=form, values=orbit.values + change[:-1])
+    result = replace(orbit, form=form, values=orbit.values + change[:-1])
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
-    if not there.period > 0:
+    if not result.period > 0:
         raise Unsolvable("Newton's method lost the cycle")
-    return there
+    return result

@@ -182,9 +182,9 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     for number in range(count):
         if number in arrived:
             continue
-        here = replace(limits, max_cycles=left)
+        remaining = replace(limits, max_cycles=left)
         with part(f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])):
-            curve = follow_branch(number, here)
+            curve = follow_branch(number, remaining)
         arrived.add(curve.end_hopf)
         left -= len(curve.points)
         curves.append(curve)

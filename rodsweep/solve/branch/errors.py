@@ -134,8 +134,8 @@ class BranchCalibration:
         Each error is interpolated geometrically and multiplied by INTERPOLATION_FACTOR.
         """
         mean = [
-            _interpolated(one, there, share)
-            for one, there in (
+            _interpolated(one, another, share)
+            for one, another in (
                 (self.known.space, other.known.space),
                 (self.known.time, other.known.time),
                 (self.parameter, other.parameter),
@@ -194,6 +194,6 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
 def slope_at(path: CyclePath, place: Place) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
     orbit: Orbit = path.orbit
-    there = CyclePath(moved(orbit, place.scale.name, SLOPE_STEP * place.tangent))
-    y, other = path.extrema["tip_y_max"], there.extrema["tip_y_max"]
+    ahead = CyclePath(moved(orbit, place.scale.name, SLOPE_STEP * place.tangent))
+    y, other = path.extrema["tip_y_max"], ahead.extrema["tip_y_max"]
     return abs((other - y) / (SLOPE_STEP * y)) / max(abs(place.rate), 1e-300)

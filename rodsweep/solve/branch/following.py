@@ -15,7 +15,7 @@ from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at, there_from
+from .arc import STEPS, ArcPoint, arc_between, cycle_ahead, next_point, point_at, tangent_at
 from .beginning import HopfBirth, beginning, special_hopf
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve, BranchEnd
@@ -87,15 +87,15 @@ def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcP
         curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
         return curve
     try:
-        here = first()
+        start = first()
     except Unsolvable as why:
         curve.end(BranchEnd(_end_beside(curve, EndReason.no_cycle_found, str(why)), complete=False))
         return curve
-    outside = _beyond(here, limits)
+    outside = _beyond(start, limits)
     if outside >= 0:
         curve.end(BranchEnd(_end_beside(curve, limits.reasons[outside]), complete=True))
         return curve
-    return followed_from(curve, here, limits)
+    return followed_from(curve, start, limits)
 
 
 def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
@@ -109,13 +109,14 @@ def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> 
     return curve
 
 
-def _place_on(curve: BranchCurve, here: ArcPoint, limits: BranchLimits) -> SolvePosition:
+def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
     """Position of a branch's last cycle, and the fraction of the branch's work that is done."""
-    name = here.scale.name
-    aim = limits.ends[1 if here.ahead[-1] > 0 else 0]
-    there, end = PARAMETERS[name].value(here.at), PARAMETERS[name].value(aim)
-    words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
-    return SolvePosition(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
+    name = start.scale.name
+    aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
+    value = PARAMETERS[name].value(start.at)
+    aim_value = PARAMETERS[name].value(aim)
+    words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
+    return SolvePosition(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), start.at, aim))
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
@@ -137,27 +138,27 @@ def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
     return 0 if point.at < low else 1 if point.at > high else -1
 
 
-def _next(trail: Trail, here: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The next cycle, added to the branch with the special points before it; or the end of the branch."""
     curve = trail.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(end_at(here, EndReason.list_full), complete=False, full=True)
+        return BranchEnd(end_at(start, EndReason.list_full), complete=False, full=True)
     try:
-        there = next_point(here, limits.accuracy)
-        if _passed_mirror_image(here, there, limits):
-            return (_end_at_hopf if here.orbit.symmetric else _end_at_breaking)(here, there, limits)
-        outside = _beyond(there, limits)
-        range_end = _range_end(here, limits, outside) if outside >= 0 else None
+        end = next_point(start, limits.accuracy)
+        if _passed_mirror_image(start, end, limits):
+            return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
+        outside = _beyond(end, limits)
+        range_end = _range_end(start, limits, outside) if outside >= 0 else None
         if range_end is not None:
-            there = _at_range_end(here, there, range_end, limits)
-        if stretch_at(there) <= 0:
-            return BranchEnd(located(SpecialKind.left_the_model, here, there, limits.accuracy), complete=True)
-        _add_special_points(curve, here, there, limits)
-        trail.append(there)
-        last = trail.settle(range_end) if range_end is not None or due(there) else there
+            end = _at_range_end(start, end, range_end, limits)
+        if stretch_at(end) <= 0:
+            return BranchEnd(located(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True)
+        _add_special_points(curve, start, end, limits)
+        trail.append(end)
+        last = trail.settle(range_end) if range_end is not None or due(end) else end
     except Unsolvable as why:
         message = f"no cycle is found beyond: {why}"
-        return BranchEnd(end_at(here, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(end_at(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
@@ -166,77 +167,77 @@ def _next(trail: Trail, here: ArcPoint, limits: BranchLimits) -> ArcPoint | Bran
     )
 
 
-def _add_special_points(curve: BranchCurve, here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> None:
+def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
     """Adds the special points between two cycles; the second is not among the branch's cycles yet."""
 
     def step(point: ArcPoint, length: float) -> ArcPoint:
         return point_at(point, length, limits.accuracy)
 
-    curve.add_found(*special_points(here, there, step, limits.accuracy))
+    curve.add_found(*special_points(start, end, step, limits.accuracy))
 
 
-def _passed_mirror_image(here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> bool:
+def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
     """Whether the branch passes its own mirror image between two cycles."""
-    if here.orbit.symmetric:
-        return turned_round(here, there)
-    return mirrored(here, there, limits.breakings, limits.accuracy)
+    if start.orbit.symmetric:
+        return turned_round(start, end)
+    return mirrored(start, end, limits.breakings, limits.accuracy)
 
 
-def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
+def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
     """Whether the bending moments at t = 0 have changed sign between two cycles, as they do beyond a Hopf
     point.
 
     The tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
     """
-    mesh, layout = mesh_of(there.orbit), there.orbit.form.layout
-    one = layout.field(mesh.carry(here.orbit).start, "m3")
-    return float(one @ layout.field(there.orbit.start, "m3")) < 0
+    mesh, layout = mesh_of(end.orbit), end.orbit.form.layout
+    one = layout.field(mesh.carry(start.orbit).start, "m3")
+    return float(one @ layout.field(end.orbit.start, "m3")) < 0
 
 
-def _end_at_hopf(here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
-    shorter = arc_between(here, there) / 2
-    if here.cycle.measures.tip_y_max > SMALL_CYCLE:
+    shorter = arc_between(start, end) / 2
+    if start.cycle.measures.tip_y_max > SMALL_CYCLE:
         if shorter < STEPS.shortest:
             raise Unsolvable("the bending moments change sign within the shortest step")
-        return replace(here, length=shorter)
+        return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the moment.
-    tangent, scale = here.tangent, here.scale
-    share = here.moment / (2 * here.ahead[0] * scale.moment)
-    at = here.at - share * tangent[-1]
-    period = here.orbit.period - share * tangent[-2]
+    tangent, scale = start.tangent, start.scale
+    share = start.moment / (2 * start.ahead[0] * scale.moment)
+    at = start.at - share * tangent[-1]
+    period = start.orbit.period - share * tangent[-2]
     rounding = max(HOPF_ROUNDING, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = HOPF_WITHIN * abs(here.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
-        period_tolerance = HOPF_WITHIN * abs(here.orbit.period - hopf.period)
+        tolerance = HOPF_WITHIN * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
+        period_tolerance = HOPF_WITHIN * abs(start.orbit.period - hopf.period)
         period_tolerance += HOPF_PERIOD_WITHIN * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
     why = "cycles shrink to zero amplitude where no Hopf point is known"
-    return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
 
 
-def _end_at_breaking(here: ArcPoint, there: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The symmetry breaking between two cycles where the branch ends; else the first, for a shorter step."""
-    which = symmetric_end(here, there, limits.breakings, limits.accuracy)
+    which = symmetric_end(start, end, limits.breakings, limits.accuracy)
     if which is None:
-        return replace(here, length=arc_between(here, there) / 2)
+        return replace(start, length=arc_between(start, end) / 2)
     if which >= 0:
         breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric at a cycle of a branch that was not followed"
-    return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
 
 
-def _range_end(here: ArcPoint, limits: BranchLimits, which: int) -> Condition:
+def _range_end(start: ArcPoint, limits: BranchLimits, which: int) -> Condition:
     """The condition for the cycle at an end of the range."""
-    return Condition(here.scale, ALONG_PARAMETER, limits.ends[which] / here.scale.coordinate)
+    return Condition(start.scale, ALONG_PARAMETER, limits.ends[which] / start.scale.coordinate)
 
 
-def _at_range_end(here: ArcPoint, there: ArcPoint, range_end: Condition, limits: BranchLimits) -> ArcPoint:
+def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: BranchLimits) -> ArcPoint:
     """The cycle at an end of the range, between two cycles; raises Unsolvable."""
-    scale, segment = here.scale, Segment(here, there)
+    scale, segment = start.scale, Segment(start, end)
 
     def beyond(length: float) -> float:
         return -range_end.missed(segment.predicted(length))
@@ -245,6 +246,6 @@ def _at_range_end(here: ArcPoint, there: ArcPoint, range_end: Condition, limits:
     length = zero_along(beyond, ends, segment.length, 0.0, RANGE_END_BRACKET)
     tolerance = newton_tolerance(limits.accuracy)
     distance = matrix_distance(limits.accuracy)
-    found = range_end.solved(segment.predicted(length), tolerance, here.workspace, distance)
-    tangent = tangent_at(found.orbit, scale, here.ahead, bordered(found))
-    return there_from(here, found, tangent, length, length, limits.accuracy)
+    found = range_end.solved(segment.predicted(length), tolerance, start.workspace, distance)
+    tangent = tangent_at(found.orbit, scale, start.ahead, bordered(found))
+    return cycle_ahead(start, found, tangent, length, length, limits.accuracy)

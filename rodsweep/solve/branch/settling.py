@@ -129,9 +129,9 @@ def settled(
 
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """A cycle solved on the mesh of a later cycle, with errors of that cycle; raises Unsolvable."""
-    there = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
-    there = _with_errors_between(end, there, end, 1.0, accuracy)
-    return refined(there, accuracy)
+    solved = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
+    solved = _with_errors_between(end, solved, end, 1.0, accuracy)
+    return refined(solved, accuracy)
 
 
 def _with_errors_between(

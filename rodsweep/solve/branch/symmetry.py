@@ -133,58 +133,59 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     return first_point(first, scale, border, abs(change) / scale.moment, accuracy)
 
 
-def mirrored(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:
+def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:
     """Whether the asymmetry has changed sign between two cycles, or has almost vanished.
 
     On a mesh that lacks the symmetry of the cycle, the corner where the branches cross is rounded off: the
     parameter then turns back beside a known symmetry breaking before the asymmetry vanishes.
     """
-    start = asymmetry(here.orbit)
-    other = there.orbit.on(here.orbit.form.mesh, there.orbit.intervals, there.orbit.stages)
-    if float(asymmetry(other) @ start) < LOST_ASYMMETRY * float(start @ start):
+    reference = asymmetry(start.orbit)
+    other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
+    if float(asymmetry(other) @ reference) < LOST_ASYMMETRY * float(reference @ reference):
         return True
-    return here.rises * there.rises < 0 and _nearly_symmetric(here) and _nearest(here, known, accuracy) >= 0
+    return start.rises * end.rises < 0 and _nearly_symmetric(start) and _nearest(start, known, accuracy) >= 0
 
 
-def _relative_asymmetry(here: ArcPoint) -> float:
+def _relative_asymmetry(start: ArcPoint) -> float:
     """Largest asymmetry of a cycle in units of its largest moment."""
-    orbit = here.orbit
+    orbit = start.orbit
     return float(np.abs(asymmetry(orbit)).max() / np.abs(_moments(orbit.points, orbit)).max())
 
 
-def _nearly_symmetric(here: ArcPoint) -> bool:
-    return _relative_asymmetry(here) <= SMALL_ASYMMETRY
+def _nearly_symmetric(start: ArcPoint) -> bool:
+    return _relative_asymmetry(start) <= SMALL_ASYMMETRY
 
 
-def symmetric_end(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int | None:
+def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int | None:
     """Index of the known symmetry breaking that lies between two cycles, -1 for none.
 
     None if the cycles are too far away to decide. Raises Unsolvable if no shorter step is allowed.
     """
-    which = _nearest(here, known, accuracy) if _nearly_symmetric(here) else -1
-    if which >= 0 or _relative_asymmetry(here) <= MIN_ASYMMETRY:
+    which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
+    if which >= 0 or _relative_asymmetry(start) <= MIN_ASYMMETRY:
         return which
-    if arc_between(here, there) / 2 < STEPS.shortest:
+    if arc_between(start, end) / 2 < STEPS.shortest:
         raise Unsolvable("the motion becomes its mirror image within the shortest step")
     return None
 
 
-def _nearest(here: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int:
+def _nearest(start: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int:
     """Index of the symmetry breaking at the extrapolated place where the asymmetry vanishes, -1 for none."""
-    orbit = here.orbit
-    start, change = asymmetry(orbit), asymmetry(replace(orbit, values=here.tangent[:-1]))
-    falls = -float(start @ change)
+    orbit = start.orbit
+    present = asymmetry(orbit)
+    change = asymmetry(replace(orbit, values=start.tangent[:-1]))
+    falls = -float(present @ change)
     if falls <= 0:
         return -1
     # Parameter and period are quadratic in the asymmetry.
-    period, at = (orbit.period, here.at) + float(start @ start) / falls / 2 * here.tangent[-2:]
+    period, at = (orbit.period, start.at) + float(present @ present) / falls / 2 * start.tangent[-2:]
     for which, breaking in enumerate(known):
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
-        place = symmetric.form.rod.coordinate(here.scale.name)
-        tolerance = BREAKING_WITHIN * abs(here.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
-        period_tolerance = BREAKING_WITHIN * abs(here.orbit.period - symmetric.period)
+        place = symmetric.form.rod.coordinate(start.scale.name)
+        tolerance = BREAKING_WITHIN * abs(start.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
+        period_tolerance = BREAKING_WITHIN * abs(start.orbit.period - symmetric.period)
         period_tolerance += max(CLOSE_PERIOD, accuracy) * symmetric.period
         if abs(at - place) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which

@@ -231,11 +231,11 @@ def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -
         if not min(a.place, b.place) <= place <= max(a.place, b.place) or not _near(limits, a, b, one):
             continue
         try:
-            there = limits.on_row(a, b, place)
+            crossing = limits.on_row(a, b, place)
         except Unsolvable:
             continue
-        if abs(there.orbit.period / one.period - 1) <= EQUAL_PERIOD:
-            best = min(best, abs(limits.line.scaled(there.at) - at))
+        if abs(crossing.orbit.period / one.period - 1) <= EQUAL_PERIOD:
+            best = min(best, abs(limits.line.scaled(crossing.at) - at))
     return best
 
 

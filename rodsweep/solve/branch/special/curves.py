@@ -104,14 +104,14 @@ class CurveLimits:
             start, place = self._predicted(behind, self._step_before_crushing(behind, length))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
             across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
-        there = self._family(last).point(start, place, across, slope, rates, last)
-        mesh = mesh_of(there.orbit)
+        point = self._family(last).point(start, place, across, slope, rates, last)
+        mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
-        off = relative_change(predicted, there.orbit.values - predicted.values)
+        off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
-            return Stepped(there, min(off, CURVE_STEPS.far), 1.0)
-        one, other = last.step_from(behind[-2]), there.step_from(last)
-        return Stepped(there, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
+            return Stepped(point, min(off, CURVE_STEPS.far), 1.0)
+        one, other = last.step_from(behind[-2]), point.step_from(last)
+        return Stepped(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: OnCurve) -> CycleFamily:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)
@@ -165,12 +165,12 @@ class CurveLimits:
             return None
         try:
             if margin in ROW_EDGES:
-                there = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
+                point = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
             else:
-                there = self._where_zero(inner, outer, margin, ends)
+                point = self._where_zero(inner, outer, margin, ends)
         except Unsolvable:
             return None
-        return replace(there, errors=outer.errors and outer.errors.carried)
+        return replace(point, errors=outer.errors and outer.errors.carried)
 
     def _where_zero(self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]) -> OnCurve:
         """The point between two at which a margin is 0. ends: margin at the two points. Raises Unsolvable."""
@@ -182,10 +182,10 @@ class CurveLimits:
 
         return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
 
-    def closes(self, behind: Sequence[OnCurve], there: OnCurve) -> bool:
+    def closes(self, behind: Sequence[OnCurve], point: OnCurve) -> bool:
         """Whether the first point of the curve lies between its last point and the next."""
         first, last = behind[0], behind[-1]
-        step, back = there.step_from(last), there.step_from(first)
+        step, back = point.step_from(last), point.step_from(first)
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > MIN_LOOP_POINTS and 0 <= passed <= 1 and near

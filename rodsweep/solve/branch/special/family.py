@@ -143,14 +143,14 @@ class CycleFamily:
             finer = replace(mesh, order=mesh.order + CURVE_MORE_ORDERS, intervals=longer)
             if not finer.allowed:
                 break
-            here = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
-            off = abs(here.at - last.at - slope * (here.place - last.place))
-            error = CURVE_ERROR_FACTOR * off + SECANT_ERROR * abs(here.at)
-            if error <= CURVE_ACCURACY * abs(here.at):
+            fine = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
+            off = abs(fine.at - last.at - slope * (fine.place - last.place))
+            error = CURVE_ERROR_FACTOR * off + SECANT_ERROR * abs(fine.at)
+            if error <= CURVE_ACCURACY * abs(fine.at):
                 return replace(
                     last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
                 )
-            last = here
+            last = fine
         raise Unsolvable("no mesh is fine enough")
 
 
@@ -176,22 +176,22 @@ class _SecantAcross:
     def next(self) -> OnCurve | None:
         """The point of the curve, once a step is short enough; None while more steps are needed. Raises
         Unsolvable."""
-        here = self._solved_here()
+        present = self._solved_here()
         enough = self.trusted
-        if own := self._rates_since(here):
+        if own := self._rates_since(present):
             self.rates, self.trusted, enough = own, MAX_LINEAR_STEP, MAX_LINEAR_PRODUCT / own.span
         rates = self.rates
-        step = -here.test / rates.test if rates else FIRST_SECANT
+        step = -present.test / rates.test if rates else FIRST_SECANT
         if not abs(step) <= LONGEST_SECANT_STEP:
             raise Unsolvable("the secant method leaves the curve")
         if rates and abs(step) <= enough:
             return self._point(step, replace(rates, contraction=self.near.contraction))
         if self.before:  # the vectors are extrapolated along a line, like the cycle
-            change = (here.vectors - self.before.vectors) / (here.at - self.before.at)
-            self.near.predict(here.vectors + step * change)
+            change = (present.vectors - self.before.vectors) / (present.at - self.before.at)
+            self.near.predict(present.vectors + step * change)
         if rates:
             self.orbit = self._moved(step, rates)
-        self.before, self.at = here, self.at + step
+        self.before, self.at = present, self.at + step
         return None
 
     def _solved_here(self) -> _CycleAcross:
@@ -206,17 +206,17 @@ class _SecantAcross:
         self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
 
-    def _rates_since(self, here: _CycleAcross) -> Across | None:
+    def _rates_since(self, present: _CycleAcross) -> Across | None:
         """Derivatives across the curve from the last two cycles; None if there is one only or both are too
         near."""
         before = self.before
-        if before is None or abs(here.at - before.at) < MIN_SPAN or here.test == before.test:
+        if before is None or abs(present.at - before.at) < MIN_SPAN or present.test == before.test:
             return None
-        name, span = self.family.scale.name, here.at - before.at
-        one, other = before.orbit, here.orbit
+        name, span = self.family.scale.name, present.at - before.at
+        one, other = before.orbit, present.orbit
         change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
         orbit = np.append(other.values - one.values, change) / span
-        return Across(self.way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
+        return Across(self.way, (present.test - before.test) / span, orbit, mesh_of(one), abs(span))
 
     def _moved(self, step: float, rates: Across) -> Orbit:
         """The last cycle moved by a step across the curve."""

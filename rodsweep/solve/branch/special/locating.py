@@ -64,32 +64,32 @@ def through_minus_one(orbit: Orbit) -> SpecialKind:
 class Segment:
     """The part of a branch from one cycle to the next, solved on any mesh."""
 
-    def __init__(self, here: ArcPoint, there: ArcPoint) -> None:
-        self.here = here
-        self.there = there
-        self.length = arc_between(here, there)
-        self._back = float(there.ahead @ (there.scale.place(there.orbit) - there.scale.place(here.orbit)))
+    def __init__(self, start: ArcPoint, end: ArcPoint) -> None:
+        self.start = start
+        self.end = end
+        self.length = arc_between(start, end)
+        self._back = float(end.ahead @ (end.scale.place(end.orbit) - end.scale.place(start.orbit)))
         self._known: tuple[float, Orbit, Array] | None = None
 
     def predicted(self, length: float) -> Orbit:
-        """Orbit at a length from `here`, on the cubic through both cycles and on the mesh of `there`."""
-        return self.there.predicted(-self._back * (1 - length / self.length))
+        """Orbit at a length from `start`, on the cubic through both cycles and on the mesh of `end`."""
+        return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
         """Continues on another mesh; the last cycle found is not used as a start there."""
         self.mesh, self._known = mesh, None
 
     def at(self, length: float, distance: float = CYCLE_TOLERANCE) -> Converged:
-        """The cycle at a length from `here`, with a matrix within a relative distance; raises Unsolvable."""
-        scale, name = self.here.scale, self.here.scale.name
+        """The cycle at a length from `start`, with a matrix within a relative distance; raises Unsolvable."""
+        scale, name = self.start.scale, self.start.scale.name
         if self._known is None:
             start = self.mesh.carry(self.predicted(length))
         else:
             last, orbit, tangent = self._known
             start = moved(orbit, name, (length - last) * tangent)
-        found = self.here.condition(length).solved(start, CYCLE_TOLERANCE, self.here.workspace, distance)
-        tangent = tangent_at(found.orbit, scale, self.here.ahead, bordered(found))
-        rate = float(scale.moved(found.orbit, tangent) @ self.here.ahead)
+        found = self.start.condition(length).solved(start, CYCLE_TOLERANCE, self.start.workspace, distance)
+        tangent = tangent_at(found.orbit, scale, self.start.ahead, bordered(found))
+        rate = float(scale.moved(found.orbit, tangent) @ self.start.ahead)
         self._known = length, found.orbit, tangent / rate
         return found
 
@@ -97,7 +97,7 @@ class Segment:
         """Derivative of the parameter along the branch at the last cycle found."""
         if self._known is None:
             raise ValueError("nothing is found yet")
-        return float(self._known[2][-1]) / self.here.scale.coordinate
+        return float(self._known[2][-1]) / self.start.scale.coordinate
 
 
 def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> float:
@@ -106,7 +106,7 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         return segment.rises()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
-    h = BorderedMatrix(found.orbit, segment.here.scale, found.workspace).returns
+    h = BorderedMatrix(found.orbit, segment.start.scale, found.workspace).returns
     real = np.abs(h.imag) <= REAL_MULTIPLIER * np.abs(h)
     if kind == through_minus_one(found.orbit):
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
@@ -117,15 +117,15 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
     raise Unsolvable("the multiplier that crosses the unit circle is lost")
 
 
-def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float) -> SpecialPoint:
+def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
     """The special point of a kind between two cycles; if it is not found, its error is the distance of the
     two."""
     aim = min(accuracy, LOCATION_ACCURACY)
     try:
-        segment = Segment(here, there)
-        segment.start_on(mesh_of(there.orbit))
+        segment = Segment(start, end)
+        segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
-        mesh = there.calibration.planned_for_parameter(FIRST_MESH_SHARE * aim)
+        mesh = end.calibration.planned_for_parameter(FIRST_MESH_SHARE * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         last, point = None, None
         for _ in range(MAX_MESH_PAIRS + 1):
@@ -133,7 +133,7 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
             length, found, slope = _zero(kind, segment, length, slope)
             last, point = point, _point_at(kind, found)
             if last is not None:
-                point = _with_errors(point, last, here, there)
+                point = _with_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
             mesh = replace(
@@ -146,18 +146,18 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
         if point is None or np.isnan(point.error):
             raise Unsolvable("no mesh is fine enough")
     except Unsolvable as why:
-        return _between(kind, here, there, f"the {kind.name} is not located: {why}")
+        return _between(kind, start, end, f"the {kind.name} is not located: {why}")
     return point
 
 
-def _with_errors(point: SpecialPoint, last: SpecialPoint, here: ArcPoint, there: ArcPoint) -> SpecialPoint:
+def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
     """A special point with errors: the differences from the same point on a coarser mesh, with a safety
     factor.
 
     Period and size also have the error of the last secant step in arc length.
     """
     place = SECANT_END_AT_FOLD if point.kind is SpecialKind.fold else SECANT_END
-    one, other = here.cycle.measures, there.cycle.measures
+    one, other = start.cycle.measures, end.cycle.measures
     period = LOCATION_ERROR_FACTOR * abs(point.period - last.period) + place * abs(one.period - other.period)
     size = LOCATION_ERROR_FACTOR * abs(point.tip_y_max - last.tip_y_max) + place * abs(
         one.tip_y_max - other.tip_y_max
@@ -182,12 +182,12 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
     )
 
 
-def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -> SpecialPoint:
+def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
     """A special point that is known only to lie between two cycles."""
-    name = here.scale.name
-    measures = there.cycle.measures
-    before = here.cycle.measures
-    at, other = (getattr(point.orbit.form.rod, name) for point in (there, here))
+    name = start.scale.name
+    measures = end.cycle.measures
+    before = start.cycle.measures
+    at, other = (getattr(point.orbit.form.rod, name) for point in (end, start))
     return SpecialPoint(
         kind=kind,
         at=at,

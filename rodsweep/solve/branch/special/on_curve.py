@@ -40,8 +40,8 @@ class Across:
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit
-        there = replace(self.mesh.carry(orbit), values=self.orbit[:-1])
-        return np.append(mesh.carry(there).values, self.orbit[-1])
+        direction = replace(self.mesh.carry(orbit), values=self.orbit[:-1])
+        return np.append(mesh.carry(direction).values, self.orbit[-1])
 
 
 @dataclass(frozen=True, eq=False)

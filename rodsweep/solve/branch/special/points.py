@@ -29,18 +29,18 @@ def unstable_returns(point: ArcPoint) -> int:
     return int((np.abs(point.returns) > 1).sum())
 
 
-def changes_between(here: ArcPoint, there: ArcPoint) -> tuple[list[SpecialKind], bool]:
+def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
     """(kinds of special points between two cycles, whether they account for the change of the
     multipliers)."""
     found = []
-    if here.rises * there.rises < 0:
+    if start.rises * end.rises < 0:
         found.append(SpecialKind.fold)
-    if (_beyond_minus_one(here) - _beyond_minus_one(there)) % 2:
-        found.append(through_minus_one(here.orbit))
-    change = abs(unstable_returns(there) - unstable_returns(here))
-    slack = 1 if _near_one(here) or _near_one(there) else 0
+    if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
+        found.append(through_minus_one(start.orbit))
+    change = abs(unstable_returns(end) - unstable_returns(start))
+    slack = 1 if _near_one(start) or _near_one(end) else 0
     if not found and change - slack > 1:
-        return [SpecialKind.torus], change == 2 and all(map(_has_pair, (here, there)))
+        return [SpecialKind.torus], change == 2 and all(map(_has_pair, (start, end)))
     return found, len(found) <= 1 and abs(change - len(found)) <= slack
 
 
@@ -60,8 +60,8 @@ def _has_pair(point: ArcPoint) -> bool:
 
 
 def special_points(
-    here: ArcPoint,
-    there: ArcPoint,
+    start: ArcPoint,
+    end: ArcPoint,
     step: Step,
     accuracy: float,
     depth: int = 0,
@@ -71,15 +71,15 @@ def special_points(
     accuracy: of the branch. The step is halved if several changes lie within it, or if a special point is not
     located: near crushing a prediction over the whole step may leave the model.
     """
-    kinds, explained = changes_between(here, there)
-    points = [located(kind, here, there, accuracy) for kind in kinds] if explained else []
+    kinds, explained = changes_between(start, end)
+    points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []
     if depth < MAX_STEP_HALVINGS and (not explained or any(point.message for point in points)):
         try:
-            middle = step(here, arc_between(here, there) / 2)
+            middle = step(start, arc_between(start, end) / 2)
         except Unsolvable:
             pass
         else:
-            first, first_explained = special_points(here, middle, step, accuracy, depth + 1)
-            second, second_explained = special_points(middle, there, step, accuracy, depth + 1)
+            first, first_explained = special_points(start, middle, step, accuracy, depth + 1)
+            second, second_explained = special_points(middle, end, step, accuracy, depth + 1)
             return first + second, first_explained and second_explained
-    return points or [located(kind, here, there, accuracy) for kind in kinds], explained
+    return points or [located(kind, start, end, accuracy) for kind in kinds], explained
