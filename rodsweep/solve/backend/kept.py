@@ -19,7 +19,7 @@ Key = TypeVar("Key", bound=Hashable)
 Object = TypeVar("Object", bound=Destroyable)
 
 
-class Kept(Generic[Key, Object]):
+class LruPool(Generic[Key, Object]):
     """A pool of objects made by `create` from keys; a full pool drops the least recently used object."""
 
     def __init__(self, create: Callable[[Key], Object], most: int) -> None:
@@ -50,7 +50,7 @@ class Kept(Generic[Key, Object]):
             self._objects.popitem()[1].destroy()
 
 
-_pools: WeakSet[Kept[Any, Any]] = WeakSet()
+_pools: WeakSet[LruPool[Any, Any]] = WeakSet()
 
 
 def forget_all() -> None:

@@ -26,12 +26,12 @@ from ..orbit.matrix.phase import phase, phase_change, phase_row
 from ..orbit.matrix.right_sides import right_sides
 from ..orbit.matrix.substitution import substitute
 from ..orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
-from ..orbit.newton import MOST_ITERATIONS, Converged, relative_change
+from ..orbit.newton import MAX_ORBIT_ITERATIONS, Converged, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
 from ..point import Unsolvable
 
-LONGEST_STEP = 0.5
+LONGEST_CORRECTION = 0.5
 """Largest relative change of an orbit in one iteration; a larger one means that no cycle is near."""
 SLOW_CONTRACTION = 0.1
 """Ratio of successive corrections above which a new matrix is assembled."""
@@ -213,10 +213,10 @@ class Condition:
         """
         matrix, off, last = BorderedMatrix(orbit, self.scale, workspace), 0.0, np.inf
         step = matrix.step(self.border, self.missed(orbit))
-        for _ in range(MOST_ITERATIONS):
+        for _ in range(MAX_ORBIT_ITERATIONS):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
-            if not change <= LONGEST_STEP:
+            if not change <= LONGEST_CORRECTION:
                 raise Unsolvable("there is no cycle near on the branch")
             orbit, off = moved(orbit, self.scale.name, step), off + change
             rate = change / last if off > change else np.inf  # known from the second step with one matrix on

@@ -168,11 +168,9 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
-    """Adds the special points between two cycles; the second is not among the branch's cycles yet."""
+    """Adds the special points between two cycles, of which the second is not stored yet."""
 
-    def step(point: ArcPoint, length: float) -> ArcPoint:
-        return point_at(point, length, limits.accuracy)
-
+    step = partial(point_at, accuracy=limits.accuracy)
     curve.add_found(*special_points(start, end, step, limits.accuracy))
 
 
@@ -202,8 +200,8 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the moment.
-    tangent, scale = start.tangent, start.scale
-    share = start.moment / (2 * start.ahead[0] * scale.moment)
+    tangent = start.tangent
+    share = start.moment / (2 * start.ahead[0] * start.scale.moment)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(HOPF_ROUNDING, limits.accuracy)
@@ -245,7 +243,7 @@ def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: 
     ends = beyond(0.0), beyond(segment.length)
     length = zero_along(beyond, ends, segment.length, 0.0, RANGE_END_BRACKET)
     tolerance = newton_tolerance(limits.accuracy)
-    distance = matrix_distance(limits.accuracy)
-    found = range_end.solved(segment.predicted(length), tolerance, start.workspace, distance)
+    predicted = segment.predicted(length)
+    found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(limits.accuracy))
     tangent = tangent_at(found.orbit, scale, start.ahead, bordered(found))
     return cycle_ahead(start, found, tangent, length, length, limits.accuracy)

@@ -21,19 +21,21 @@ from ...model.rod import Rod
 from ...watch import SolvePosition, report
 from ..continuation.follower import CurveStop, StepControl, Stepped, follow
 from ..point import FAILURES, Unsolvable
-from .generalised import FINEST, GeneralisedHopfPoint, HopfCurve
+from .generalised import COARSEST_FOR_LOCATING, GeneralisedHopfPoint, HopfCurve
 
-STEPS = StepControl(first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000)
+BAUTIN_STEPS = StepControl(
+    first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000
+)
 """Step lengths in units of the ranges; the prediction error is in units of the step."""
-MOST_SECANTS = 10
+MAX_BAUTIN_SECANTS = 10
 """Maximum number of secant steps to a generalised Hopf point."""
 PROBE = 1e-3
 """First secant step along the Hopf curve, in units of the ranges."""
-SETTLED = 1e-12
+SECANT_TOLERANCE = 1e-12
 """Length of a secant step, in units of the ranges, at which the iteration has converged."""
 ON_EDGE = 1e-12
 """Distance from an end of a range, in units of the range, below which a point lies on this end."""
-LEAST_LOOP = 5
+MIN_BAUTIN_LOOP = 5
 """Minimum number of points of a closed curve."""
 SAME_POINT = 1e-6
 """Distance, in units of the ranges, below which two points are the same."""
@@ -112,18 +114,19 @@ class BautinSpace:
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, FINEST))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, COARSEST_FOR_LOCATING))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
-        values_there = np.empty(3)
+        found_values = np.empty(3)
+        found_values[free] = point.values
+        found_values[held] = values[self.axes[held].name]
         errors = np.zeros(3)
-        values_there[free], errors[free] = point.values, point.errors
-        values_there[held] = values[self.axes[held].name]
+        errors[free] = point.errors
         found = BautinCurvePoint(
-            values=values_there, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
+            values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
         )
-        return _Place(self.scaled(values_there, point.frequency), found)
+        return _Place(self.scaled(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_Place], length: float) -> Stepped[_Place]:
         """The next point, predicted along the chord of the last two points; raises Unsolvable."""
@@ -134,7 +137,7 @@ class BautinSpace:
         try:
             there, on_edge = self._within(here, length * tangent)
         except ValueError as why:
-            raise Unsolvable(f"the step leaves the rods: {why}") from why
+            raise Unsolvable(f"the step leaves the range of possible rods: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return Stepped(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
@@ -166,7 +169,7 @@ class BautinSpace:
         """Whether the curve is closed: its first point lies between the last point and the next."""
         first, last, step = behind[0].v, behind[-1].v, float(np.linalg.norm(there.v - behind[-1].v))
         near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
-        return len(behind) > LEAST_LOOP and bool(near)
+        return len(behind) > MIN_BAUTIN_LOOP and bool(near)
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
@@ -174,16 +177,16 @@ class BautinSpace:
         before = 0.0
         s = PROBE
         last = hopf.at(start, way, hopf.accuracy).share
-        for _ in range(MOST_SECANTS):
+        for _ in range(MAX_BAUTIN_SECANTS):
             here = hopf.at(start + s * way, way, hopf.accuracy)
             if here.share == last:
                 break
             slope = (here.share - last) / (s - before)
             step = -here.share / slope
-            if not abs(s + step) < STEPS.longest:
+            if not abs(s + step) < BAUTIN_STEPS.longest:
                 break
             along = here.coefficients.landau_error / abs(slope)
-            if abs(step) <= max(SETTLED, along):
+            if abs(step) <= max(SECANT_TOLERANCE, along):
                 return hopf.as_point(here, 0, way * (along + abs(step)))
             last, before, s = here.share, s, s + step
         raise Unsolvable("no generalised Hopf point is found near")
@@ -218,9 +221,9 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEnd]:
     """Points from the start to `space.side`, requested third values included, and why the curve ends."""
-    if not 0 < start.v[2] + space.side * STEPS.shortest < 1:
+    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
         return [start], BautinEnd.range_end
-    curve = follow(space, start, STEPS, _report)
+    curve = follow(space, start, BAUTIN_STEPS, _report)
     places = curve.solutions[:1]
     for here, there in pairwise(curve.solutions):
         try:

@@ -16,21 +16,21 @@ from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
-from .normal_form import SAFETY, NormalForm, a_third_finer, elements_for, normal_form_on
+from .normal_form import ACCURACY_SHARE, NormalForm, a_third_finer, elements_for, normal_form_on
 
-MORE_ORDERS = 4
+COEFFICIENT_MORE_ORDERS = 4
 """Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""
-MOST_REFINED = 4
+MAX_REFINEMENTS = 4
 """Maximum number of refinements of the first mesh."""
 COARSEST = 1e-2
 """Coarsest relative accuracy of the first mesh, on which the eigenvalue must still be identified."""
-ROUNDING = 1.5e-14
+COEFFICIENT_ROUNDING = 1.5e-14
 """Relative rounding error of c, in units of the condition number of the eigenvalue. Most rods have 1e-15;
 the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
 SENSITIVITY = 20.0
 """Bound on |dc/dF|/|c|, in units of |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
 high modes of rods soft in shear; where a window of flutter closes it is 1."""
-BESIDE = 1e-5
+FORCE_STEP = 1e-5
 """Relative difference step in the force for the second derivative of w(F)."""
 
 
@@ -83,11 +83,11 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = elements_for(rod, w, min(accuracy / SAFETY, COARSEST))
+    start = elements_for(rod, w, min(accuracy / ACCURACY_SHARE, COARSEST))
     fine, change, rounding = normal_form_on(start, rod, w, COARSEST), math.inf, 0.0
-    for number in range(MOST_REFINED):
+    for number in range(MAX_REFINEMENTS):
         here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
-        more = a_third_finer(here) if number else Elements(here.edges, here.order + MORE_ORDERS)
+        more = a_third_finer(here) if number else Elements(here.edges, here.order + COEFFICIENT_MORE_ORDERS)
         coarse, fine = fine, normal_form_on(more, rod, w, accuracy)
         change, rounding = abs(fine.c - coarse.c) / abs(fine.c), _rounding(fine)
         if change <= max(accuracy, rounding):
@@ -95,7 +95,7 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     slope, bend = _slope(rod, w)
     if rod.standard:
         off = abs(fine.slope - slope) / abs(slope)
-    else:  # the slope of the root is a difference there, less accurate than that of a mesh
+    else:  # for an arm the root's slope is a difference quotient, less accurate than the mesh's slope
         slope = fine.slope
         off = abs(fine.slope - coarse.slope) / abs(slope)
     moved = (
@@ -131,7 +131,7 @@ def _with_errors(
 
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root of D at w."""
-    step = BESIDE * abs(rod.F)
+    step = FORCE_STEP * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
     _, before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
@@ -141,4 +141,4 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
 def _rounding(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue."""
     sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
-    return ROUNDING * sizes / abs(normal.w)
+    return COEFFICIENT_ROUNDING * sizes / abs(normal.w)

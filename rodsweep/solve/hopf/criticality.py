@@ -23,32 +23,32 @@ SEARCHES_KEPT = 8
 class CriticalityStatus(PointStatus):
     """Outcome for one rod: of the search for Hopf points and of the coefficients."""
 
-    ok = 0, "every Hopf point is found, and its coefficients are as accurate as asked for", True
+    ok = 0, "every Hopf point is found, with coefficients to the requested accuracy", True
     not_certified = (
         1,
-        "the coefficients are accurate, but a count of the unstable modes between the Hopf points could not "
-        "be decided or does not agree; `certify: false` accepts that",
+        "the coefficients are accurate, but a count of the unstable modes between the Hopf points is "
+        "undecided or disagrees; `certify: false` accepts such a count",
     )
     window_open = (
         2,
-        "within the open range two Hopf points are about to meet, so it is undecided whether a window of "
-        "flutter opens and closes there; those of all others are stored; move a parameter slightly",
+        "within the open range two Hopf points nearly coincide, so it is undecided whether the rod flutters "
+        "between them; the coefficients of all other Hopf points are stored; move a parameter slightly",
     )
     accuracy_not_reached = (
         3,
-        "a Hopf point or a coefficient is less accurate than asked for and its error says by how much; ask "
-        "for a lower accuracy there",
+        "a Hopf point or a coefficient misses the requested accuracy, as its error says; request a lower "
+        "accuracy",
     )
     list_full = 4, "there are more Hopf points than the list holds; raise the option crossings"
-    failed = 5, "the search for Hopf points failed and nothing is stored; the log has its message"
+    failed = 5, "the search for Hopf points failed and nothing is stored; the log has the message"
     coefficients_failed = (
         6,
-        "a Hopf point has no coefficients, those of the others are stored; the log has its message",
+        "a Hopf point has no coefficients; the other Hopf points are stored; the log has the message",
     )
     sign_undecided = (
         7,
-        "at a Hopf point the sign of Re c is within its error, next to a generalised Hopf point, where c is "
-        "right and on which side the cycles are is not known; move a parameter slightly",
+        "at a Hopf point the sign of Re c is within its error, as next to a generalised Hopf point: c is "
+        "correct, but the criticality is undecided; move a parameter slightly",
     )
 
 

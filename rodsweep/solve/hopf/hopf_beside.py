@@ -15,7 +15,7 @@ from .coefficient_errors import hopf_coefficients
 
 FARTHEST_FORCE = 1.5
 """Hopf points are sought at forces from F / this ratio to F * this ratio."""
-ACCURACY = 1e-3
+SIGN_ACCURACY = 1e-3
 """Relative accuracy of c, of which only the sign and the leading digits are needed."""
 LARGEST_Y = 0.5
 """Largest tip y, in L, of an unstable cycle for which the normal form is used."""
@@ -47,7 +47,7 @@ def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
     nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
     for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
-        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, ACCURACY)
+        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SIGN_ACCURACY)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
         if found.criticality > 0 and y <= LARGEST_Y:
             return SubcriticalHopf(hopf.at, y)

@@ -11,8 +11,8 @@ A q = w M q and p^H A = w p^H M, its small motions at a force F' near F are, to 
 A linear constitutive law has no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with
 z = Z exp(i phase) the tip's y is Re z to second order, and |Z| its largest value in L.
 
-The mirror image of a motion is a motion too: q and p are transverse, h20 and h11 longitudinal. Where w has a
-real part, away from a Hopf point, h20 and h11 are those of a cycle, on which |z| stands still.
+The mirror image of a motion is a motion too: q and p are transverse, h20 and h11 longitudinal. If w has a
+real part, away from a Hopf point, h20 and h11 belong to a cycle, on which |z| is constant.
 """
 
 from dataclasses import dataclass
@@ -25,8 +25,7 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.value import newton_correction
 from ...discretization.elements.elements import Elements, equal_edges, halved
 from ...discretization.elements.mesh import mesh_on
-from ...discretization.elements.resolution import LARGEST_ORDER as LARGEST_ELEMENT_ORDER
-from ...discretization.elements.resolution import resolution_for
+from ...discretization.elements.resolution import LARGEST_ORDER, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...discretization.straight.mixed_form import MixedForm
@@ -36,22 +35,22 @@ from ..point import Unsolvable
 
 OFFSET = 1e-10
 """Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
-ITERATIONS = 2
+ITERATIONS_PER_SHIFT = 2
 """Inverse iterations with one shift."""
 FOUND = 1e-8
 """Relative distance of shift and eigenvalue below which the iterations converge to rounding error."""
-MOST_SHIFTS = 10
+MAX_INVERSE_SHIFTS = 10
 """Maximum number of shifts of the inverse iteration."""
 HARMONIC = 2
 """Wave number of h20 and h11, which determine c, in units of the wave number of q."""
-SAFETY = 0.1
+ACCURACY_SHARE = 0.1
 """Safety factor on the accuracy: the mesh rule for eigenvalues leaves up to five times the error in c."""
-LARGEST_ORDER = 20
-"""Largest order of an element: beyond it a further element is cheaper, as all are eliminated at once."""
-MOST_NODES = 2000
+LARGEST_FORM_ORDER = 20
+"""Largest order of an element; a further element is cheaper than a higher order."""
+MAX_FORM_NODES = 2000
 """Maximum number of nodes; Unsolvable for rods that need more."""
-MOST_NODES_OF_ARMS = 400
-"""The same for arms, whose matrices are factorised whole."""
+MAX_FORM_NODES_OF_ARMS = 400
+"""Maximum number of nodes of an arm, whose matrices are factorised as a whole."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -141,21 +140,21 @@ def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
     if not rod.standard:
         wave_number = arm_determinant(rod).wave_number(w)
-        return arm_elements(rod, HARMONIC * wave_number, SAFETY * accuracy, LARGEST_ORDER)
+        return arm_elements(rod, HARMONIC * wave_number, ACCURACY_SHARE * accuracy, LARGEST_FORM_ORDER)
     wave_number = newton_correction(w, rod.coefficients)[2]
-    resolution = resolution_for(HARMONIC * wave_number, SAFETY * accuracy, LARGEST_ORDER)
+    resolution = resolution_for(HARMONIC * wave_number, ACCURACY_SHARE * accuracy, LARGEST_FORM_ORDER)
     return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
 def of_odd_order(elements: Elements) -> Elements:
-    """Elements of odd order at least as fine: only those can be eliminated one by one."""
+    """Elements of odd order at least as fine; elements of even order cannot be eliminated one by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
 def a_third_finer(elements: Elements) -> Elements:
     """Elements with a third more unknowns, of odd order."""
     order = ceil(elements.order * 4 / 3)
-    if order <= LARGEST_ELEMENT_ORDER:
+    if order <= LARGEST_ORDER:
         return of_odd_order(Elements(elements.edges, order))
     return of_odd_order(Elements(halved(elements.edges), ceil(2 / 3 * elements.order)))
 
@@ -165,9 +164,10 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
     Raises Unsolvable where w is no eigenvalue to a relative accuracy, or the mesh is too fine to be solved.
     """
-    nodes, most = elements.nodes, MOST_NODES if rod.standard else MOST_NODES_OF_ARMS
-    if nodes > most:
-        raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {most}")
+    nodes = elements.nodes
+    limit = MAX_FORM_NODES if rod.standard else MAX_FORM_NODES_OF_ARMS
+    if nodes > limit:
+        raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {limit}")
     normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, FOUND) * abs(w):
         raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
@@ -180,11 +180,11 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
     Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
     """
     w = complex(guess)
-    for _ in range(MOST_SHIFTS):
+    for _ in range(MAX_INVERSE_SHIFTS):
         shift = w * (1 + OFFSET)
         factors = elements.factors(shift)
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
-        for _ in range(ITERATIONS):
+        for _ in range(ITERATIONS_PER_SHIFT):
             q, p = factors.solve(elements.times_M(q)), factors.solve(elements.times_M(p), adjoint=True)
             q, p = q / np.abs(q).max(), p / np.abs(p).max()
         Mq = elements.times_M(q)
@@ -194,6 +194,6 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
     else:
         raise Unsolvable(f"no eigenvalue is found near {guess:.6g}")
     if not w.imag > 0:
-        raise Unsolvable(f"the eigenvalue near {guess:.6g} is real: nothing oscillates")
+        raise Unsolvable(f"the eigenvalue near {guess:.6g} is real: the mode does not oscillate")
     scale = 2 * (elements.form.tip_y @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

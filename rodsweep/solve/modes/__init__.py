@@ -1,1 +1,1 @@
-"""The leading modes of one rod, their adjoints, and the growth that non-normality allows."""
+"""Leading modes of one rod, their adjoints, and the transient growth that non-normality allows."""

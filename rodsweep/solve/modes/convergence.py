@@ -1,8 +1,8 @@
-"""The vectors of known eigenvalues on a mesh fine enough for them, with their errors.
+"""Mode vectors of known eigenvalues, on a mesh fine enough, with their errors.
 
-All of it is done on two meshes, whose difference is the error estimate of the coarser one; the numbers
-given are the finer one's. Next to a double eigenvalue, where condition numbers grow like the inverse of the
-distance of the two, two meshes may agree by luck: there the rounding that moves the two is added.
+Two meshes are compared: their difference is the error estimate of the coarser mesh, and the finer mesh gives
+the results. Beside a double eigenvalue, where condition numbers grow like the inverse distance of the two
+eigenvalues, two meshes may agree by chance; the effect of rounding on the distance is added there.
 """
 
 from dataclasses import replace
@@ -16,32 +16,36 @@ from .inverse_iteration import Vectors, mode_vectors
 from .problem import ModesProblem
 
 ORDER_STEP = 4
-"""How much finer the second mesh is; two orders of magnitude in the vectors."""
-MOST_PAIRS = 4
-MOST_DENSE_UNKNOWNS = 1500
-"""Unknowns beyond which dense linear algebra takes seconds."""
+"""Increase of the order on the second mesh; it gains two orders of magnitude in the vectors."""
+MAX_MODE_MESHES = 4
+"""Maximum number of finer meshes."""
+MAX_DENSE_UNKNOWNS = 1500
+"""Largest number of unknowns; dense linear algebra on a larger mesh takes seconds."""
 FINEST_MESH_ACCURACY = 1e-24
+"""Smallest accuracy of the eigenvalues that the first mesh is chosen for."""
 ROUNDINGS = 2.0
-"""Relative error of a condition number, in units of rounding/distance: 0.6 in the median, at most 3.4."""
+"""Rounding error of a condition number in units of rounding/distance; measured: median 0.6, maximum 3.4."""
 
 
 def vector_accuracy(accuracy: float) -> float:
-    """Accuracy of the eigenvalues of the coarser mesh of the first pair, for one of the vectors."""
+    """Accuracy of the eigenvalues for which the first mesh is chosen, for a given accuracy of the vectors."""
     return max(mesh_accuracy(accuracy, True), FINEST_MESH_ACCURACY)
 
 
 def converged_vectors(
     problem: ModesProblem, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> Vectors | None:
-    """The vectors at `points`, (n,), from the best of few meshes; None where even the first is too large."""
-    rod, mesh = problem.rod, problem.mesh_for(wave, vector_accuracy(accuracy))
+    """Mode vectors at `points`, (n,), on the best of a few meshes; None if even the first mesh is too
+    large."""
+    rod = problem.rod
+    mesh = problem.mesh_for(wave, vector_accuracy(accuracy))
     gaps = np.array([problem.gap(complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
     best: Vectors | None = None
     least = inf
-    for _ in range(MOST_PAIRS):
+    for _ in range(MAX_MODE_MESHES):
         mesh = problem.of_order(mesh, mesh.order + ORDER_STEP) if best is None else problem.finer(mesh)
-        if mesh.unknowns > MOST_DENSE_UNKNOWNS:
+        if mesh.unknowns > MAX_DENSE_UNKNOWNS:
             break
         fine = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
@@ -56,7 +60,7 @@ def converged_vectors(
 
 
 def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
-    """The finer mesh's modes, and how far the coarser one's are from them."""
+    """The finer mesh's modes, with the differences of the coarser mesh's modes as errors; gaps: (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))
     for old, new in pairs:
@@ -64,7 +68,7 @@ def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
         change = np.abs(new - old).max(axis=2)
         relative = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
         error = np.maximum(error, relative.max(axis=0))
-    # Of a normal operator, of condition 1, rounding moves the eigenvalues but turns no vector.
+    # For a normal operator, of condition number 1, rounding moves the eigenvalues but turns no vector.
     turned = ROUNDINGS * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, 1e-300)
     moved = np.abs(coarse.condition / fine.condition - 1)
     return replace(fine, mode_error=error, condition_error=moved + turned)

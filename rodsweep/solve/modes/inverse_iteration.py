@@ -1,7 +1,7 @@
 """Right and left modes of known eigenvalues on one mesh, by inverse iteration on the dense pencil.
 
-Each eigenvalue is the shift, with the pencil for the right and its transpose for the left vector. The
-normalisation is that of `rodsweep.solve.modes.leading_modes`.
+The shift is the eigenvalue; the pencil gives the right vector, its transpose the left vector. Normalisation
+as in `rodsweep.solve.modes.leading_modes`.
 """
 
 from dataclasses import dataclass, replace
@@ -17,27 +17,28 @@ from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_fo
 from ...discretization.straight.pencil import tip_scale
 from ...model.rod import Rod
 
-ITERATIONS = 4
-"""Inverse iterations: with the eigenvalue known two suffice but next to a double one."""
+NULL_VECTOR_ITERATIONS = 4
+"""Number of inverse iterations; two suffice unless the eigenvalue is nearly double."""
 CONJUGATE = 1e-12
-"""Relative distance below which two neighbouring eigenvalues are one pair."""
+"""Relative distance below which an eigenvalue is the complex conjugate of its predecessor."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vectors:
-    """The modes on one mesh, at given points.
+    """Modes on one mesh, at given points.
 
-    right: (Y, Theta) with Y(1) = 1, left: (Y+, Theta+) with Y+(1) = 1, in L and 1 for a tip deflection of L;
-    deformation: (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V), h2 = c2 s being exactly
-    0 in an unshearable rod; complex, shape (2, modes, points), NaN where a tip does not move.
-    Where a stiffness jumps, h2 and Pi are those behind the jump.
-    pairing: (psi_n, xi_n) in the Gamma inner product, complex, shape (modes,).
-    condition: |psi| |xi|/|(psi, xi)| >= 1, shape (modes,): how much farther than its size a perturbation of
-    L, in the Gamma norm, moves the eigenvalue; inf at the onset F*. With gamma3 = 0 theta follows
-    y at once, is no part of the state, and the norm is that of y.
-    rounding: how far that of (A - w B) x moves an eigenvalue of the mesh, in 1/tau2, shape (modes,).
-    mode_error: largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value;
-    condition_error: relative; both of shape (modes,) and NaN until another mesh is compared.
+    right: (Y, Theta) with Y(1) = 1; left: (Y+, Theta+) with Y+(1) = 1; both in L and rad for a tip deflection
+    L. deformation: (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 = c2 s is exactly 0 in
+    an unshearable rod; behind a jump of a stiffness. All three complex, (2, modes, points), NaN if the tip
+    does not move.
+
+    pairing: (psi_n, xi_n) in the Gamma inner product, complex, (modes,). condition: |psi| |xi|/|(psi, xi)| >=
+    1, (modes,): factor by which a perturbation of L, in the Gamma norm, moves the eigenvalue; inf at the
+    onset F*. For gamma3 = 0 the angle theta is no part of the state, and the norm is the norm of y.
+
+    rounding: rounding error of an eigenvalue of the mesh, from (A - w B) x, in 1/tau2, (modes,). mode_error:
+    largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value, (modes,).
+    condition_error: relative, (modes,). Both errors are NaN until another mesh is compared.
     """
 
     resolution: Resolution
@@ -51,13 +52,13 @@ class Vectors:
     condition_error: Array
 
     def errors(self) -> dict[str, float]:
-        """The largest relative errors, by quantity; inf where there is no number."""
+        """Largest relative error of each quantity; inf if unknown."""
         errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
 def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> Vectors:
-    """The modes of known eigenvalues on one mesh, at `points` in [0, 1], shape (n,)."""
+    """Modes of known eigenvalues on one mesh, at `points` in [0, 1], (n,)."""
     form = dense_form(rod, pencil)
     X, Z, rounding = _vectors(form, eigenvalues)
     evaluation = form.mesh.evaluation(points)
@@ -76,8 +77,9 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
 
 
 def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
-    """What stands for the vectors where there are none: NaN."""
-    shape, numbers = np.full((2, modes, points), np.nan + 0j), np.full(modes, np.nan)
+    """Placeholder for unknown vectors: all entries NaN."""
+    shape = np.full((2, modes, points), np.nan + 0j)
+    numbers = np.full(modes, np.nan)
     return Vectors(
         resolution=resolution,
         right=shape,
@@ -92,7 +94,7 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
 
 
 def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
-    """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Vectors.rounding`."""
+    """Right and left vectors, (unknowns, modes) each, scaled at the tip, and `Vectors.rounding`."""
     A, B = form.A, form.B
     m = len(eigenvalues)
     X, Z = np.empty((len(B), m), complex), np.empty((len(B), m), complex)
@@ -108,21 +110,24 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
-    """The right and the left vector of the eigenvalue w, (unknowns,), of largest entry 1; real where w is."""
+    """Right and left vector of eigenvalue w, (unknowns,) each, with largest entry 1; real for real w."""
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
     return _iterated(inverse, B), _iterated(inverse.T, B)
 
 
 def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
-    """The null vector of a nearly singular matrix, largest entry 1, by inverse iteration from its inverse.
+    """Null vector of a nearly singular matrix by inverse iteration, (unknowns,), with largest entry 1.
 
-    What grows most in a step has the smallest residual after it. At a double eigenvalue the inverse all but
-    annihilates the vector that it has just given, and the next step gives rounding: hence the better of two.
+    A larger growth in a step means a smaller residual of the result. At a double eigenvalue the inverse
+    almost annihilates its own last result, and the next step gives rounding errors: the better of the last
+    two is taken.
     """
     x: NDArray = np.ones(len(B))
-    before, last, growth = x, 0.0, 0.0
-    for _ in range(ITERATIONS):
-        before, last = x, growth
+    before = x
+    last = growth = 0.0
+    for _ in range(NULL_VECTOR_ITERATIONS):
+        before = x
+        last = growth
         x = inverse @ (B * x)
         growth = float(np.abs(x).max())
         x = x / growth

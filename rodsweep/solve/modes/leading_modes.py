@@ -1,13 +1,13 @@
-"""The leading modes of one rod, their adjoints, and what non-normality makes of them.
+"""Leading modes of one rod, their adjoints, and the transient growth due to non-normality.
 
 Eigenvalues come from `rodsweep.solve.spectrum`, certified and with their own error estimate; vectors from
-`convergence`, abscissa and growth from `transient_growth`, each on meshes of their own. The mesh that is
-reported is that of the vectors.
+`convergence`; abscissa and growth from `transient_growth`. Each has its own meshes; the reported mesh is that
+of the vectors.
 
-Normalisation, stated once: right modes have Y(1) = 1, and so do left modes, Y+(1) = 1, which makes both
-equal at F = 0, where L is self-adjoint. `pairing` has the product (psi_n, xi_n) that this leaves: the share
-of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n). A left mode belongs to the eigenvalue w* of the
-adjoint (Appendix B), so that (psi_m, xi_n) = int gamma2 Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
+Normalisation: right modes have Y(1) = 1 and left modes Y+(1) = 1. Both are therefore equal at F = 0, where L
+is self-adjoint. The coefficient of mode n in a state xi is (psi_n, xi)/(psi_n, xi_n); `pairing` is the
+denominator. A left mode belongs to the eigenvalue w* of the adjoint (Appendix B), so that (psi_m, xi_n) = int
+gamma2 Y+_m* Y_n + gamma3 Theta+_m* Theta_n = 0 for m != n.
 """
 
 from dataclasses import dataclass, replace
@@ -27,28 +27,28 @@ from .problem import modes_problem
 from .transient_growth import Growth, growth_of
 
 GROWTH_WAVE_NUMBER = 24.0
-"""Wave number of the eighth mode at rest: the growth at short times needs more than the wanted modes."""
-SURELY = 4.0
-"""Error estimates that a growth rate must be from 0 to be called positive."""
+"""Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
+SIGNIFICANT_ERRORS = 4.0
+"""A growth rate is positive if it exceeds this many error estimates."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModesRequest:
-    """What is asked: the number of modes, a relative accuracy, Lobatto nodes, and the extras."""
+    """Request: number of modes, relative accuracy, number of Lobatto nodes, and options."""
 
     modes: int
     accuracy: float
     nodes: int
     growth: bool
-    """Whether the numerical abscissa and the transient growth are wanted."""
+    """Whether to compute the numerical abscissa and the transient growth."""
     certify: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Modes:
-    """The leading modes of one rod, in the order that `rodsweep.model` states.
+    """Leading modes of one rod, in the order defined in `rodsweep.model`.
 
-    The status is the spectrum's unless a vector or the growth is less accurate than asked for, or failed.
+    status: of the spectrum, unless a vector or the growth failed or missed the requested accuracy.
     """
 
     status: SpectrumStatus
@@ -60,9 +60,9 @@ class Modes:
 
 
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
-    """The leading `request.modes` modes of `rod`; failures are a status, never an exception."""
+    """The leading `request.modes` modes of a rod; a failure is a status, never an exception."""
     if rod.uniform and not rod.standard:
-        return _in_own_time(rod, request)
+        return _from_equivalent(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
     vectors = no_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
@@ -81,8 +81,8 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     return replace(found, seconds=spectrum.seconds + found.seconds)
 
 
-def _in_own_time(rod: Rod, request: ModesRequest) -> Modes:
-    """The modes of a uniform rod of any law, from those of the linear rod to which it is equivalent."""
+def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
+    """Modes of a uniform rod of any law, from the equivalent linear rod; times are rescaled."""
     linear, rate = rod.equivalent
     found = solve_modes(linear, request)
     spectrum, growth = found.spectrum, found.growth
@@ -102,7 +102,7 @@ def _in_own_time(rod: Rod, request: ModesRequest) -> Modes:
 
 
 def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
-    """The outcome with its vectors and, where wanted, its growth; the largest error decides on the status."""
+    """The outcome with vectors and, if requested, growth; the largest error determines the status."""
     spectrum = outcome.spectrum
     problem = modes_problem(rod)
     wave = max(problem.wave_number(complex(w)) for w in spectrum.eigenvalues)
@@ -114,7 +114,7 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
         mesh = problem.mesh_for(max(wave, GROWTH_WAVE_NUMBER), request.accuracy)
-        grows = (spectrum.eigenvalues.real > SURELY * spectrum.error_estimate).any()
+        grows = (spectrum.eigenvalues.real > SIGNIFICANT_ERRORS * spectrum.error_estimate).any()
         known = spectrum.status != SpectrumStatus.undecided
         stable = False if grows or spectrum.unstable_count > 0 else (True if known else None)
         growth = growth_of(problem, mesh, request.accuracy, stable, rate)

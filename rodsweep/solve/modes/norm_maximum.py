@@ -1,13 +1,13 @@
-"""The highest value of |exp(L t)| over a range of times, and a bound that no time in it exceeds.
+"""The maximum of |exp(L t)| over a range of times, and an upper bound over that range.
 
-With a the numerical abscissa, N = |exp(L t)|, and t = t0 + r in an interval [t0, t1] of width h,
+With the numerical abscissa a, N = |exp(L t)|, and t = t0 + r in an interval [t0, t1] of width h,
 
     N(t) <= N(t0) exp(a r),
     N(t)^2 <= max(N(t0)^2, N(t1)^2) + (h^2/8) c(t0) exp(2 a h).
 
-The second holds because N^2 is the largest of f = |exp(L t) v|^2 over all |v| = 1, and where f'' >= -c(t0)
-at t0 for all v, then at t for v too: exp(L t) v = exp(L t0) v' with |v'| <= exp(a r). Intervals are
-halved until the bound is as close to the highest value found as is asked.
+Second bound: N^2 is the largest f = |exp(L t) v|^2 over all |v| = 1. If f'' >= -c(t0) at t0 for every v, then
+f'' >= -c(t0) exp(2 a r) at t, because exp(L t) v = exp(L t0) v' with |v'| <= exp(a r). Intervals are halved
+until the bound is within the tolerance of the largest value found.
 """
 
 import numpy as np
@@ -16,23 +16,28 @@ from ...arrays import Array
 from .propagator import Propagator
 
 START_RATIO = 2**0.25
-"""Ratio of neighbouring times to start with."""
-MOST_HALVINGS = 40
-MOST_INTERVALS = 4000
-"""Intervals open at a time beyond which the bound is left as it is."""
+"""Ratio of neighbouring times of the first grid."""
+MAX_BOUND_HALVINGS = 40
+"""Maximum number of halvings of an interval."""
+MAX_OPEN_INTERVALS = 4000
+"""Maximum number of open intervals; with more, the bound is left as it is."""
 BATCH = 128
+"""Number of times at which the propagator is evaluated at once."""
 LARGEST_EXPONENT = 300.0
-MOST_PEAK_STEPS = 40
+"""Largest exponent that is used; its exponential is still finite."""
+MAX_PEAK_STEPS = 40
+"""Maximum number of steps of the search for a peak."""
 RISE_LEFT = 1e-14
-"""Relative rise that a concave maximum may still have in its bracket: the time is its square root."""
+"""Relative rise of a concave maximum within its final bracket; the relative error of the time is the square
+root of this."""
 
 
 def highest(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
-    """((largest |exp(L t)|, t), upper bound of |exp(L t)|) over the times span[0] to span[1].
+    """((largest |exp(L t)|, its time), upper bound of |exp(L t)|) over the times span[0] to span[1].
 
-    The search is for values above `floor` only, to the relative tolerance. `abscissa` >= 0 is a bound.
+    Only values above `floor` are searched, to the relative tolerance. `abscissa` >= 0 is an upper bound.
     """
     low, high = span
     count = max(2, int(np.ceil(np.log(high / low) / np.log(START_RATIO))) + 1)
@@ -43,11 +48,11 @@ def highest(
     best = _peak(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
     t, h, left, right, bend = times[:-1], np.diff(times), squares[:-1], squares[1:], bends[:-1]
     ceiling = best[0]
-    for halving in range(MOST_HALVINGS + 1):
+    for halving in range(MAX_BOUND_HALVINGS + 1):
         bound = np.sqrt(_bound(h, left, right, bend, abscissa))
         wanted = max(best[0], floor) * (1 + tolerance)
         open_ = bound > wanted
-        given_up = halving == MOST_HALVINGS or int(open_.sum()) > MOST_INTERVALS
+        given_up = halving == MAX_BOUND_HALVINGS or int(open_.sum()) > MAX_OPEN_INTERVALS
         ceiling = max(ceiling, bound[~open_ | given_up].max(initial=0.0))
         if given_up or not open_.any():
             break
@@ -63,24 +68,25 @@ def highest(
 
 
 def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
-    """`Propagator.squares`, a batch at a time."""
+    """`Propagator.squares` in batches; each result (times,)."""
     parts = [propagator.squares(part) for part in np.array_split(times, len(times) // BATCH + 1)]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
-    """The bound of N^2 over intervals of width h, from N^2 at their ends and c at their left end."""
+    """Bound of N^2 over intervals of width h, from N^2 at both ends and c at the left end; all
+    (intervals,)."""
     growth = np.exp(np.minimum(2 * abscissa * h, LARGEST_EXPONENT))
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
 
 def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
-    """(|exp(L t)|, t) where its derivative changes sign between low and high: regula falsi, Illinois."""
+    """(|exp(L t)|, t) at the sign change of its derivative between low and high: Illinois regula falsi."""
     (at_low, rate_low), (at_high, rate_high) = propagator.norm(low), propagator.norm(high)
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)
-    for _ in range(MOST_PEAK_STEPS):
+    for _ in range(MAX_PEAK_STEPS):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm(t)
         best = max(best, (value, t))

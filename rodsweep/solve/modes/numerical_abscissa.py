@@ -1,4 +1,4 @@
-"""The numerical abscissa: how fast a perturbation can grow in the Gamma norm at t = 0+."""
+"""The numerical abscissa: the largest growth rate of a perturbation in the Gamma norm at t = 0+."""
 
 from math import inf, nan
 
@@ -12,28 +12,29 @@ from ...model.adjoint import hermitian_tip
 from ...model.rod import Rod
 from .propagator import shifted_inverse
 
-MOST_SHIFTS = 60
-"""Shifts tried to get above the numerical abscissa where no bound is known; each doubles the last."""
+MAX_ABSCISSA_SHIFTS = 60
+"""Maximum number of shifts tried to exceed the numerical abscissa if no bound is known; each doubles the
+last."""
 CLOSE_SHIFT = 0.05
-"""Relative distance at which a shift above the abscissa no longer costs digits."""
+"""Relative distance of a shift above the abscissa that costs no digits."""
 POSITIVE = 1e-9
-"""Relative size above which an eigenvalue of the shifted inverse is not rounding."""
+"""Relative size above which an eigenvalue of the shifted inverse is positive, not rounding."""
 
 
 def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
-    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the growth rate at t = 0+.
+    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the largest growth rate at t = 0+.
 
-    The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from
-    above: nan where none is above it, which only a rod without rotational drag and g < 0 can bring about.
+    The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
+    nan if no shift lies above it, which is possible only for a rod without rotational drag and with g < 0.
     """
     form = dense_form(rod, pencil)
     A, B = form.averaged(*hermitian_tip(rod.F, slaving_of(rod))), form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     shift = bound + 1 if bound < inf else rod.F**2 + 1
-    for _ in range(MOST_SHIFTS):
+    for _ in range(MAX_ABSCISSA_SHIFTS):
         H = shifted_inverse(A, B, shift)
         values = np.linalg.eigvalsh((H + H.T) / 2)
-        if values[-1] > -POSITIVE * values[0]:  # something lies above the shift
+        if values[-1] > -POSITIVE * values[0]:  # an eigenvalue lies above the shift
             shift = 2 * abs(shift) + 1
             continue
         abscissa = shift + 1 / float(values[0])

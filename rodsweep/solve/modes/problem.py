@@ -1,7 +1,7 @@
-"""Meshes of one rod for its modes, and what D says of them.
+"""Meshes and determinant of one rod, as its modes need them.
 
-A uniform rod of linear material has equal elements and D in closed form, every other arm elements that end
-where a coefficient jumps and D from propagators.
+A uniform rod of linear material has equal elements and a determinant D in closed form. Every other arm has
+elements that end at jumps of a coefficient, and D from propagators.
 """
 
 import math
@@ -20,25 +20,25 @@ from ...discretization.straight.pencil import assemble
 from ...model.rod import Rod
 
 PENCILS_KEPT = 16
-"""Patterns of the pencils of arms that are kept for the next point on an equal mesh."""
+"""Number of sparsity patterns of arm pencils that are kept for later points on equal meshes."""
 
 
 class ModesProblem(ABC):
-    """What the modes of one rod need beside its eigenvalues."""
+    """Discretization and determinant of one rod for its modes."""
 
     rod: Rod
 
     @abstractmethod
     def mesh_for(self, wave_number: float, accuracy: float) -> Any:
-        """The mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
+        """Mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
 
     @abstractmethod
     def of_order(self, mesh: Any, order: int) -> Any:
-        """The same elements of another order."""
+        """A mesh with the same elements and another order."""
 
     @abstractmethod
     def finer(self, mesh: Any) -> Any:
-        """The next mesh after one that proved too coarse."""
+        """The next mesh after a mesh that is too coarse."""
 
     @abstractmethod
     def pencil(self, mesh: Any) -> AnyPencil:
@@ -46,11 +46,12 @@ class ModesProblem(ABC):
 
     @abstractmethod
     def wave_number(self, w: complex) -> float:
-        """The wave number of the mode of an eigenvalue, in 1/L."""
+        """Wave number of the mode with eigenvalue w, in 1/L."""
 
     @abstractmethod
     def gap(self, w: complex) -> float:
-        """About how far the eigenvalue next to the eigenvalue w is, 2 |D'/D''|: sharp where that is close."""
+        """Estimated distance of eigenvalue w from the nearest other eigenvalue, 2 |D'/D''|; accurate for
+        small distances."""
 
 
 class UniformModes(ModesProblem):
@@ -102,9 +103,9 @@ class ArmModes(ModesProblem):
         return self._determinant.wave_number(w)
 
     def gap(self, w: complex) -> float:
-        here = self._determinant.value(w)
-        second = abs(second_derivative(w, here.S, self._determinant))
-        return 2 * abs(here.D_w) / max(second, math.ulp(0.0))
+        value = self._determinant.value(w)
+        second = abs(second_derivative(w, value.S, self._determinant))
+        return 2 * abs(value.D_w) / max(second, math.ulp(0.0))
 
 
 @lru_cache(maxsize=PENCILS_KEPT)
@@ -113,5 +114,5 @@ def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
 
 
 def modes_problem(rod: Rod) -> ModesProblem:
-    """The problem of a rod."""
+    """The problem of a rod: uniform, or an arm."""
     return UniformModes(rod) if rod.standard else ArmModes(rod)

@@ -1,8 +1,8 @@
-"""exp(L t) on one mesh, represented as exp(L_k t) P_k, and what bounds its norm between two times.
+"""exp(L t) on one mesh, represented as exp(L_k t) P_k, and bounds of its norm between two times.
 
-P_k is the spectral projector of the k leading modes on the *whole* space: the rest dies like
-exp(Re w_k t). Restricting the initial state to the span of the k leading modes instead, the usual
-way, converges only like a power of k, because the optimal initial state has the ends of the adjoint.
+P_k is the spectral projector of the k leading modes on the *whole* space; the remainder decays like exp(Re
+w_k t). Restricting the initial state to the span of the k leading modes, as is usual, converges only like a
+power of k: the optimal initial state satisfies the boundary conditions of the adjoint.
 """
 
 from math import factorial
@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 
 INFINITE = 1e-12
-"""Relative size of an eigenvalue of G below which it stands for an infinite one."""
+"""Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""
 TAYLOR_ORDER = 16
-"""Terms that sum exp of a matrix of norm 1/2 to rounding; a multiple of 4."""
+"""Number of Taylor terms of exp for a matrix of norm 1/2, to rounding; a multiple of 4."""
 
 
 def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
-    """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns that carry a time derivative, shape (n, n).
+    """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns with a time derivative, (n, n).
 
-    Without a shift it is G, the inverse of L where the Gamma norm is Euclidean. It exists in every limit;
-    infinite eigenvalues are its zeros. For gamma3 = 0 the state and the norm are y alone: theta follows.
+    Without a shift this is G, the inverse of L in coordinates with a Euclidean Gamma norm. It exists in every
+    limit; infinite eigenvalues of L are its zeros. For gamma3 = 0 state and norm are y alone.
     """
     moving = B > 0
     root = np.sqrt(B[moving])
@@ -33,8 +33,8 @@ def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
 class Propagator:
     """exp(L t) from the spectral decomposition of G = L^-1 on one mesh, for any number k of leading modes.
 
-    w: the finite eigenvalues of the mesh, by descending real part; those beyond the mesh are not
-    eigenvalues of the rod, but what they stand for together is.
+    w: finite eigenvalues of the mesh, by descending real part. Eigenvalues that the mesh does not resolve are
+    not eigenvalues of the rod, but together they represent the remaining spectrum.
     """
 
     def __init__(self, G: Array):
@@ -52,10 +52,10 @@ class Propagator:
     def keep(self, k: int) -> int:
         """Represents exp(L t) P_k as Q exp(L_k t) (Z^T Q)^-1 Z^T, with orthonormal real Q and Z.
 
-        The bases of the right and left invariant subspaces, not their vectors, are used: at a double
-        eigenvalue the vectors are parallel and the subspaces are as good as ever. As they are nested,
-        L_k is upper triangular but for the pairs. Returns the k used: at most what the mesh has, and
-        none that would cut a conjugate pair.
+        Q and Z are bases of the right and left invariant subspaces: at a double eigenvalue the eigenvectors
+        are parallel, but the subspaces are well conditioned. The subspaces are nested, so L_k is upper
+        triangular except for the 2 x 2 blocks of conjugate pairs. Returns the k used: at most the number of
+        modes of the mesh, and without splitting a conjugate pair.
         """
         k = min(k, len(self.w))
         if self.w[k - 1].imag > 0:
@@ -88,24 +88,25 @@ class Propagator:
         return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
 
     def left_over(self, m: int, time: float) -> float:
-        """|exp(L t) (1 - P_m)|: what modes behind the m leading ones still carry; m < k cuts no pair."""
+        """|exp(L t) (1 - P_m)|: contribution of the modes behind the m leading ones; m < k splits no pair."""
         E = self.at(np.array([time]))[0]
         E[:m, :m] -= exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
         return float(np.linalg.norm(E, 2))
 
 
 def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
-    """A real orthonormal basis of the invariant subspace that the vectors of w span, in their order."""
+    """Real orthonormal basis of the invariant subspace spanned by the vectors of w, (n, k), in their
+    order."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
     place = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
     return np.linalg.qr(columns[:, np.argsort(place)])[0]
 
 
 def exponential(matrices: Array) -> Array:
-    """exp of one small matrix or a stack of them, (..., k, k): the Taylor series of scaled ones, squared.
+    """exp of one small matrix or a stack of matrices, (..., k, k), by Taylor series, scaling and squaring.
 
-    What is squared is exp - 1: of a block triangular matrix with slow and fast parts the slow ones
-    then keep their digits, however often the fast ones ask to square.
+    Instead of exp the function squares exp - 1: in a block triangular matrix with slow and fast blocks, the
+    slow blocks then keep their digits, however many squarings the fast blocks need.
     """
     size = float(np.abs(matrices).sum(axis=-2).max())
     squarings = max(0, int(np.ceil(np.log2(size))) + 1) if size > 0 else 0

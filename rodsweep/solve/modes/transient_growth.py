@@ -1,12 +1,12 @@
-"""How far a perturbation of a stable rod can grow in the Gamma norm, S = sup_t |exp(L t)|.
+"""Largest transient growth of a perturbation of a stable rod in the Gamma norm, S = sup_t |exp(L t)|.
 
-With a the numerical abscissa |exp(L t)| <= exp(a t), on a mesh as well as in the rod (the form that bounds
-both is the same). So nothing that a mesh gets wrong at times t < log(S)/a can matter, and no more
-modes are needed than make exp(a t) <= S at the first time at which they represent exp(L t). From there on
-`rodsweep.solve.modes.norm_maximum` bounds it between all times, up to one after which it only shrinks.
+With the numerical abscissa a, |exp(L t)| <= exp(a t), on a mesh as well as in the rod, because one form
+bounds both. Errors of a mesh at times t < log(S)/a therefore do not matter. The number of modes is sufficient
+if exp(a t) <= S at the first time at which the modes represent exp(L t). From then on
+`rodsweep.solve.modes.norm_maximum` bounds the norm, up to a time after which it only decays.
 
-S is asked for to an accuracy relative to itself. Where a is just above 0 the growth S - 1 is like a^3 where
-shear leads and like a^5 where bending does, and early; below the accuracy it is reported as 1 at 0.
+The accuracy is relative to S. For a just above 0 the growth S - 1 is like a^3 if shear dominates and like a^5
+if bending dominates, and occurs early; below the accuracy it is reported as S = 1 at t = 0.
 """
 
 from dataclasses import dataclass, replace
@@ -22,26 +22,35 @@ from .numerical_abscissa import numerical_abscissa
 from .problem import ModesProblem
 from .propagator import Propagator, shifted_inverse
 
-FEWEST_MODES, MORE_MODES = 8, 1.5
-"""Modes that represent exp(L t) at first, and the factor to the next attempt."""
+MIN_MODES = 8
+"""Number of modes that first represent exp(L t)."""
+MORE_MODES = 1.5
+"""Factor on the number of modes when more are needed."""
 TRUNCATION_MARGIN = 4.0
-"""exp(-this): share of the accuracy that the modes left out may use up."""
-SEARCH_SHARE, LEAST_SEARCH_TOLERANCE = 0.25, 2e-13
-"""Share of the accuracy left open between times, and the rounding below which it would be in vain."""
-FIRST_FINER, ORDER_FACTOR, MOST_GROWTH_MESHES = 4, 1.4, 5
-"""How much finer the second mesh is, and the factor to the next: layers at the tip ask for high orders."""
-MOST_GROWTH_UNKNOWNS = 400
-"""Unknowns beyond which no further mesh is tried: all of its modes take a second."""
+"""exp(-this): share of the accuracy for the modes that are left out."""
+SEARCH_SHARE = 0.25
+"""Share of the accuracy for the bound between times."""
+MIN_SEARCH_TOLERANCE = 2e-13
+"""Smallest tolerance of that bound: the rounding of the norm."""
+FIRST_FINER = 4
+"""Increase of the order on the second mesh."""
+ORDER_FACTOR = 1.4
+"""Factor on the order of each further mesh: boundary layers at the tip need high orders."""
+MAX_GROWTH_MESHES = 5
+"""Maximum number of finer meshes."""
+MAX_GROWTH_UNKNOWNS = 400
+"""Largest number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Growth:
-    """What a perturbation does before it decays; NaN where it was not asked for.
+    """Transient growth of a perturbation before its decay; NaN if not requested.
 
-    transient_growth: sup_t |exp(L t)| in the Gamma norm, transient_time: when, in tau2: 1 at 0 where it
-    exceeds 1 by no more than growth_error, inf at inf for an unstable rod, NaN where stability is undecided;
-    growth_error: relative. The time is as accurate as a flat maximum allows.
-    numerical_abscissa: sup Re (xi, L xi)/(xi, xi), the growth rate at t = 0+, in 1/tau2; abscissa_error.
+    transient_growth: sup_t |exp(L t)| in the Gamma norm; transient_time: its time, in tau2. They are 1 at 0
+    if the growth exceeds 1 by at most growth_error, inf at inf for an unstable rod, NaN if stability is
+    undecided. growth_error: relative. The time is only as accurate as a flat maximum allows.
+    numerical_abscissa: sup Re (xi, L xi)/(xi, xi), the growth rate at t = 0+, in 1/tau2; abscissa_error:
+    absolute.
     """
 
     transient_growth: float = nan
@@ -51,43 +60,49 @@ class Growth:
     abscissa_error: float = nan
 
     def errors(self, rate: float) -> dict[str, float]:
-        """Relative errors by quantity; that of the abscissa next to `rate`, where the latter is larger."""
+        """Relative errors by quantity; the abscissa relative to `rate` if `rate` is larger."""
         scale = max(abs(self.numerical_abscissa), rate)
         return {"transient growth": self.growth_error, "numerical abscissa": self.abscissa_error / scale}
 
 
-KNOWN = {
+GROWTH_BY_STABILITY = {
     True: None,
     False: Growth(transient_growth=inf, transient_time=inf, growth_error=0.0),
     None: Growth(growth_error=0.0),
 }
-"""The growth where stability alone says what it is."""
+"""The growth of a rod whose stability alone determines it; None if it must be computed."""
 UNBOUNDED = Growth(growth_error=inf)
-"""The growth of which nothing is known."""
+"""Placeholder for an unknown growth."""
 
 
 def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | None, rate: float) -> Growth:
-    """Abscissa and growth on meshes from `mesh` on; `rate` is the modulus of the leading eigenvalue.
+    """Abscissa and growth on `mesh` and finer meshes. rate: modulus of the leading eigenvalue.
 
-    A rod that is not `stable` grows without end; where that is not known (None), the growth is nan.
+    stable: False gives unlimited growth; None, if stability is unknown, gives growth nan.
     """
-    best, least, rod = UNBOUNDED, inf, problem.rod
-    abscissa, coarse = numerical_abscissa(rod, problem.pencil(mesh)), None
-    for step in range(MOST_GROWTH_MESHES):
+    best = UNBOUNDED
+    least = inf
+    rod = problem.rod
+    abscissa = numerical_abscissa(rod, problem.pencil(mesh))
+    coarse = None
+    for step in range(MAX_GROWTH_MESHES):
         order = mesh.order + FIRST_FINER if step == 0 else ceil(ORDER_FACTOR * mesh.order)
-        last, mesh = mesh, problem.of_order(mesh, order)
-        if step and mesh.unknowns > MOST_GROWTH_UNKNOWNS:
+        last = mesh
+        mesh = problem.of_order(mesh, order)
+        if step and mesh.unknowns > MAX_GROWTH_UNKNOWNS:
             break
         pencil = problem.pencil(mesh)
-        before, abscissa = abscissa, numerical_abscissa(rod, pencil)
+        before = abscissa
+        abscissa = numerical_abscissa(rod, pencil)
         change = abs(abscissa - before)
-        found = KNOWN[stable]
+        found = GROWTH_BY_STABILITY[stable]
         if found is None and abscissa + change <= 0:
             found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if found is None:
             coarse = coarse or propagator_of(rod, problem.pencil(last))
             fine = propagator_of(rod, pencil)
-            found, coarse = transient_growth(coarse, fine, abscissa + change, accuracy), fine
+            found = transient_growth(coarse, fine, abscissa + change, accuracy)
+            coarse = fine
         result = replace(found, numerical_abscissa=abscissa, abscissa_error=change)
         error = max(inf if isnan(error) else error for error in result.errors(rate).values())
         improved = error < least / 2
@@ -99,18 +114,22 @@ def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | 
 
 
 def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
-    """exp(L t) of the rod on one mesh, in coordinates in which the Gamma norm is Euclidean."""
+    """exp(L t) of the rod on one mesh, in coordinates with a Euclidean Gamma norm."""
     form = dense_form(rod, pencil)
     return Propagator(shifted_inverse(form.A, form.B, 0.0))
 
 
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
-    """The largest growth on the finer mesh, compared with that on the coarser; `abscissa` > 0 is a bound."""
-    if isnan(abscissa) or not fine.w[0].real < 0:  # the mesh makes an eigenvalue up that the rod has not
+    """The largest growth on the finer mesh; the coarser mesh gives its error. abscissa: an upper bound >
+    0."""
+    if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNBOUNDED
     patience = log(1 / accuracy) + TRUNCATION_MARGIN
-    tolerance = max(SEARCH_SHARE * accuracy, LEAST_SEARCH_TOLERANCE)
-    best, ceiling, tail, k, stop = (1.0, 0.0), 1.0, 0.0, FEWEST_MODES, 0.0
+    tolerance = max(SEARCH_SHARE * accuracy, MIN_SEARCH_TOLERANCE)
+    best = (1.0, 0.0)
+    ceiling = 1.0
+    tail = stop = 0.0
+    k = MIN_MODES
     while True:
         k = fine.keep(k)
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
@@ -126,8 +145,8 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         k = min(int(MORE_MODES * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
-        # The meshes are compared at the peak and half way, in the logarithm, to the earliest time that may
-        # matter, the coarser with more modes if it has them.
+        # Both meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
+        # time that may matter; the coarser mesh with more modes if it has them.
         coarse.keep(int(MORE_MODES * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
@@ -135,11 +154,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
-    """(a time after which |exp(L t)| is nowhere larger than before, by how much that may fail).
+    """(a time after which |exp(L t)| does not exceed its earlier values, relative error of this statement).
 
-    Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time does at which it is below 1. Near a threshold
-    that is far off; but once the leading pair is alone it repeats itself and shrinks, every half
-    period. If the others still carry r then, no later value exceeds all earlier ones by the share 2 r.
+    Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 will do. Near a threshold
+    such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every
+    half period. If the other modes still contribute r then, no later value exceeds all earlier values by more
+    than the share 2 r.
     """
     w = propagator.w[: len(propagator.generator)]
     m = 2 if w[0].imag else 1

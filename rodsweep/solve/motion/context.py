@@ -12,17 +12,19 @@ from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ..backend.c_functions import floats, floats_in, integers
 
-MOST_STAGES, MOST_POINTS = 16, 8
-"""Maximum number of stored stages of a step, and of points through which a stage is extrapolated."""
-
-REAL, WHOLE = "<f8", "<i8"
+MAX_STAGES = 16
+"""Maximum number of stored stages of a step."""
+MAX_STAGE_POINTS = 8
+"""Maximum number of points through which a stage is extrapolated."""
+FLOAT = "<f8"
+WHOLE = "<i8"
 ROD = (*(name for name in NodalRod._fields if name not in ("kept", "law")), "roots", "crushed")
 """Fields with addresses of the integrated rod's arrays, of the square roots of its compliances, and of z1 at
 each node but the tip at which h1 = 0, (nodes,)."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
 """Fields with addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns); the state at
-which a step's matrix is made, (unknowns,); times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of
-the stages of this step and the last; extrapolation points of each stage, (MOST_STAGES, MOST_POINTS); the
+which a step's matrix is made, (unknowns,); times, (2 MAX_STAGES,), and states, (2 MAX_STAGES, unknowns), of
+the stages of this step and the last; extrapolation points of each stage, (MAX_STAGES, MAX_STAGE_POINTS); the
 constant of a stage's equation and the rates f, (unknowns,) each."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
 """Fields with handles of PETSc objects."""
@@ -33,24 +35,24 @@ CONTEXT = np.dtype(
         ("components", WHOLE),  # of a stress
         ("unknowns", WHOLE),
         ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
-        ("shift", REAL),  # shift of the last matrix
+        ("shift", FLOAT),  # shift of the last matrix
         ("last_matrix", WHOLE),  # handle of the last matrix
         ("matrix_state", WHOLE),  # PETSc's state number of this matrix, which increases with every change
         ("factorisations", WHOLE),  # number so far, for tests
-        ("contraction", REAL),  # ratio of successive steps of Newton's method
+        ("contraction", FLOAT),  # ratio of successive steps of Newton's method
         ("measured", WHOLE),  # whether the contraction was measured with the present matrix
         ("growing", WHOLE),  # number of successive growing Newton steps
-        ("last_step", REAL),  # 2-norm of the last Newton step
-        ("small_error", REAL),  # 2-norm of an acceptable error
-        ("rounding", REAL),  # 2-norm of the largest Newton step that rounding errors cause
+        ("last_step", FLOAT),  # 2-norm of the last Newton step
+        ("small_error", FLOAT),  # 2-norm of an acceptable error
+        ("rounding", FLOAT),  # 2-norm of the largest Newton step that rounding errors cause
         ("most_iterations", WHOLE),
         ("without_rate", WHOLE),  # whether the residual omits f
-        ("time", REAL),  # time of the last residual
+        ("time", FLOAT),  # time of the last residual
         ("current", WHOLE),  # 0 or 1: half of `times` and `states` for this step
         ("stages", WHOLE),  # number of known stages of this step
         ("steps", WHOLE),  # number of known steps before this one, at most 1
-        ("length", REAL),  # of this step, in tau2
-        ("middle", REAL),  # time within the step at which the matrix is made, in units of the step
+        ("length", FLOAT),  # of this step, in tau2
+        ("middle", FLOAT),  # time within the step at which the matrix is made, in units of the step
         ("rows", WHOLE),  # address of the stored steps, a row (time, state) each, allocated by compiled code
         ("stored", WHOLE),  # number of stored steps
         ("capacity", WHOLE),  # number of steps for which memory is allocated
@@ -98,9 +100,9 @@ def roots_of(c: Any) -> Any:
 
 @compiled
 def times_of(c: Any) -> Any:
-    return floats(c.times, 2 * MOST_STAGES)
+    return floats(c.times, 2 * MAX_STAGES)
 
 
 @compiled
 def states_of(c: Any) -> Any:
-    return floats_in(c.states, (2 * MOST_STAGES, c.unknowns))
+    return floats_in(c.states, (2 * MAX_STAGES, c.unknowns))

@@ -17,7 +17,7 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
 from ..backend.c_functions import call
-from ..backend.kept import Kept
+from ..backend.kept import LruPool
 from ..backend.petsc import PETSc
 from .callbacks import Workspace
 from .step_record import end_step, take_steps
@@ -25,17 +25,19 @@ from .time_scheme import TimeScheme
 
 STAGE_ROUND_OFF = 1e-9
 """Size of a Newton step, relative to the motion, at which stagnation is due to rounding errors."""
-FIRST_SHARE = 1e-3
+FIRST_STEP_SHARE = 1e-3
 """Default first step in units of the duration."""
-MOST_TIME_STEPS = 100_000
+MAX_TIME_STEPS = 100_000
 """Default maximum number of steps."""
-MOST_REJECTIONS, MOST_FAILED_STAGES = 30, 1_000_000
-"""Maximum number of successive rejections of one step, and of failures of Newton's method in a run."""
+MAX_REJECTIONS = 30
+"""Maximum number of successive rejections of one step."""
+MAX_FAILED_STAGES = 1_000_000
+"""Maximum number of failures of Newton's method in a run."""
 RELAXATION = TimeScheme("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
 """Scheme of `relaxed`."""
 RELAXATION_SHARE = 1e-3
 """Duration of `relaxed` in periods."""
-MOST_KEPT = 8
+INTEGRATORS_KEPT = 8
 """Number of integrators kept for further runs on equal meshes."""
 
 
@@ -64,7 +66,7 @@ class RunLimit:
     """Early end of a run: a step to z with `reached(z)`, or the maximum number of steps."""
 
     reached: Callable[[Array], bool] | None = None
-    most_steps: int = MOST_TIME_STEPS
+    max_steps: int = MAX_TIME_STEPS
 
 
 UNLIMITED = RunLimit()
@@ -91,8 +93,8 @@ class Integrator:
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
         ts.setOptionsPrefix(prefix)
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
-        ts.setMaxStepRejections(MOST_REJECTIONS)
-        ts.setMaxSNESFailures(MOST_FAILED_STAGES)
+        ts.setMaxStepRejections(MAX_REJECTIONS)
+        ts.setMaxSNESFailures(MAX_FAILED_STAGES)
         options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.family))
         ours = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
@@ -133,8 +135,8 @@ class Integrator:
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
-        ts.setMaxSteps(limit.most_steps)
-        ts.setTimeStep(step or FIRST_SHARE * duration)
+        ts.setMaxSteps(limit.max_steps)
+        ts.setTimeStep(step or FIRST_STEP_SHARE * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.reached is None:
@@ -168,7 +170,7 @@ class Integrator:
             held.destroy()
 
 
-_kept: Kept[tuple[Mesh, TimeScheme], Integrator] = Kept(lambda key: Integrator(*key), MOST_KEPT)
+_kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(lambda key: Integrator(*key), INTEGRATORS_KEPT)
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:

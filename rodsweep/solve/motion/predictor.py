@@ -13,24 +13,24 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
-from .context import AT_BASE, CONTEXT, MOST_POINTS, MOST_STAGES, OUTPUTS, states_of, times_of
+from .context import AT_BASE, CONTEXT, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
 from .time_scheme import POINTS
 
-LARGEST_GROWTH = 2.0
+LARGEST_STEP_RATIO = 2.0
 """Largest ratio of a step and the last one for which stages are extrapolated."""
-NONE = -1
+NO_POINT = -1
 """Entry of the points behind the last point of a stage."""
 
 
 def points_of(variant: str) -> NDArray[np.int64]:
-    """Extrapolation points of all stages, (MOST_STAGES, MOST_POINTS), filled up with NONE.
+    """Extrapolation points of all stages, (MAX_STAGES, MAX_STAGE_POINTS), filled up with NO_POINT.
 
-    Points of the last step have MOST_STAGES added.
+    Points of the last step have MAX_STAGES added.
     """
-    points = np.full((MOST_STAGES, MOST_POINTS), NONE)
+    points = np.full((MAX_STAGES, MAX_STAGE_POINTS), NO_POINT)
     for stage, (this, last) in POINTS.get(variant, {}).items():
-        known = [*this, *(MOST_STAGES + k for k in last)]
+        known = [*this, *(MAX_STAGES + k for k in last)]
         points[stage, : len(known)] = known
     return points
 
@@ -44,9 +44,9 @@ def begin_step(ts: int) -> int:
     c, at = record_at(context, CONTEXT), context + OUTPUTS
     outputs, real = integers(at, 3), floats(at, 3)
     times, states, base = times_of(c), states_of(c), floats(c.base, c.unknowns)
-    last = c.current * MOST_STAGES
+    last = c.current * MAX_STAGES
     c.current = 1 - c.current
-    now = c.current * MOST_STAGES
+    now = c.current * MAX_STAGES
     time_of(ts, at)
     times[now] = real[0]
     solution_of(ts, at)
@@ -82,21 +82,21 @@ def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float
 @compiled
 def predict(c: Any, guess: Array) -> None:
     """Predicted stage at c.time into guess, (unknowns,); unchanged if no extrapolation is possible."""
-    if c.stages >= MOST_STAGES or not c.steps:
+    if c.stages >= MAX_STAGES or not c.steps:
         return
-    points = integers(c.points, MOST_STAGES * MOST_POINTS).reshape(MOST_STAGES, MOST_POINTS)[c.stages]
-    points = points[: np.sum(points != NONE)]
-    times, now = times_of(c), c.current * MOST_STAGES
-    last = MOST_STAGES - now
-    if len(points) and c.length <= LARGEST_GROWTH * (times[now] - times[last]):
-        extrapolate((points + now) % (2 * MOST_STAGES), times, states_of(c), c.time, guess)
+    points = integers(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[c.stages]
+    points = points[: np.sum(points != NO_POINT)]
+    times, now = times_of(c), c.current * MAX_STAGES
+    last = MAX_STAGES - now
+    if len(points) and c.length <= LARGEST_STEP_RATIO * (times[now] - times[last]):
+        extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)
 
 
 @compiled
 def remember(c: Any, stage: Array) -> None:
     """Stores a solved stage, (unknowns,), at c.time."""
-    if c.stages < MOST_STAGES:
-        at = c.current * MOST_STAGES + c.stages
+    if c.stages < MAX_STAGES:
+        at = c.current * MAX_STAGES + c.stages
         times_of(c)[at] = c.time
         states_of(c)[at] = stage
         c.stages += 1

@@ -36,9 +36,11 @@ NEW_MATRIX_CONTRACTION = 0.3
 """Contraction above which a new matrix at the iterate pays off."""
 STAGNANT = 0.5
 """Contraction of small steps above which only rounding errors are left."""
-DIVERGING, MOST_GROWING = 2.0, 2
-"""Contraction that counts as growth, and the number of successive growths that ends the iteration."""
-LEAST_CONTRACTION_RATIO = 0.3
+DIVERGING = 2.0
+"""A contraction above this is growth."""
+MAX_GROWING = 2
+"""Number of successive growths that ends the iteration."""
+MIN_CONTRACTION_RATIO = 0.3
 """Smallest new contraction in units of the stored one."""
 FIRST_ITERATION_SAFETY = 3.0
 """Safety factor on the stored contraction at the first iteration of a stage; with 1 errors double."""
@@ -59,7 +61,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
         return NOT_FINITE
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        c.contraction = max(LEAST_CONTRACTION_RATIO * c.contraction if c.measured else 0.0, theta)
+        c.contraction = max(MIN_CONTRACTION_RATIO * c.contraction if c.measured else 0.0, theta)
         c.measured = 1
     c.growing = c.growing + 1 if theta > DIVERGING else 0
     c.last_step = dx
@@ -67,7 +69,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
     if small or (theta > STAGNANT and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
-    if c.growing >= MOST_GROWING and iteration > 3:
+    if c.growing >= MAX_GROWING and iteration > 3:
         return NOT_CONTRACTING
     if theta > NEW_MATRIX_CONTRACTION:
         c.matrix_due = AT_ITERATE

@@ -26,7 +26,7 @@ POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
     },
 }
 """Extrapolation points of each stage, by variant of ARKIMEX: (stages of this step, stages of the last step).
-Stage 0 is the state at the start. Of all sets of up to six points, these sets had the smallest errors on two
+Stage 0 is the state at the start. These sets had the smallest errors of all sets of up to six points, on two
 dozen motions, mostly of stiff rods."""
 
 

@@ -12,7 +12,7 @@ from ...discretization.stress.tip_motion import TipMatrices, tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
 from .semidiscrete import Semidiscrete
 
-REFLECTION = np.array([1.0, -1.0, -1.0])
+REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of (x, y, theta), and of (h1, h2, Pi), half a period later on a symmetric orbit."""
 OVERSAMPLING = 4
 """Samples per time node for the search of extrema."""
@@ -52,7 +52,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     strain_rates(states, nodes[1], p)
     nodes[1] *= period
     tip_motion(nodes[0], nodes[1], m, tip, velocity)
-    c = hermite_columns(tip, velocity, REFLECTION * (p.parts - 1))
+    c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
     samples = sampled_columns(c, OVERSAMPLING * (len(c) - 1))
     return TipPath(nodes, c, samples, minima(c, samples), maxima(c, samples))
 

@@ -21,7 +21,7 @@ from ...discretization.elements.periodic import (
 )
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.stress.tip_motion import tip_matrices
-from .compiled_measures import REFLECTION, harmonic_sizes, means, powers, tip_path
+from .compiled_measures import REFLECTION_SIGNS, harmonic_sizes, means, powers, tip_path
 from .orbit import Orbit
 
 
@@ -66,7 +66,7 @@ class CyclePath:
         """Coefficients of (h1, h2, Pi) at all nodes, shape (count, 3, nodes + 1)."""
         K, size = self._path.nodes.shape[2:]
         values, slopes = self._path.nodes.swapaxes(1, 2).reshape(2, K, 3 * size)
-        signs = np.repeat(REFLECTION if self.orbit.symmetric else np.zeros(3), size)
+        signs = np.repeat(REFLECTION_SIGNS if self.orbit.symmetric else np.zeros(3), size)
         c: Complex = hermite_columns(values, slopes, signs)
         return c.reshape(len(c), 3, size)
 
@@ -74,7 +74,7 @@ class CyclePath:
     def bending_harmonics(self) -> Array:
         """Sizes of Pi's harmonics from the first, root sums of squares over all nodes, shape (count - 1,)."""
         values, slopes = self._path.nodes[:, 2]
-        sizes: Array = harmonic_sizes(values, slopes, REFLECTION[2] * self.orbit.symmetric)
+        sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.symmetric)
         return sizes
 
     def resampled_tip(self, count: int) -> Array:

@@ -14,10 +14,10 @@ from .orbit import Orbit
 
 NEW_MATRIX_RATIO = 0.1
 """Ratio of successive Newton steps above which a new matrix is made."""
-LONGEST_STEP = 0.5
+LONGEST_NEWTON_STEP = 0.5
 """Largest relative change of state or period in one iteration: a larger first step is shortened, a larger and
 growing later step means that no orbit is near."""
-MOST_ITERATIONS = 12
+MAX_ORBIT_ITERATIONS = 12
 """Maximum number of iterations: a slower convergence means that no orbit is near the start."""
 QUADRATIC_ERROR = 1e5
 """Error after a step with a matrix at the iterate of a nearly neutral orbit, in units of the squared step."""
@@ -62,14 +62,14 @@ def newton(
     distance = 0.0
     last = np.inf
     step = matrix.step
-    for iteration in range(1, MOST_ITERATIONS + 1):
+    for iteration in range(1, MAX_ORBIT_ITERATIONS + 1):
         report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
-        if iteration > 1 and change > max(last, LONGEST_STEP):
+        if iteration > 1 and change > max(last, LONGEST_NEWTON_STEP):
             raise Unsolvable("there is no orbit near the start of Newton's method")
-        share = min(1.0, LONGEST_STEP / change) if change > 0 else 1.0
+        share = min(1.0, LONGEST_NEWTON_STEP / change) if change > 0 else 1.0
         orbit = orbit.moved(step, share)
         distance += share * change
         if not orbit.period > 0:
@@ -85,7 +85,9 @@ def newton(
         else:
             step = matrix.correction(orbit)
         last = change
-    raise Unsolvable(f"Newton's method for the orbit: step {change:.0e} after {MOST_ITERATIONS} iterations")
+    raise Unsolvable(
+        f"Newton's method for the orbit: step {change:.0e} after {MAX_ORBIT_ITERATIONS} iterations"
+    )
 
 
 def at_orbit(found: Converged, distance: float, parameter: str | None = None) -> Converged:

@@ -16,28 +16,34 @@ from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
 from .tails import tails_of
 
-SPACE_FACTOR, TIME_FACTOR = 5.0, 1.5
-"""Largest stated errors of period and extrema in units of the squared tails, in space and in time, as
-predicted from a coarse mesh. With these factors the first mesh is fine enough for five rods in six, and costs
-a fifth more than necessary."""
+SPACE_FACTOR = 5.0
+"""Largest stated error of period and extrema in units of the squared tail in space, as predicted from a
+coarse mesh. With SPACE_FACTOR and TIME_FACTOR the first mesh is fine enough for five rods in six, and costs a
+fifth more than necessary."""
+TIME_FACTOR = 1.5
+"""Largest stated error of period and extrema in units of the squared tail in time."""
 EXPECTED_SHARE = 1 / 3
 """Error in space, and error in time, for which a mesh is chosen, in units of the accuracy."""
-COARSER_ORDER, COARSER_SHARE = 2, 0.6
-"""Difference in order, and ratio of intervals, of the coarser mesh, with about ten times larger errors."""
-LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
-"""Smallest order of a chosen mesh, and its smallest and largest number of intervals."""
+COARSER_ORDER = 2
+"""Decrease of the order on the coarser mesh, whose errors are about ten times larger."""
+COARSER_SHARE = 0.6
+"""Ratio of the numbers of intervals of the coarser mesh and the mesh."""
+MIN_ORBIT_ORDER = 8
+"""Smallest order of a chosen mesh."""
+MIN_INTERVALS = 4
+"""Smallest number of intervals of a chosen mesh."""
+MAX_INTERVALS = 256
+"""Largest number of intervals of a chosen mesh."""
 HALVED_ORDER = 0.6
 """Order after all elements are halved, in units of the order before, at equal errors."""
-MOST_STATE_UNKNOWNS = 400
+MAX_STATE_UNKNOWNS = 400
 """Largest number of unknowns of a state; a Newton step for a larger state would take more than a second."""
 
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Mesh of an orbit: elements of one order in space, intervals with Radau stages in time.
-
-    edges: ends of the elements.
-    """
+    """Mesh of an orbit: elements of one order in space, with given edges; intervals with Radau stages in
+    time."""
 
     edges: tuple[float, ...]
     order: int
@@ -72,8 +78,8 @@ class OrbitMesh:
     @property
     def coarser(self) -> "OrbitMesh":
         """Coarser mesh for the steps along a branch to a cycle that is solved on this mesh."""
-        order = max(LEAST_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)
-        intervals = max(LEAST_INTERVALS - 1, round(COARSER_SHARE * self.intervals))
+        order = max(MIN_ORBIT_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)
+        intervals = max(MIN_INTERVALS - 1, round(COARSER_SHARE * self.intervals))
         return replace(self, order=order, intervals=intervals)
 
     @property
@@ -90,7 +96,7 @@ class OrbitMesh:
 
     @property
     def allowed(self) -> bool:
-        return self.unknowns <= MOST_STATE_UNKNOWNS and self.intervals <= MOST_INTERVALS
+        return self.unknowns <= MAX_STATE_UNKNOWNS and self.intervals <= MAX_INTERVALS
 
     @property
     def cost(self) -> float:
@@ -128,8 +134,8 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
     tail = max(tails.time, 1e-15) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
-    order = min(max(order, LEAST_ORDER), present.order + 12)
-    intervals = min(max(intervals, LEAST_INTERVALS), 4 * present.intervals)
+    order = min(max(order, MIN_ORBIT_ORDER), present.order + 12)
+    intervals = min(max(intervals, MIN_INTERVALS), 4 * present.intervals)
     return OrbitMesh(edges, order, intervals, stages)
 
 

@@ -33,7 +33,7 @@ def rods_apart(one: Orbit, other: Orbit) -> float:
 
 
 def _numbers(rod: Rod) -> Array:
-    """What the equations contain of a uniform rod, or the coordinates of all parameters of an arm, (n,)."""
+    """Coefficients in the equations of a uniform rod, or coordinates of all parameters of an arm, (n,)."""
     if rod.standard:
         return np.array([*rod.coefficients, rod.axial_drag])
     return np.array([rod.coordinate(name) for name in PARAMETERS])

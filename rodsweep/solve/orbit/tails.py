@@ -17,8 +17,10 @@ from ...discretization.state_layout import COMPONENTS, stress_place
 from ...model.compiled.compilation import compiled_for_vectors
 from .orbit import Orbit
 
-LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
-"""Bounds of the coefficients' decay in space per order, natural logarithm."""
+MIN_DECAY = 0.2
+"""Smallest decay of the coefficients in space per order, natural logarithm."""
+MAX_DECAY = 1.2
+"""Largest decay of the coefficients in space per order, natural logarithm."""
 LAST_COEFFICIENTS = 4
 """Number of last coefficients in space whose size changes smoothly from orbit to orbit."""
 
@@ -53,7 +55,7 @@ def _decay(c: Array) -> float:
             highest = max(highest, c[a, k] / max(c[a].max(), 1e-300))
         along += (k - middle) * np.log(highest)
         squares += (k - middle) ** 2
-    return min(max(-along / squares, LEAST_DECAY), LARGEST_DECAY)
+    return min(max(-along / squares, MIN_DECAY), MAX_DECAY)
 
 
 def _space_coefficients(orbit: Orbit) -> Array:

@@ -5,10 +5,10 @@ from numpy.typing import NDArray
 
 from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil, Matrices
 from ...model.rod import Rod
-from ..backend.kept import Kept
+from ..backend.kept import LruPool
 from .shift_invert import Loaded, ShiftInvertSolver
 
-MOST_KEPT = 8
+ARM_SOLVERS_KEPT = 8
 """Solvers kept for the next point on an equal mesh."""
 
 
@@ -41,7 +41,7 @@ class ArmSolver(ShiftInvertSolver):
         return Loaded(self.pencil.finite(rod), shift)
 
 
-_kept = Kept(ArmSolver, MOST_KEPT)
+_kept = LruPool(ArmSolver, ARM_SOLVERS_KEPT)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:

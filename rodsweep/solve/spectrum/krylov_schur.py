@@ -10,10 +10,10 @@ from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.pencil import Pencil, assemble
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
-from ..backend.kept import Kept
+from ..backend.kept import LruPool
 from .shift_invert import Loaded, ShiftInvertSolver
 
-MOST_KEPT = 24
+EIGEN_SOLVERS_KEPT = 24
 """Solvers kept for the next point of an equal resolution: a sweep uses few, and one has some megabytes."""
 
 
@@ -70,7 +70,7 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = Kept(EigenSolver, MOST_KEPT)
+_kept = LruPool(EigenSolver, EIGEN_SOLVERS_KEPT)
 
 
 def eigen_solver(resolution: Resolution) -> EigenSolver:

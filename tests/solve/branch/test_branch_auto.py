@@ -17,7 +17,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
-from rodsweep.solve.branch.following import BranchLimits, _edge, _on_the_edge
+from rodsweep.solve.branch.following import BranchLimits, _range_end, _at_range_end
 from rodsweep.solve.branch.settling import due, refined
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_points
@@ -77,8 +77,8 @@ def branch_of_this(rod, kind, F):
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:
             limits = BranchLimits([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500, NewtonWorkspace())
-            edge = _edge(here, limits, 0)
-            return special, refined(_on_the_edge(here, there, edge, limits), ACCURACY, edge)
+            edge = _range_end(here, limits, 0)
+            return special, refined(_at_range_end(here, there, edge, limits), ACCURACY, edge)
         here = refined(there, ACCURACY) if due(there) else there
 
 

@@ -11,7 +11,7 @@ from rodsweep.model.balance import ad
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
-from rodsweep.solve.motion.context import MOST_POINTS
+from rodsweep.solve.motion.context import MAX_STAGE_POINTS
 from rodsweep.solve.motion.integrator import (
     RELAXATION,
     Ending,
@@ -229,7 +229,7 @@ def test_predicted_stages_are_known_by_then(variant):
     for stage, (this, last) in POINTS[variant].items():
         assert all(k < stage for k in this)
         assert all(k < stages for k in last)
-        assert 0 < len(this) + len(last) <= MOST_POINTS
+        assert 0 < len(this) + len(last) <= MAX_STAGE_POINTS
 
 
 @pytest.mark.parametrize("variant", POINTS)

@@ -19,7 +19,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...point import Unsolvable
-from ..bordered import LONGEST_STEP, BorderedMatrix, Condition, Scale, moment_of, moved
+from ..bordered import LONGEST_CORRECTION, BorderedMatrix, Condition, Scale, moment_of, moved
 from .locating import REAL_MULTIPLIER
 
 CORRECTION_TOLERANCE = 1e-9
@@ -116,7 +116,7 @@ class NearbyCycles:
         """(an orbit after one correction, its relative change); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.missed(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
-        if not change <= LONGEST_STEP:
+        if not change <= LONGEST_CORRECTION:
             raise Unsolvable("there is no cycle near on the branch")
         self.distance += change
         return moved(orbit, self.scale.name, step), change

@@ -15,9 +15,9 @@ from ....arrays import Array
 from ....discretization.elements.resolution import LARGEST_ORDER
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import (
-    LEAST_INTERVALS,
-    LEAST_ORDER,
-    MOST_INTERVALS,
+    MAX_INTERVALS,
+    MIN_INTERVALS,
+    MIN_ORBIT_ORDER,
     OrbitMesh,
 )
 from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
@@ -143,10 +143,10 @@ class Calibration:
     def planned(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
-        lowest = max(LEAST_ORDER, present.order - FEWER_ORDERS)
+        lowest = max(MIN_ORBIT_ORDER, present.order - FEWER_ORDERS)
         orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MOST_ORDERS) + 1)
-        fewest = max(LEAST_INTERVALS, ceil(FEWER_INTERVALS * present.intervals))
-        intervals = np.arange(fewest, min(MOST_GROWTH * present.intervals, MOST_INTERVALS) + 1)
+        fewest = max(MIN_INTERVALS, ceil(FEWER_INTERVALS * present.intervals))
+        intervals = np.arange(fewest, min(MOST_GROWTH * present.intervals, MAX_INTERVALS) + 1)
         # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
         # distance, and in time with the smallest order.
         least = np.minimum(self.fall, self.fall[APART])

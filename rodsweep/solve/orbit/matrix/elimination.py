@@ -24,7 +24,7 @@ from .inversion import PANEL, invert
 from .substitution import reduce, to_end
 from .workspace import Factors
 
-ROWS = 8
+ROWS_IN_CACHE = 8
 """Rows of several blocks that fit into the first-level cache together."""
 
 
@@ -108,8 +108,8 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
         for j in range(2, s):
             if i != j:
                 B[i, j] = 0.0
-    for first in range(0, n, ROWS):
-        last = min(n, first + ROWS)
+    for first in range(0, n, ROWS_IN_CACHE):
+        last = min(n, first + ROWS_IN_CACHE)
         for i in range(2, s):
             _subtract_parts(right[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):

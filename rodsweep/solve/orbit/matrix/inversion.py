@@ -10,7 +10,7 @@ from ...backend.products import product
 
 PANEL = 12
 """Number of columns swept one by one by `invert` before a product updates the remaining columns."""
-LEAST_PIVOT = 0.1
+MIN_PIVOT = 0.1
 """Smallest pivot in units of its column's largest entry; a smaller pivot is exchanged for this entry."""
 
 
@@ -51,7 +51,7 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
         row, largest, p = A[k], 0.0, k
         for i in range(k, n):
             largest = max(largest, abs(row[i]))
-        if abs(row[k]) < LEAST_PIVOT * largest:
+        if abs(row[k]) < MIN_PIVOT * largest:
             for i in range(k, n):
                 if abs(row[i]) == largest:
                     p = i

@@ -35,7 +35,7 @@ class Linearisation:
         self._memory = MatrixMemory(workspace, orbit.intervals, orbit.stages, orbit.form.unknowns)
         p = orbit.semidiscrete
         factors = self._memory.factors
-        along = Along(STILL, p.mass) if parameter is None else change_along(orbit.form, parameter)
+        along = Along(NO_CHANGE, p.mass) if parameter is None else change_along(orbit.form, parameter)
         count = 2 if parameter is None else 3
         steps, self._by_period = linearise(orbit.values, count, along, p, factors)
         self.step = steps[0]
@@ -62,7 +62,7 @@ def over_period(returns: Complex, orbit: Orbit) -> Complex:
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
+NO_CHANGE = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
 """Placeholder for no change of the rod, which compiled code never reads."""
 
 

@@ -58,7 +58,7 @@ def compressed(A: Array, negligible: float) -> Array:
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _without(columns[j], q, r, j)
-        # The rest of the pivot column is rounding error: its norm is 0 by definition.
+        # The remaining pivot column is rounding error: its norm is set to 0.
         r[p], norms[p] = size, 0.0
         rank += 1
     small = np.zeros((rank, rank))
