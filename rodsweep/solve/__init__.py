@@ -1,5 +1,5 @@
-"""One parameter point at a time. The only importers of petsc4py and slepc4py are in this package.
+"""Solvers for one parameter point at a time. Only this package imports petsc4py and slepc4py.
 
-No file, no message and no other point is known here, so a point's numbers depend on its parameters
-alone: not on the rank, nor on what was solved before.
+A solver knows no file, no message and no other point: the numbers of a point depend on its parameters alone,
+not on the MPI rank nor on earlier solves.
 """

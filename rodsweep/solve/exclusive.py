@@ -1,8 +1,8 @@
-"""One thread of this process at a time, and Python's signal handlers where a solve is safe.
+"""Access for one thread of this process at a time, and signal handlers only where a solve is safe.
 
-PETSc, the solvers that are kept from point to point, HDF5 and matplotlib belong to one thread at a time. And
-compiled code calls Python back when it makes a NamedTuple of its results: an exception that a signal handler
-raises there, as Ctrl-C does, is a segmentation fault; pydantic makes another exception of it.
+PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time. Compiled
+code calls Python to make a NamedTuple of its results; an exception raised there by a signal handler, as
+Ctrl-C does, is a segmentation fault, and pydantic turns it into another exception.
 """
 
 import inspect
@@ -23,7 +23,7 @@ _one = RLock()
 
 
 def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, which waits until no other thread is inside a function of this kind."""
+    """`function`, which waits until no other thread is inside a function decorated this way."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -34,20 +34,20 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def signals_held(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, where signal handlers run at the safe places that solvers report, or at its end."""
+    """`function` with signal handlers deferred to the safe places that solvers report, or to its end."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with HeldSignals() as held, reporting_to(held.hear):
+        with HeldSignals() as held, reporting_to(held.call_due):
             return function(*values, **named)
 
     return call
 
 
 def solving(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, one at a time and with signals held.
+    """`function` for one thread at a time and with signals held.
 
-    Kept solvers are dropped after an exception: it may have come in the middle of their work.
+    Kept solvers are dropped after an exception, which may have interrupted their work.
     """
 
     @wraps(function)
@@ -62,9 +62,9 @@ def solving(function: Callable[P, R]) -> Callable[P, R]:
 
 
 class HeldSignals:
-    """Signals with handlers in Python, which are called later: at the next report, or at the end.
+    """Defers the Python handlers of signals to the next report, or to the end.
 
-    Python runs handlers in the main thread only; in others this does nothing.
+    Python runs handlers in the main thread only; in other threads this does nothing.
     """
 
     def __init__(self) -> None:
@@ -80,7 +80,7 @@ class HeldSignals:
                 if callable(handler):
                     self._handlers[number] = handler
                     signal.signal(number, self._note)
-        except BaseException:  # of a handler that was not held yet
+        except BaseException:  # raised by a handler that is not deferred yet
             self._restore()
             raise
         return self
@@ -89,8 +89,8 @@ class HeldSignals:
         self._restore()
         self._call_handlers()
 
-    def hear(self, _: MakePosition) -> None:
-        """A safe place: calls the handlers of the signals that came, and raises what they raise."""
+    def call_due(self, _: MakePosition) -> None:
+        """Calls the handlers of signals that arrived, at a safe place, and raises their exceptions."""
         if self._due and current_thread() is main_thread():
             self._call_handlers()
 
@@ -104,5 +104,5 @@ class HeldSignals:
 
     def _restore(self) -> None:
         for number, handler in self._handlers.items():
-            if signal.getsignal(number) == self._note:  # else a handler has put another in its place
+            if signal.getsignal(number) == self._note:  # otherwise a handler has installed another handler
                 signal.signal(number, handler)

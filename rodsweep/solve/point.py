@@ -1,4 +1,4 @@
-"""One point is solved: the time it takes, and a failure as its outcome instead of an exception."""
+"""Solution of one point: its duration, and a failure as an outcome instead of an exception."""
 
 import time
 from collections.abc import Callable
@@ -15,28 +15,31 @@ Outcome = TypeVar("Outcome", bound=Any)
 
 
 class Unsolvable(Exception):
-    """The model or the method has no answer for this point; says why."""
+    """The model or the method has no solution for this point; the message says why."""
 
 
 FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
-"""How a solve may fail; anything else is a bug, which ends the run."""
+"""Exceptions by which a solve may fail; any other exception is a bug, which ends the run."""
 
 
 def solved(
-    solve: Callable[[], Outcome], failed: Callable[[str], Outcome], also: tuple[type[Exception], ...] = ()
+    solve: Callable[[], Outcome],
+    failed: Callable[[str], Outcome],
+    more_failures: tuple[type[Exception], ...] = (),
 ) -> Outcome:
-    """What `solve` gives, or `failed` of the cause in one line; with its time. also: more that may fail."""
+    """Result of `solve`, or `failed(cause)`, with its duration. more_failures: further exceptions to
+    catch."""
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
             report()
             outcome = solve()
-    except (*FAILURES, *also) as error:
+    except (*FAILURES, *more_failures) as error:
         outcome = failed(cause_of(error))
     return replace(outcome, seconds=time.perf_counter() - started)
 
 
 def cause_of(error: BaseException) -> str:
-    """The last line of an error's message, which in PETSc's says what is wrong."""
+    """The last line of an error's message, which in PETSc's messages is the cause."""
     cause = error.__cause__ or error
     return (str(cause) or type(cause).__name__).splitlines()[-1]

@@ -1,4 +1,4 @@
-"""What the outcomes of all tasks have in common: a status with its sentence for the user."""
+"""Status of the outcomes of all tasks, with a sentence for the user."""
 
 from enum import IntEnum
 from typing import Self

@@ -16,7 +16,7 @@ from ..determinant.parameter_path import Path, coefficients_at, determinant_alon
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import SHORT_OF_CRUSHED
+from ..solve.changes.unstable_modes import CRUSHING_MARGIN
 
 A = TypeVar("A", bound=SlenderArm)
 PlaneRod = tuple[float, float, float]
@@ -71,7 +71,7 @@ def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
     path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
     try:
         for end in (NEAR, FARTHEST):
-            first = _first_up_to(path, min(end, k1 * (1 - SHORT_OF_CRUSHED)))
+            first = _first_up_to(path, min(end, k1 * (1 - CRUSHING_MARGIN)))
             if first < inf:
                 return float(f"{first:.{DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:

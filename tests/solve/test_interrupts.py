@@ -126,7 +126,7 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 
     before = signal.signal(signal.SIGUSR2, handler)
     try:
-        with pytest.raises(TimeoutError), HeldSignals() as held, watch.reporting_to(held.hear):
+        with pytest.raises(TimeoutError), HeldSignals() as held, watch.reporting_to(held.call_due):
             signal.raise_signal(signal.SIGUSR2)
             assert place == []
             watch.report()

@@ -1,4 +1,4 @@
-"""Whether this process can solve at all, without starting PETSc: starting it is collective over all ranks."""
+"""Check that this process can solve, without starting PETSc, whose start is collective over all ranks."""
 
 import os
 from importlib.util import find_spec

@@ -1,22 +1,22 @@
-"""The BLAS libraries of this process, and the kernel that each has taken for the processor.
+"""The BLAS libraries of this process, and the kernel of each.
 
-A library such as OpenBLAS carries a kernel for every kind of processor and chooses one when it is loaded.
-Kernels add in different orders, so that the results of two agree within rounding only. PETSc and NumPy may
-have a library each.
+A library such as OpenBLAS has a kernel for every kind of processor and chooses one when it is loaded. Kernels
+add in different orders, so the results of two kernels agree within rounding only. PETSc and NumPy may use
+different libraries.
 """
 
 from pathlib import Path
 
 from threadpoolctl import threadpool_info
 
-from . import petsc  # noqa: F401 - what is not loaded yet is not seen
+from . import petsc  # noqa: F401 - libraries are visible only once loaded
 
 NAMELESS = "unknown"
 """Name reported for a library without a name, such as the reference BLAS."""
 
 
 def blas() -> str:
-    """Name, version and kernel of PETSc's BLAS, and of NumPy's where NumPy has another, in one line."""
+    """Name, version and kernel of PETSc's BLAS, and of NumPy's if it is a different library, in one line."""
     found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":

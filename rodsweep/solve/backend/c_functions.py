@@ -27,7 +27,7 @@ CALLED = (
     "MatDenseRestoreArray",
     "PetscObjectStateGet",
 )
-"""What compiled code calls."""
+"""Functions of PETSc that compiled code calls."""
 LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the libraries it is linked to
 for _name in CALLED:
     binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
@@ -41,13 +41,13 @@ def c_function(*arguments: Any) -> Callable[[Callable], Any]:
 
 
 def petsc_function(name: str) -> Any:
-    """int name(object, array*) of libpetsc for compiled callers; unlike one of ctypes it can be cached."""
+    """int name(object, array*) of libpetsc for compiled callers; cacheable, unlike a function of ctypes."""
     return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
 
 
 @intrinsic
 def pointer(context: Any, address: Any) -> Any:
-    """An integer as a pointer."""
+    """An integer converted into a pointer."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
@@ -62,7 +62,8 @@ def floats(address: int, size: int) -> Any:
 
 @compiled
 def floats_in(address: int, shape: Any) -> Any:
-    """As `floats`, in a tuple's shape at once: each `reshape` takes as long as a rod's rate at ten nodes."""
+    """`floats` with the shape of a tuple; a separate `reshape` takes as long as the rate of a rod with ten
+    nodes."""
     return numba.carray(pointer(address), shape, np.float64)
 
 
@@ -73,11 +74,11 @@ def integers(address: int, size: int) -> Any:
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
-    """The record of fields `dtype` at an address; what is assigned to a field is written there."""
+    """The record with fields `dtype` at an address; assignments to its fields write to this memory."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 
 def call(name: str, *arguments: int) -> None:
-    """A function of libpetsc whose arguments are all pointers."""
+    """Calls a function of libpetsc whose arguments are all pointers; raises RuntimeError if it fails."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"{name} failed")

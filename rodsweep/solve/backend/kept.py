@@ -1,6 +1,6 @@
-"""Objects of PETSc and SLEPc that are kept from point to point, and destroyed when others take their place.
+"""Pool of PETSc and SLEPc objects that are kept from point to point and destroyed when replaced.
 
-Left to Python they are not: petsc4py only sets aside what the garbage collector finds.
+Python's garbage collection would not destroy them: petsc4py only sets the collected objects aside.
 """
 
 from collections import OrderedDict
@@ -10,7 +10,7 @@ from weakref import WeakSet
 
 
 class Destroyable(Protocol):
-    """What gives its memory back when told to."""
+    """An object that can free its memory."""
 
     def destroy(self) -> None: ...
 
@@ -22,8 +22,8 @@ Object = TypeVar("Object", bound=Destroyable)
 class LruPool(Generic[Key, Object]):
     """A pool of objects made by `create` from keys; a full pool drops the least recently used object."""
 
-    def __init__(self, create: Callable[[Key], Object], most: int) -> None:
-        self._create, self._most = create, most
+    def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
+        self._create, self._limit = create, limit
         self._objects: OrderedDict[Key, Object] = OrderedDict()
         _pools.add(self)
 
@@ -31,9 +31,9 @@ class LruPool(Generic[Key, Object]):
         return len(self._objects)
 
     def get(self, key: Key) -> Object:
-        """The object of a key, kept or new; it may be destroyed at the next call with another key."""
+        """The object of a key, kept or new; a later call with another key may destroy it."""
         if key not in self._objects:
-            while len(self._objects) >= self._most:
+            while len(self._objects) >= self._limit:
                 self._objects.popitem(last=False)[1].destroy()
             self._objects[key] = self._create(key)
         self._objects.move_to_end(key)
@@ -45,7 +45,7 @@ class LruPool(Generic[Key, Object]):
             self._objects.pop(key).destroy()
 
     def clear(self) -> None:
-        """Destroys all."""
+        """Destroys all objects."""
         while self._objects:
             self._objects.popitem()[1].destroy()
 
@@ -54,6 +54,6 @@ _pools: WeakSet[LruPool[Any, Any]] = WeakSet()
 
 
 def forget_all() -> None:
-    """Destroys every kept object: after an exception in the middle of a solve any of them may be unusable."""
+    """Destroys every kept object: an exception in the middle of a solve may leave any of them unusable."""
     for pool in list(_pools):
         pool.clear()

@@ -8,7 +8,7 @@ try:
     import petsc4py
     import slepc4py
 
-    # Its handlers would turn a reader's broken pipe into an abort of all ranks.
+    # With PETSc's signal handlers a broken pipe of a reader would abort all ranks.
     petsc4py.init(["rodsweep", "-no_signal_handler"])
     slepc4py.init(["rodsweep"])
     from petsc4py import PETSc
@@ -22,10 +22,10 @@ except ImportError as error:
 __all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options", "sparse_package", "versions"]
 
 PETSC_ERRORS = (PETSc.Error, SystemError)
-"""SystemError is how some releases of petsc4py wrap a PETSc.Error."""
+"""Errors of PETSc; some releases of petsc4py wrap a PETSc.Error into a SystemError."""
 
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
-"""Sparse factorisations that pivot, the fastest on these matrices first. PETSc's own does not."""
+"""Sparse factorisations with pivoting, the fastest on these matrices first; PETSc's own has no pivoting."""
 
 
 @cache
@@ -48,6 +48,6 @@ def versions() -> dict[str, str]:
 
 
 def options(prefix: str = "") -> str:
-    """The options of that prefix given to PETSc by PETSC_OPTIONS or a resource file, as one line."""
+    """PETSc options with this prefix from PETSC_OPTIONS or a resource file, as one line."""
     given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
     return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))

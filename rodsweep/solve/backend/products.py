@@ -1,7 +1,7 @@
-"""Products of small dense matrices in compiled code, by the BLAS that SciPy brings.
+"""Products of small dense matrices in compiled code, by SciPy's BLAS.
 
-At 50 unknowns its dgemm is four times as fast as loops, and ten times as fast as its own factorisation and
-substitution; `solve.orbit.matrix.elimination` is therefore made of products.
+At 50 unknowns dgemm is four times as fast as loops, and ten times as fast as factorisation and substitution
+by the same library; `solve.orbit.matrix.elimination` therefore consists of products.
 """
 
 from typing import Any
@@ -17,20 +17,20 @@ from ...model.compiled.compilation import compiled
 
 _ADDRESS = types.intp
 binding.add_symbol("rodsweep_dgemm", get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))
-# By name, not by address, so that what is compiled can be cached.
+# By name, not by address, so that the compiled code can be cached.
 _dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *[_ADDRESS] * 13))
 
 
 @compiled
 def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
-    """C = factors[0] A B + factors[1] C for rows stored one after another.
+    """C = factors[0] A B + factors[1] C, for matrices stored by rows.
 
-    a, b, c: addresses of the first entries; extents: int32 (m, n, k, lda, ldb, ldc) of A (m, k), B (k, n) and
-    their row lengths.
+    a, b, c: addresses of the first entries. extents: int32 (m, n, k, lda, ldb, ldc) for A (m, k) and B (k,
+    n), with the row lengths of A, B and C.
     """
     plain = np.full(1, 78, np.uint8)  # "N"
     no, e, f = plain.ctypes.data, extents.ctypes.data, factors.ctypes.data
-    # BLAS counts by columns: it is told to compute C^T = B^T A^T.
+    # BLAS stores matrices by columns, so it is called for C^T = B^T A^T.
     _dgemm(no, no, e + 4, e, e + 8, f, b, e + 16, a, e + 12, f + 8, c, e + 20)
 
 

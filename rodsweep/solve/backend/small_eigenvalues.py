@@ -1,4 +1,4 @@
-"""Eigenvalues of small dense matrices in compiled code, by the LAPACK that SciPy brings."""
+"""Eigenvalues of small dense matrices in compiled code, by SciPy's LAPACK."""
 
 import numpy as np
 from llvmlite import binding
@@ -11,21 +11,21 @@ from ...model.compiled.compilation import compiled
 
 _ADDRESS = types.intp
 binding.add_symbol("rodsweep_dgeev", get_cython_function_address("scipy.linalg.cython_lapack", "dgeev"))
-# By name, not by address, so that what is compiled can be cached.
+# By name, not by address, so that the compiled code can be cached.
 _dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *[_ADDRESS] * 14))
 WORK = 12
-"""Work memory in units of the order; LAPACK asks for 3, and uses more by itself for blocks."""
+"""Work memory in units of the order; LAPACK needs at least 3, and uses more for blocked algorithms."""
 
 
 @compiled
 def eigenvalues(A: Array) -> Complex:
-    """The eigenvalues, (n,), of a matrix (n, n) of finite numbers; nan where LAPACK finds them not."""
+    """Eigenvalues, (n,), of a finite matrix (n, n); nan if LAPACK does not converge."""
     n = len(A)
     a, parts, work = A.copy(), np.empty((2, n)), np.empty(WORK * n)
     extents = np.array([n, len(work), 0], np.int32)
     none = np.full(1, 78, np.uint8)  # "N"
     no, e, v, w = none.ctypes.data, extents.ctypes.data, parts.ctypes.data, work.ctypes.data
-    # Of A^T, as LAPACK counts by columns: it has the same eigenvalues.
+    # LAPACK stores matrices by columns and sees A^T, which has the same eigenvalues.
     _dgeev(no, no, e, a.ctypes.data, e, v, v + 8 * n, w, e, w, e, w, e + 4, e + 8)
     values = np.empty(n, np.complex128)
     for i in range(n):

@@ -20,7 +20,7 @@ from ..orbit.orbit_mesh import mesh_of
 from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
 from .errors import BranchCalibration, Place
 
-STEPS = StepControl(
+ARC_STEPS = StepControl(
     first=0.02,
     longest=0.25,
     shortest=5e-6,
@@ -148,13 +148,13 @@ def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) 
 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
-    end, length = advance(partial(_stepped, start, accuracy), start.length, STEPS)
-    return replace(end.solution, length=STEPS.next_length(length, end, STEPS.order))
+    end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
+    return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.order))
 
 
 def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
     """The cycle at an arc length from `start`; raises Unsolvable if it may lie on another branch."""
-    return STEPS.accepted(_stepped(start, accuracy, length)).solution
+    return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
 
 
 def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
@@ -167,8 +167,8 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoin
     tolerance = newton_tolerance(accuracy)
     found = condition.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.before is None and off <= STEPS.far:
-        off = STEPS.aim  # the error of a tangent says nothing of the cubic of later steps
+    if start.before is None and off <= ARC_STEPS.far:
+        off = ARC_STEPS.aim  # the error of a tangent says nothing of the cubic of later steps
     tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered(found))
     cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
     return Stepped(cycle_ahead(start, found, tangent, length, length, accuracy), off, cosine)

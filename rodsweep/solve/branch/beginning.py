@@ -14,7 +14,7 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
@@ -145,7 +145,7 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
     scale = Scale.of(start, hopf.name, abs(moment_of(start)) * MIN_MOMENT_AMPLITUDE / amplitude)
     border = np.sign(moment_of(start)) * MOMENT
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEAR, workspace)
+    rough = condition.solved(start, NEARBY_TOLERANCE, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     if not 0.5 < y / amplitude < 2.0:

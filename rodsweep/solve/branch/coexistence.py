@@ -21,7 +21,7 @@ from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
 from .special.point import EndReason, SpecialPoint
 
-MAX_CYCLES = 500
+MAX_ROW_CYCLES = 500
 """Maximum number of cycles on all branches of one row."""
 
 
@@ -110,7 +110,7 @@ def row_branches(
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,
-        cycles=MAX_CYCLES,
+        cycles=MAX_ROW_CYCLES,
         special=special,
     )
     return solve_branches(rod, asked, workspace)

@@ -13,9 +13,9 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..cycle.accuracy.calibration import MULTIPLIER, SAFETY, Calibration, calibration_of
-from ..cycle.accuracy.cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
-from ..cycle.accuracy.finer_meshes import DISTANCE, finer_meshes
+from ..cycle.accuracy.calibration import ERROR_FACTOR, MULTIPLIER, Calibration, calibration_of
+from ..cycle.accuracy.cycle_errors import ERROR_ROUNDING, MIN_CLAIM, CycleErrors
+from ..cycle.accuracy.finer_meshes import COMPARED_DISTANCE, finer_meshes
 from ..cycle.along_parameter import carried
 from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of
@@ -33,7 +33,7 @@ MIN_MOMENT_SHARE = 0.1
 for the parameter's error at an equal moment; where the moment is stationary that error is undefined."""
 INTERPOLATION_FACTOR = 2.0
 """Safety factor on interpolated errors."""
-MIN_ERROR = 1e-16
+NEGLIGIBLE_ERROR = 1e-16
 """Smallest error; smaller differences are rounding."""
 NEWTON_SHARE = 0.01
 """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
@@ -95,7 +95,7 @@ class BranchCalibration:
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at an equal moment."""
-        return max(SAFETY * float(self.parameter.sum()), LEAST_CLAIM * accuracy, ROUNDING)
+        return max(ERROR_FACTOR * float(self.parameter.sum()), MIN_CLAIM * accuracy, ERROR_ROUNDING)
 
     def largest(self, accuracy: float) -> float:
         """The error that must not exceed the accuracy."""
@@ -147,7 +147,7 @@ class BranchCalibration:
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
     """Errors at a share of the way, times INTERPOLATION_FACTOR, at most the larger of both; of any shape."""
-    logarithms = np.log(np.maximum([one, other], MIN_ERROR))
+    logarithms = np.log(np.maximum([one, other], NEGLIGIBLE_ERROR))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
     bounded: Array = np.minimum(INTERPOLATION_FACTOR * means, np.maximum(one, other))
     return bounded
@@ -165,7 +165,7 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, NEWTON_SHARE * accuracy, DISTANCE)
+        fine = condition.on(target, found, NEWTON_SHARE * accuracy, COMPARED_DISTANCE)
         part[:] = _difference(rough, multipliers, fine, place)
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)

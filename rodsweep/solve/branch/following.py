@@ -15,7 +15,7 @@ from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import STEPS, ArcPoint, arc_between, cycle_ahead, next_point, point_at, tangent_at
+from .arc import ARC_STEPS, ArcPoint, arc_between, cycle_ahead, next_point, point_at, tangent_at
 from .beginning import HopfBirth, beginning, special_hopf
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve, BranchEnd
@@ -196,7 +196,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
     shorter = arc_between(start, end) / 2
     if start.cycle.measures.tip_y_max > SMALL_CYCLE:
-        if shorter < STEPS.shortest:
+        if shorter < ARC_STEPS.shortest:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the moment.

@@ -11,7 +11,7 @@ from ..cycle.accuracy.refinement import judged_by, matrix_distance, newton_toler
 from ..orbit.newton import Converged, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
-from .arc import STEPS, ArcPoint, placed, tangent_at
+from .arc import ARC_STEPS, ArcPoint, placed, tangent_at
 from .bordered import Condition, Scale, bordered
 from .errors import BranchCalibration, measured_errors, slope_at
 
@@ -45,7 +45,9 @@ def first_point(found: Converged, scale: Scale, side: Array, born: float, accura
     place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, place, accuracy, None)
     cycle = judged_by(calibration.known, found, accuracy)
-    return refined(ArcPoint(cycle=cycle, place=place, length=STEPS.first, calibration=calibration), accuracy)
+    return refined(
+        ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first, calibration=calibration), accuracy
+    )
 
 
 def due(point: ArcPoint) -> bool:

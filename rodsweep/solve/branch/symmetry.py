@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
@@ -21,7 +21,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..orbit.symmetry import NONE
 from ..point import Unsolvable
-from .arc import STEPS, ArcPoint, arc_between
+from .arc import ARC_STEPS, ArcPoint, arc_between
 from .beginning import MOMENT
 from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .settling import first_point
@@ -121,7 +121,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     scale = whole.scale
     border = np.sign(change) * MOMENT
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEAR, whole.workspace)
+    rough = condition.solved(start, NEARBY_TOLERANCE, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
@@ -164,7 +164,7 @@ def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], acc
     which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= MIN_ASYMMETRY:
         return which
-    if arc_between(start, end) / 2 < STEPS.shortest:
+    if arc_between(start, end) / 2 < ARC_STEPS.shortest:
         raise Unsolvable("the motion becomes its mirror image within the shortest step")
     return None
 

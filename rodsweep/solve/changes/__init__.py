@@ -1,1 +1,1 @@
-"""Where the spectrum changes along a parameter: thresholds of a rod, rows and boundaries of a diagram."""
+"""Changes of the spectrum along a parameter: thresholds of a rod, rows and boundaries of a diagram."""

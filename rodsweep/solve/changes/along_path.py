@@ -1,9 +1,9 @@
-"""Everything that changes along a path of rods: crossings of the imaginary axis, and who leads.
+"""All stability changes along a path of rods: crossings of the imaginary axis, changes of the leading
+eigenvalue.
 
-The crossings come from `rodsweep.determinant.certificate.covering`, which proves that there are no
-others, the changes of the leading eigenvalue from `leading_eigenvalue`. Here they become one list in
-increasing order of the parameter, and the winding number confirms how many modes are unstable at both ends
-and in between.
+The crossings come from `rodsweep.determinant.certificate.covering`, which proves that the list is complete,
+the changes of the leading eigenvalue from `leading_eigenvalue`. They are merged into one list in increasing
+order of the parameter. The winding number confirms the number of unstable modes at both ends and between.
 """
 
 import math
@@ -18,20 +18,20 @@ from .leading_eigenvalue import Tracer
 from .path_problem import PathProblem, UniformPath, path_problem
 from .unstable_modes import Counts, Crossing, Kind
 
-BESIDE = 1e-4
-"""Distance from a crossing, in units of the path, of an anchor where the pair must lead."""
-ONE_RANGE = 1e-5
-"""Relative distance of open boxes below which they make one range."""
+ANCHOR_DISTANCE = 1e-4
+"""Distance from a crossing, in units of the path, of an additional anchor at which the pair must lead."""
+MERGE_DISTANCE = 1e-5
+"""Relative distance below which open boxes are merged into one range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transitions:
     """All changes along a path, in increasing order of its parameter.
 
-    open_range: the interval that holds every place where two crossings may lie, or none; nan if there
-    is no such place. oscillates_at_start: whether a pair leads there. proved: the covering is complete,
-    every count agrees, and nothing lies right of an eigenvalue said to lead. boxes: evaluations of D that
-    the covering took; solves: eigenproblems.
+    open_range: smallest interval that contains all places where two further crossings are possible; nan if
+    there is no such place. oscillates_at_start: whether a pair leads there. proved: whether the covering is
+    complete, every count agrees, and no eigenvalue lies right of a leading eigenvalue. boxes: evaluations of
+    D by the covering. solves: number of eigenproblems. why_not: reasons why the list is not proved.
     """
 
     crossings: tuple[Crossing, ...] = ()
@@ -48,7 +48,7 @@ class Transitions:
 def transitions(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
     """All changes from the value `start` of the path's parameter up to `stop`.
 
-    Raises Unsolvable where no a-priori bound applies or a spectrum cannot be had.
+    Raises Unsolvable if no a-priori bound applies or a spectrum cannot be solved.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
@@ -63,7 +63,7 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
         if not missed:
             break
-        near = [(p + side * BESIDE * (high - low)) for p in missed for side in (-1, 1)]
+        near = [(p + side * ANCHOR_DISTANCE * (high - low)) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
         counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
@@ -74,10 +74,9 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
 
 
 def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
-    """The changes of which a pair crosses the axis alone, without a spectrum: in half of the time.
+    """Crossings of the axis by pairs only, without any spectrum: this takes half the time.
 
-    proved: the covering is complete and every count agrees. Raises Unsolvable where no a-priori bound
-    applies.
+    proved: the covering is complete and every count agrees. Raises Unsolvable if no a-priori bound applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
@@ -92,9 +91,9 @@ def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) 
 def _counted(
     counts: Counts, unstable: int, crossings: tuple[Crossing, ...], at_end: int, examined: int
 ) -> Transitions:
-    """What the counts say of the crossings; nothing of who leads at the start.
+    """The counted crossings as `Transitions`, without the leading eigenvalue at the start.
 
-    unstable, at_end: unstable modes at both ends of the path; examined: evaluations of D.
+    unstable, at_end: number of unstable modes at the two ends of the path. examined: evaluations of D.
     """
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
@@ -109,11 +108,11 @@ def _counted(
 
 
 Found = tuple[list[Crossing], list[tuple[float, float]], int]
-"""(crossings of the axis, intervals in which others may lie, evaluations of D)."""
+"""(crossings of the axis, intervals that may contain further crossings, evaluations of D)."""
 
 
 def _crossings(problem: PathProblem, low: float, high: float, certify: bool) -> Found:
-    """The crossings of a path: by the covering, or between counts for arms that are not uniform."""
+    """Crossings of a path: by the covering, or between counts for nonuniform arms."""
     if isinstance(problem, UniformPath):
         return _covered(problem.path, low, high)
     search = CrossingSearch(problem, certify)
@@ -133,14 +132,15 @@ def _covered(path: Path, low: float, high: float) -> Found:
 
 
 def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
-    """The interval from the first to the last."""
+    """The smallest interval that contains all gaps."""
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
 def _pairs_that_do_not_lead(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of crossings whose pair is alone on the axis and so must lead, but is said not to."""
+    """Path variables of crossings whose pair alone is on the axis, hence must lead, but does not in the
+    list."""
     missed = []
     for crossing in crossings:
         if crossing.kind.of_the_leader:
@@ -153,7 +153,7 @@ def _pairs_that_do_not_lead(
 
 
 def _hopf(path: Path, zero: Zero) -> Crossing:
-    """A crossing, hopf or hopf_reverse by the direction in which the pair moves."""
+    """A crossing; the direction in which the pair moves decides between hopf and hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     growing = (-there.D_p / there.D_w).real > 0
@@ -163,10 +163,10 @@ def _hopf(path: Path, zero: Zero) -> Crossing:
 
 
 def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
-    """Disjoint intervals of the parameter that the open boxes cover."""
+    """Disjoint intervals of the parameter covered by the open boxes."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.variable(box.p_from), path.variable(box.p_to))) for box in left):
-        if gaps and a <= gaps[-1][1] * (1 + ONE_RANGE):
+        if gaps and a <= gaps[-1][1] * (1 + MERGE_DISTANCE):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:
             gaps.append((a, b))

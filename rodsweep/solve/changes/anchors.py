@@ -1,4 +1,4 @@
-"""What two rods of a path with their leading eigenvalues say about those between them."""
+"""Interpolation of the leading eigenvalues between two rods of a path."""
 
 import math
 from dataclasses import dataclass
@@ -7,15 +7,16 @@ from functools import cached_property
 from ...arrays import Complex
 
 EXPLAINED = 0.25
-"""Share of a quantity that its cubic model may miss between two anchors."""
+"""Largest error of a cubic interpolation between two anchors, as a fraction of the interpolated quantity."""
 
 
 @dataclass(frozen=True)
 class Anchor:
-    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (ANCHOR_MODES,).
+    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, (ANCHOR_MODES,).
 
-    time, lengthening: a time on which the rod relaxes, smooth along the path, and its slope. In its units w
-    is of order one; without shear and rotational drag it grows like nu^-2 where the rod is nearly crushed.
+    time, lengthening: a relaxation time of the rod, smooth along the path, and its slope. In units of its
+    inverse w is of order one; without shear and rotational drag, w itself grows like nu^-2 for a nearly
+    crushed rod.
     """
 
     p: float
@@ -30,7 +31,8 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, its slope) of the two that lead, where both are real or both are a pair."""
+        """((w1 - w2)^2 time^2, its slope) of the two leading eigenvalues if both are real or form a pair;
+        else None."""
         if self.oscillates:
             gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
             return -(gap**2), -2 * gap * slope
@@ -40,24 +42,25 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(lead of the real part over the first eigenvalue of the other kind, times time, its slope)."""
+        """(distance of the real part from the first eigenvalue of the other kind, times time, its slope); or
+        None."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
     def _timed(self, value: float, slope: float) -> tuple[float, float]:
-        """(value time, its slope): zeros and signs stay where they are."""
+        """(value times time, its slope): this scaling changes no zero and no sign."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
 def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
-    """(least value on [0, 1] of the cubic with these values and slopes at its ends, where)."""
+    """(least value on [0, 1] of the cubic with these values and slopes at its ends, its place)."""
     square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
     lowest, at = min(a, b), 0.5
     spread = square * square - 3 * cube * slope_a
     if spread >= 0 and (square or cube):
-        # The root of slope_a + 2 square t + 3 cube t^2 at which the slope grows, without cancellation.
+        # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
         root = math.sqrt(spread)
         t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
         value = a + t * (slope_a + t * (square + t * cube))
@@ -67,9 +70,9 @@ def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[
 
 
 def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
-    """(where to put an anchor between two of equal character, whether two changes may hide between them).
+    """(place for an anchor between two of equal character, whether two changes may hide between them).
 
-    The place is a share of the interval, 0 where slopes explain what lies between and no change fits in.
+    The place is a fraction of the interval; 0 if the slopes explain the values and exclude a change.
     """
     h = right.p - left.p
     for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):

@@ -1,8 +1,8 @@
-"""Crossings of the imaginary axis along a path of arms, for which no covering proves that none is missed.
+"""Crossings of the imaginary axis along a path of arms. No covering proves their list complete.
 
-The unstable modes are counted at places along the path. Where the number changes by one pair, Newton's method
-on D finds the crossing; where it stays, the pairs nearest to the axis must be explained as going past it by
-their slopes at both places, or a place is put between.
+The unstable modes are counted at places along the path. Between places whose counts differ by one pair,
+Newton's method on D finds the crossing. Between places with equal counts, the slopes of the pairs nearest to
+the axis must exclude two crossings; otherwise a place is added between.
 """
 
 import math
@@ -15,24 +15,26 @@ from .anchors import EXPLAINED, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
-MODES = 4
-"""Leading eigenvalues known at a place, at least; two more than are unstable."""
-MOST_MODES = 40
-"""Largest number of modes known at a place."""
-ACCURACY = 1e-6
-"""Accuracy of these eigenvalues; Newton's method on D does the rest."""
-CLOSEST = 1e-6
-"""Distance of places, in units of the path, below which a window of flutter may hide undecided."""
-BESIDE = 1e-5
-"""Distance from a crossing, in units of the path, at which the modes are counted next to it."""
-MAX_NEWTON_STEPS = 20
-LAST_STEP = 4.0
-"""A last step in units of its error that ends Newton's method."""
+MIN_KNOWN_MODES = 4
+"""Smallest number of leading eigenvalues known at a place; at least two more than are unstable."""
+MAX_KNOWN_MODES = 40
+"""Largest number of leading eigenvalues known at a place."""
+PLACE_ACCURACY = 1e-6
+"""Accuracy of these eigenvalues; Newton's method on D refines them."""
+SMALLEST_INTERVAL = 1e-6
+"""Length of an interval, in units of the path, that is not divided further: two crossings in it stay
+undecided."""
+COUNT_DISTANCE = 1e-5
+"""Distance from a crossing, in units of the path, of the counts on both its sides."""
+MAX_CROSSING_STEPS = 20
+"""Maximum number of Newton steps for one crossing."""
+CONVERGED_STEP = 4.0
+"""Newton's method ends at a step below this multiple of the error of p."""
 
 
 @dataclass(frozen=True)
 class AxisPlace:
-    """The leading eigenvalues at p, (modes,), their slopes, (modes,), and the number of unstable ones."""
+    """A place p: its leading eigenvalues w, their slopes, (modes,) each, and the number of unstable modes."""
 
     p: float
     w: Complex
@@ -40,7 +42,8 @@ class AxisPlace:
     unstable: int
 
     def nearest(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the axis, its slope by p) of the pair nearest to the axis on one of its sides."""
+        """(distance from the axis, its slope by p) of the pair nearest to the axis on one side; None without
+        a pair."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
         if not pairs:
             return None
@@ -50,9 +53,9 @@ class AxisPlace:
 
 
 class CrossingSearch:
-    """The search along one path.
+    """The search for crossings along one path.
 
-    gaps: intervals of p in which two crossings may hide.
+    gaps: intervals of p that may contain two undecided crossings.
     """
 
     def __init__(self, problem: PathProblem, certify: bool):
@@ -61,13 +64,13 @@ class CrossingSearch:
         self.gaps: list[tuple[float, float]] = []
 
     def place(self, p: float) -> AxisPlace:
-        """The place at p; Unsolvable where its eigenvalues or their number cannot be had."""
+        """The place at p; raises Unsolvable if its eigenvalues or their count cannot be computed."""
         if p not in self.places:
-            modes = MODES
-            found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
-            while modes < _needed(found) <= MOST_MODES:
+            modes = MIN_KNOWN_MODES
+            found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
+            while modes < _needed(found) <= MAX_KNOWN_MODES:
                 modes = _needed(found)
-                found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
+                found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
             slopes = found.eigenvalues.copy()
@@ -88,7 +91,7 @@ class CrossingSearch:
                 share = hidden(left, right)
                 if share == 0.0:
                     continue
-                if b - a <= CLOSEST * length:
+                if b - a <= SMALLEST_INTERVAL * length:
                     self.gaps.append((a, b))
                     continue
             else:
@@ -108,14 +111,15 @@ class CrossingSearch:
     def _confirmed(
         self, crossing: Crossing, left: AxisPlace, right: AxisPlace, length: float
     ) -> tuple[float, float] | None:
-        """The p just before and just behind a crossing; None where the counts there do not confirm it."""
+        """(p just before, p just behind) a crossing; None if the counts at these do not confirm the
+        crossing."""
         p = self.problem.path.variable(crossing.at)
-        before, behind = max(left.p, p - BESIDE * length), min(right.p, p + BESIDE * length)
+        before, behind = max(left.p, p - COUNT_DISTANCE * length), min(right.p, p + COUNT_DISTANCE * length)
         change = self.place(behind).unstable - self.place(before).unstable
         return (before, behind) if change == right.unstable - left.unstable else None
 
     def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
-        """The crossing between two places at which the numbers of unstable modes differ by a pair."""
+        """The crossing between two places whose counts differ by one pair; None if not found."""
         grows = right.unstable > left.unstable
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
@@ -126,9 +130,10 @@ class CrossingSearch:
         return None
 
     def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
-        """Newton's method for the place where the i-th eigenvalue of a place meets the axis."""
+        """Newton's method for the p at which eigenvalue i of a place lies on the axis; None without
+        convergence."""
         p, w, slope = start.p, complex(start.w[i]), complex(start.slopes[i])
-        for _ in range(MAX_NEWTON_STEPS):
+        for _ in range(MAX_CROSSING_STEPS):
             if slope.real == 0 or not math.isfinite(slope.real):
                 return None
             step = -w.real / slope.real
@@ -137,12 +142,12 @@ class CrossingSearch:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
             blur = error / abs(slope.real) + 4e-16 * abs(p)
-            if abs(w.real / slope.real) <= LAST_STEP * blur:
+            if abs(w.real / slope.real) <= CONVERGED_STEP * blur:
                 return self._crossing(p, w, slope, blur, grows)
         return None
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
-        """The crossing, unless the pair crosses the other way."""
+        """The crossing; None if the pair crosses in the opposite direction."""
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
         kind = Kind.hopf if grows != self.problem.path.inverse else Kind.hopf_reverse
@@ -152,13 +157,13 @@ class CrossingSearch:
 
 
 def _needed(found: Spectrum) -> int:
-    """Number of modes beyond all unstable ones; without a count they may be more than those found."""
+    """Two more modes than are unstable; without a count the growing modes found are taken."""
     growing = int((found.eigenvalues.real > 0).sum())
     return 2 + max(found.unstable_count, growing)
 
 
 def hidden(left: AxisPlace, right: AxisPlace) -> float:
-    """Where to count next between two places, as a pair may touch the axis: a share, or 0 for nowhere."""
+    """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if none can."""
     h = right.p - left.p
     for growing in (False, True):
         a, b = left.nearest(growing), right.nearest(growing)

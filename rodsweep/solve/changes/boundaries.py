@@ -1,4 +1,4 @@
-"""The boundaries of a phase diagram: the curves on which the changes of its rows lie.
+"""Boundaries of a phase diagram: the curves through the stability changes of its rows.
 
 The curves are traced from the changes of all rows (`rodsweep.solve.changes.boundary_curves`).
 """
@@ -17,19 +17,20 @@ from .boundary_curves import BoundaryCurve, trace
 from .unstable_modes import Kind
 
 SAME_COORDINATE = 1e-12
-"""Difference of two coordinates that is none."""
-ON_CURVE = 1e-3
-"""Relative distance of the eigenvalue below which a change may lie on a curve beside it."""
-MOST_SECANTS = 20
-SAME_ENDS = 1e-6
-"""Distance of two ends, eigenvalues included, below which their curves are one: curves do not cross."""
-AGREE = 1e-7
-"""Distance, in units of the axis, below which a change lies on a curve."""
+"""Two scaled coordinates with a smaller difference are equal."""
+SAME_EIGENVALUE = 1e-3
+"""Relative difference of the eigenvalues below which a change may lie on a curve beside it."""
+MAX_BOUNDARY_SECANTS = 20
+"""Maximum number of secant steps to a point of a curve at a given height."""
+COINCIDENT_ENDS = 1e-6
+"""Two curves with ends at a smaller distance, eigenvalue included, are the same: curves do not cross."""
+CHANGE_DISTANCE = 1e-7
+"""A change at a smaller distance from a curve, in units of the axis, lies on the curve."""
 
 
 @dataclass(frozen=True, slots=True)
 class Seed:
-    """A change on a row, as a start for a curve: values of both parameters and the eigenvalue there."""
+    """A change on a row as the start of a curve: values of both parameters, and the eigenvalue."""
 
     values: tuple[float, float]
     sign: float
@@ -39,7 +40,7 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a change, or None for an overtaking, which lies on neither kind of curve."""
+    """The seed of a change; None for an overtaking, which lies on no curve of either kind."""
     if kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (Kind.onset, Kind.real_again):
@@ -55,11 +56,11 @@ class _ChangeBoundaries:
     seeds: list[Seed]
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """The first."""
+        """The first change on no curve."""
         return left[0]
 
     def lacking(self, seed: int) -> list[int]:
-        """None: a curve takes milliseconds."""
+        """No unit of work: a curve takes milliseconds and is traced at once."""
         return []
 
     def curve(self, seed: int) -> BoundaryCurve | None:
@@ -69,23 +70,25 @@ class _ChangeBoundaries:
         return trace(one.sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
-        """How far along the first axis a change lies from a curve, at its place on the second axis."""
+        """Distance along the first axis of a change from a curve, at the height of the change."""
         return _distance(self.plane, curve, self.seeds[seed])
 
     def same(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
-        """Whether they share an end: beside a crushed rod a change may not be found on its own curve."""
+        """Whether two curves share an end: beside a crushed rod a change may not be found on its own
+        curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
-        return one.sign == other.sign and float(np.abs(ends).max(axis=-1).min()) < SAME_ENDS
+        return one.sign == other.sign and float(np.abs(ends).max(axis=-1).min()) < COINCIDENT_ENDS
 
 
 def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
-    """The curves through all changes; each is followed once, and every change is then found on one."""
+    """Curves through all changes; each curve is followed once, and every change is then found on a curve."""
     problem = _ChangeBoundaries(plane, seeds)
-    return boundary_search(problem, range(len(seeds)), AGREE).boundaries
+    return boundary_search(problem, range(len(seeds)), CHANGE_DISTANCE).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
-    """How far along the first axis a change lies from the curve, at its place on the second axis."""
+    """Distance along the first axis of a change from the curve at the height of the change; inf if not
+    near."""
     if curve.sign != seed.sign:
         return math.inf
     x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
@@ -93,25 +96,25 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     side = points[:, 1] - y
     side[np.abs(side) < SAME_COORDINATE] = 0.0
     if len(points) == 1:
-        return float(abs(points[0, 0] - x)) if abs(side[0]) < AGREE else math.inf
+        return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_DISTANCE else math.inf
     best = math.inf
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
         a, b = points[i], points[i + 1]
         if not min(a[0], b[0]) - 0.1 <= x <= max(a[0], b[0]) + 0.1:
             continue
         there = _at_height(Boundary(plane, curve.sign), a, b, y)
-        if there is not None and abs(there[2] - math.log(abs(seed.eigenvalue))) < ON_CURVE:
+        if there is not None and abs(there[2] - math.log(abs(seed.eigenvalue))) < SAME_EIGENVALUE:
             best = min(best, float(abs(there[0] - x)))
     return best
 
 
 def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
-    """The point (x, y, h) of a curve at the height y between two of its points, or None.
+    """The point (x, y, h) of a curve at height y between two of its points; None if not found.
 
-    First at once from the chord; where that guess is too far, by secants along the curve.
+    Newton's method starts from the chord; if this guess is too far, secants along the curve follow.
     """
     share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
-    for _ in range(MOST_SECANTS):
+    for _ in range(MAX_BOUNDARY_SECANTS):
         guess = a + share * (b - a)
         level = guess.copy()
         level[1] = y

@@ -1,8 +1,8 @@
 """Curves in a plane of rods on which the spectrum changes: Hopf points, and double real eigenvalues.
 
-A boundary (`determinant.boundary`) is followed through its folds. A fold is a point where one of the
-coordinates is extremal on the curve, as where a window of flutter closes: there the tangent has no component
-along that axis.
+A boundary (`determinant.boundary`) is followed through its folds. A fold is a point where a coordinate is
+extremal on the curve, for example where a window of flutter closes: the tangent has no component along that
+axis.
 """
 
 import math
@@ -19,22 +19,26 @@ from ...watch import report
 from ..continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
 from ..point import Unsolvable
 
-STEPS = StepControl(first=0.01, longest=0.04, shortest=1e-9, turn=0.15, sharpest=0.3, growth=1.5, most=5000)
-"""Lengths of arc in units of the plane, in which an axis has length 1: a drawn curve is smooth."""
+BOUNDARY_STEPS = StepControl(
+    first=0.01, longest=0.04, shortest=1e-9, turn=0.15, sharpest=0.3, growth=1.5, most=5000
+)
+"""Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
+curve."""
 BESIDE_AN_EDGE = 1e-9
-"""Distance beyond an edge that is none for a point on another edge."""
-COINCIDENT = 1e-9
-"""Distance of two points of a curve that are one, as where it starts on the border of the plane."""
+"""A point on one edge may lie this far beyond another edge."""
+COINCIDENT_POINTS = 1e-9
+"""Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
 FOLD_ACCURACY = 1e-13
-"""Component of the tangent, or share of the step, that counts as none."""
+"""Convergence tolerance at a fold: component of the tangent, and bracket as a fraction of the step."""
 HOPF_TANGENT, DOUBLE_TANGENT, ARM_TANGENT = 1e-12, 1e-11, 3e-10
-"""Uncertainty of a tangent: from rounding, from the differences in the Jacobian of D_w, and from those of D
-of arms: those of uniform rods differ by up to 8e-11 from the closed form."""
+"""Error of a tangent: by rounding (Hopf), by differences in the Jacobian of D_w (double), by differences of D
+of arms, which deviate from the closed form by up to 8e-11 for uniform rods."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fold:
-    """Where the coordinate of the axis `axis` (0 or 1) is extremal on a curve: values of both parameters."""
+    """Extremum of coordinate `axis` (0 or 1) on a curve: both parameters with errors, eigenvalue in
+    1/tau2."""
 
     axis: int
     values: tuple[float, float]
@@ -45,11 +49,9 @@ class Fold:
 
 @dataclass(frozen=True, slots=True)
 class BoundaryCurve:
-    """A curve of Hopf points (sign 0) or of double real eigenvalues of a sign (-1 or 1).
+    """A curve of Hopf points (sign 0) or of double real eigenvalues with a sign (-1 or 1).
 
-    values: of both parameters, shape (points, 2).
-
-    frequency, growth_rate: of the eigenvalue, in 1/tau2, shape (points,).
+    values: of both parameters, (points, 2). frequency, growth_rate: of the eigenvalue, in 1/tau2, (points,).
     """
 
     sign: float
@@ -58,55 +60,56 @@ class BoundaryCurve:
     growth_rate: Array
     folds: tuple[Fold, ...]
     scaled: Array
-    """(x, y, h) of each point, shape (points, 3)."""
+    """Scaled coordinates and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
     def hopf(self) -> bool:
         return self.sign == 0
 
 
-class _Passed(NamedTuple):
-    """A point v = (x, y, h) of a curve, and its unit tangent, which points along the curve, (3,) each."""
+class _CurvePoint(NamedTuple):
+    """A point v = (x, y, h) of a curve, and the unit tangent in the direction of the curve, (3,) each."""
 
     v: Array
     tangent: Array
 
     @classmethod
-    def on(cls, there: OnBoundary, way: Array) -> "_Passed":
-        """A point of a boundary on a curve that goes on to a side, (3,)."""
+    def on(cls, there: OnBoundary, way: Array) -> "_CurvePoint":
+        """A point of a boundary; the tangent is oriented to a side, (3,)."""
         tangent = there.tangent
         return cls(there.v, tangent if tangent @ way > 0 else -tangent)
 
 
 @dataclass(frozen=True, slots=True)
 class _Trace:
-    """A boundary as a curve to follow."""
+    """A boundary as a problem for the follower."""
 
     boundary: Boundary
 
-    def step(self, behind: Sequence[_Passed], length: float) -> Stepped[_Passed]:
+    def step(self, behind: Sequence[_CurvePoint], length: float) -> Stepped[_CurvePoint]:
         """The point a step along the tangent; raises Unsolvable."""
         v, tangent = behind[-1]
-        there = _Passed.on(self.near(v + length * tangent, tangent), tangent)
+        there = _CurvePoint.on(self.near(v + length * tangent, tangent), tangent)
         return Stepped(there, 0.0, float(there.tangent @ tangent))
 
     def near(self, guess: Array, normal: Array) -> OnBoundary:
-        """The point in the plane through a guess with that normal, both (3,); raises Unsolvable."""
+        """The point in the plane through a guess with a normal, both (3,); raises Unsolvable."""
         there = self.boundary.corrected(guess, normal)
         if there is None:
             raise Unsolvable("no point of the boundary is near")
         return there
 
-    def margins(self, point: _Passed) -> Array:
-        """Distances from the four edges of the plane, and whether the rod is not crushed, (5,)."""
+    def margins(self, point: _CurvePoint) -> Array:
+        """Distances from the four edges of the plane, and 1 for a rod that is not crushed, else -1; (5,)."""
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
         alive = 1.0 if not on_plane or self.boundary.plane.uncrushed(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 
-    def landed(self, behind: Sequence[_Passed], outer: _Passed, margin: int) -> _Passed | None:
-        """The point on the edge that a step crosses; None where it is on no other edge's inner side."""
-        if margin == CRUSHED:
+    def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
+        """The point on the edge that a step crosses; None if it lies beyond another edge or the rod is
+        crushed."""
+        if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)
         inner = behind[-1].v
@@ -114,70 +117,70 @@ class _Trace:
         found = self.boundary.corrected(inner + share * (outer.v - inner), np.eye(3)[axis])
         if found is None or not -BESIDE_AN_EDGE <= found.v[1 - axis] <= 1 + BESIDE_AN_EDGE:
             return None
-        return _Passed.on(found, behind[-1].tangent)
+        return _CurvePoint.on(found, behind[-1].tangent)
 
-    def closes(self, behind: Sequence[_Passed], there: _Passed) -> bool:
-        """Whether the curve comes back to its first point within the step."""
+    def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
+        """Whether the curve returns to its first point within the step."""
         first, last = behind[0], behind[-1]
         step = float(np.linalg.norm(there.v - last.v))
         near = float(np.linalg.norm(there.v - first.v)) < step
         return len(behind) > 3 and near and float(there.tangent @ first.tangent) > 0
 
 
-CRUSHED = 4
-"""The margin that tells a crushed rod."""
+CRUSHED_MARGIN = 4
+"""Index of the margin that is negative for a crushed rod."""
 
 
 def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> BoundaryCurve | None:
-    """The curve of that sign through a start (scaled coordinates) with |w| = |eigenvalue|; or None.
+    """The curve of a sign through a start in scaled coordinates with |w| = |eigenvalue|; None if not found.
 
-    It is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
+    The curve is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
     """
     curve, guess = _Trace(Boundary(plane, sign)), np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
-        first = _Passed.on(curve.near(guess, tangent), tangent)
+        first = _CurvePoint.on(curve.near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
-    ahead = follow(curve, first, STEPS, lambda _: report())
+    ahead = follow(curve, first, BOUNDARY_STEPS, lambda _: report())
     passed = ahead.solutions
     if ahead.end is not CurveStop.closed:
-        back = follow(curve, _Passed(first.v, -first.tangent), STEPS, lambda _: report())
+        back = follow(curve, _CurvePoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > COINCIDENT
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > COINCIDENT_POINTS
     return _curve(curve, points[np.append(apart, True)])
 
 
 def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
-    """The curve through these points, with the folds between them."""
+    """The curve through points, (points, 3), with the folds between them."""
     boundary, folds = curve.boundary, []
     if len(points) > 1:
         forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
         tangents = np.array([boundary.tangent(v) for v in points])
         tangents *= np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
-        passed = list(map(_Passed, points, tangents))
+        passed = list(map(_CurvePoint, points, tangents))
         for axis in (0, 1):
             for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
                 fold = _fold(curve, passed[i], passed[i + 1], axis)
                 if fold is not None:
                     folds.append(fold)
-    # One by one: NumPy's exp of an array may round an element by its place in memory.
+    # One by one: the rounding of NumPy's exp of an array depends on the place of an element in memory.
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
     return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), points)
 
 
-def _fold(curve: _Trace, a: _Passed, b: _Passed, axis: int) -> Fold | None:
-    """The point between two of a curve where the tangent has no component along an axis; None if lost."""
+def _fold(curve: _Trace, a: _CurvePoint, b: _CurvePoint, axis: int) -> Fold | None:
+    """The point between two where the tangent has no component along an axis; None if not found."""
     boundary, noise = curve.boundary, _tangent_noise(curve.boundary)
     chord, found = b.v - a.v, dict[float, OnBoundary]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
         found[length] = there = curve.near(a.v + length / size * chord, chord / size)
-        return float(_Passed.on(there, chord).tangent[axis])
+        return float(_CurvePoint.on(there, chord).tangent[axis])
 
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
@@ -189,18 +192,18 @@ def _fold(curve: _Trace, a: _Passed, b: _Passed, axis: int) -> Fold | None:
 
 
 def _tangent_noise(boundary: Boundary) -> float:
-    """Uncertainty of the tangents of a boundary."""
+    """Error of the tangents of a boundary."""
     if not boundary.plane.standard:
         return ARM_TANGENT
     return DOUBLE_TANGENT if boundary.sign else HOPF_TANGENT
 
 
 def _as_fold(boundary: Boundary, there: OnBoundary, axis: int, along: float) -> Fold:
-    """The fold at a point of a boundary; `along`: its error in the direction of the curve."""
+    """The fold at a point of a boundary. along: error of the point in the direction of the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
     units = [abs(a.stretch(x)) for a, x in zip(axes, (first, second), strict=True)]
-    # Across the fold the extremal coordinate does not move to first order, the other one does.
+    # Along the curve the extremal coordinate is stationary at the fold, the other coordinate is not.
     errors = [unit * (there.error if i == axis else there.error + along) for i, unit in enumerate(units)]
     growth_rate, frequency = boundary.eigenvalue(there.v[2])
     return Fold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

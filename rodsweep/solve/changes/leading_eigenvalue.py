@@ -1,11 +1,12 @@
-"""Which eigenvalue leads along a path of rods, a real one or a pair, and where that changes.
+"""The kind of the leading eigenvalue along a path of rods, real or a pair, and its changes.
 
-Two things change the character of the rightmost eigenvalue: two real ones meet and become a pair, or a
-pair becomes two real ones (a double eigenvalue, where D = D_w = 0), or a real one overtakes a pair, or a
-pair a real one, without meeting it. Anchors are rods whose leading eigenvalues the spectrum solver gives,
-certified where asked for; between two anchors the squared difference of the two leading ones and the lead
-over the next, which are smooth, must be explained by their slopes, or an anchor is put between. The points
-themselves are found by Newton's method on D, and the winding number says that nothing lies right of them.
+The kind changes in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or a
+pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
+meeting. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on request.
+Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference of the two
+leading eigenvalues, and the lead over the next eigenvalue of the other kind; otherwise an anchor is added
+between. Newton's method on D finds the changes, and the winding number proves that no eigenvalue lies right
+of them.
 """
 
 import math
@@ -20,19 +21,21 @@ from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
 ANCHOR_MODES = 4
-"""Leading eigenvalues that an anchor knows: two that lead, and their rivals."""
+"""Number of leading eigenvalues at an anchor: two that lead, and their rivals."""
 ANCHOR_ACCURACY = 1e-6
-"""What is asked of the spectrum solver; Newton's method on D does the rest."""
-CLOSEST, CLOSEST_NEAR_ZERO = 2e-4, 1e-9
-"""Distance of anchors, in units of the path, below which no more are put between; and where two changes
-may hide between them."""
-MOST_OVERTAKING_STEPS = 60
-CARRIED = 8
-"""Steps in which an eigenvalue is carried from an anchor to the middle between two."""
+"""Accuracy requested from the spectrum solver; Newton's method on D refines the eigenvalues."""
+SMALLEST_ANCHOR_INTERVAL = 2e-4
+"""Distance of two anchors, in units of the path, below which no anchor is added between."""
+SMALLEST_HIDING_INTERVAL = 1e-9
+"""The same if two changes may hide between the anchors."""
+MAX_OVERTAKING_STEPS = 60
+"""Maximum number of Newton steps to an overtaking."""
+CARRYING_STEPS = 8
+"""Number of steps in which an eigenvalue is followed from an anchor to the middle of an interval."""
 
 
 class Meeting(NamedTuple):
-    """Where two real eigenvalues become a pair (frequency 0), or a real one and a pair have one real part."""
+    """A double real eigenvalue (frequency 0), or a real eigenvalue and a pair with equal real parts."""
 
     p: float
     error: float
@@ -41,16 +44,16 @@ class Meeting(NamedTuple):
 
 
 class Tracer:
-    """Follows the leading eigenvalue along one path; anchors are kept."""
+    """Follows the leading eigenvalue along one path; solved anchors are kept."""
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem, self.path, self.certify = problem, problem.path, certify
         self.anchors: dict[float, Anchor] = {}
         self.proved = certify
-        """Whether every anchor is certified and nothing lies right of any change."""
+        """Whether every anchor is certified and no eigenvalue lies right of any change."""
 
     def anchor(self, p: float) -> Anchor:
-        """The anchor at p; Unsolvable where its eigenvalues cannot be had."""
+        """The anchor at p; raises Unsolvable if its eigenvalues cannot be computed."""
         if p not in self.anchors:
             self.anchors[p] = self._solve(p)
         return self.anchors[p]
@@ -80,7 +83,7 @@ class Tracer:
                 share, hides = unexplained(left, right)
                 if share == 0.0:
                     continue
-                if b - a <= (CLOSEST_NEAR_ZERO if hides else CLOSEST) * length:
+                if b - a <= (SMALLEST_HIDING_INTERVAL if hides else SMALLEST_ANCHOR_INTERVAL) * length:
                     self.proved = False
                     continue
             else:
@@ -97,7 +100,8 @@ class Tracer:
         return found
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
-        """The one change between two anchors of different character, if it is found there and leads."""
+        """The single change between two anchors of different kind; None unless it is found and proved to
+        lead."""
         pair, real = (left, right) if left.oscillates else (right, left)
         if right.oscillates != self.path.inverse:
             double, single = Kind.onset, Kind.pair_leads
@@ -116,7 +120,8 @@ class Tracer:
         return None
 
     def _double(self, pair: Anchor, real: Anchor) -> Meeting | None:
-        """The double eigenvalue between a rod with a leading pair and one with two real eigenvalues."""
+        """The double eigenvalue between an anchor with a leading pair and one with two real eigenvalues; or
+        None."""
         below, above = pair.partner(), real.partner()
         width = abs(pair.p - real.p)
         if below is None or above is None:
@@ -128,14 +133,15 @@ class Tracer:
         return None if math.isnan(p) else Meeting(p, error, x, 0.0)
 
     def _overtaking(self, pair: Anchor, real: Anchor) -> Meeting | None:
-        """Newton's method on the lead of the real eigenvalue over the pair, each followed by its own."""
+        """Newton's method for equal real parts of the real eigenvalue and the pair, each followed by itself;
+        or None."""
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
-            return None  # there is nothing of the other kind to overtake
+            return None  # no eigenvalue of the other kind is known
         p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
         w_real = self._carried(complex(real.w[0]), real.p, p)
         w_pair = self._carried(complex(pair.w[0]), pair.p, p)
-        for _ in range(MOST_OVERTAKING_STEPS):
+        for _ in range(MAX_OVERTAKING_STEPS):
             w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
             w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
             slope = s_real.real - s_pair.real
@@ -154,11 +160,11 @@ class Tracer:
         return None
 
     def _carried(self, w: complex, start: float, stop: float) -> complex:
-        """An eigenvalue followed from p = start to stop in small steps."""
+        """Eigenvalue w followed from p = start to p = stop in small steps."""
         p = start
-        for i in range(1, CARRIED + 1):
+        for i in range(1, CARRYING_STEPS + 1):
             w, slope, _ = self.problem.eigenvalue(w, p)
-            following = start + (stop - start) * i / CARRIED
+            following = start + (stop - start) * i / CARRYING_STEPS
             ahead = w + slope * (following - p)
             w, p = complex(ahead.real, 0.0) if w.imag == 0 else ahead, following
         return w

@@ -1,4 +1,4 @@
-"""The transverse problem along a path of one parameter, of uniform rods and of arms that vary."""
+"""The transverse eigenvalue problem along a path of one parameter, for uniform rods and nonuniform arms."""
 
 from abc import ABC, abstractmethod
 
@@ -13,20 +13,20 @@ from ..spectrum.problem import ArmProblem
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 ARM_EDGES = 12
-"""Equal intervals into which a path of arms is divided at first."""
+"""Number of equal intervals into which a path of arms is first divided."""
 
 
 class PathProblem(ABC):
-    """The eigenvalues of the rods of a path; p: the path variable."""
+    """Eigenvalues of the rods along a path; p is the path variable."""
 
     def __init__(self, path: Path):
         self.path = path
         self.solves = 0
-        """Eigenproblems that were solved."""
+        """Number of solved eigenproblems."""
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p, solved once."""
+        """The leading eigenvalues at p; each request is solved once."""
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.at(p), request)
@@ -35,7 +35,7 @@ class PathProblem(ABC):
 
     @abstractmethod
     def edges(self, low: float, high: float) -> list[float]:
-        """Places from low to high between which the rods change little, both included."""
+        """Places from low to high, both included, between which the rods change little."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -43,19 +43,19 @@ class PathProblem(ABC):
 
     @abstractmethod
     def double(self, x: float, p: float, reach: float) -> Zero:
-        """The double real eigenvalue near (x, p), p at most `reach` away; nan where none is found."""
+        """The double real eigenvalue near (x, p) with p at most `reach` away; nan if not found."""
 
     @abstractmethod
     def count(self, line: float, p: float) -> Count:
-        """The number of eigenvalues with Re w > line at p."""
+        """Number of eigenvalues with Re w > line at p."""
 
     @abstractmethod
     def relaxation(self, p: float) -> tuple[float, float]:
-        """(a time on which the rod relaxes, smooth along the path, its slope by p)."""
+        """(a relaxation time of the rod, smooth along the path, its slope by p)."""
 
 
 class UniformPath(PathProblem):
-    """Uniform rods of linear material: D has its closed form."""
+    """Path of uniform rods of linear material, with D in closed form."""
 
     def edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in slabs(self.path, low, high)] + [high]
@@ -77,7 +77,7 @@ class UniformPath(PathProblem):
 
 
 class ArmPath(PathProblem):
-    """Arms that vary along their length, or of any law: D from propagators."""
+    """Path of arms that vary along their length or have any law, with D from propagators."""
 
     def __init__(self, path: Path):
         super().__init__(path)
@@ -100,5 +100,5 @@ class ArmPath(PathProblem):
 
 
 def path_problem(path: Path) -> PathProblem:
-    """The problem of a path."""
+    """The problem of a path: of uniform rods, or of arms."""
     return UniformPath(path) if path.rod.standard else ArmPath(path)

@@ -1,7 +1,7 @@
-"""Rows of a phase diagram: what the rod does at each value along one axis, with all changes.
+"""Rows of a phase diagram: the class of the rod at each value along one axis, and all changes.
 
-All changes along a row are found (`along_path`), so that the class of any of its points follows without
-solving there: the solves go where the class changes, and a boundary is as sharp as Newton's method makes it.
+All changes along a row are found first (`along_path`). They determine the class of every point without a
+solve at the point, and a boundary is as accurate as Newton's method.
 """
 
 import math
@@ -17,19 +17,19 @@ from ...model.rod import Rod
 from ..point import solved
 from .along_path import Transitions, transitions
 from .thresholds import Thresholds, ThresholdStatus, judged, nothing_found
-from .unstable_modes import SHORT_OF_CRUSHED
+from .unstable_modes import CRUSHING_MARGIN
 
 MEETS_K1 = 1e-12
-"""Relative distance of F from the force that crushes the rod, made by rounding: two axes in steps may meet
-there but for it."""
+"""Relative rounding error of F against the force that crushes the rod: two axes in steps may meet exactly
+there."""
 
 
 class Motion(IntEnum):
-    """How a small deflection of the straight rod evolves.
+    """Evolution of a small deflection of the straight rod.
 
-    monotone, oscillatory: stable, and the slowest mode decays without or with oscillations. flutter: at
-    least one mode grows. undecided: on a boundary within its error, or not known. crushed: F is at least the
-    force that crushes the weakest section, k1 for a uniform rod of linear material.
+    monotone, oscillatory: stable; the slowest mode decays without or with oscillations. flutter: at least one
+    mode grows. undecided: on a boundary within its error, or unknown. crushed: F is at least the force that
+    crushes the weakest section, k1 for a uniform rod of linear material.
     """
 
     monotone = 0
@@ -41,22 +41,22 @@ class Motion(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class RowRequest:
-    """What is asked of every row: the parameter that varies along it and its values, increasing."""
+    """Request for every row: the parameter along it and its increasing values, (values,)."""
 
     name: str
     values: Array
     accuracy: float
-    """Relative error of the changes."""
+    """Relative accuracy of the changes."""
     certify: bool
     crossings: int
-    """Most changes that are kept."""
+    """Maximum number of stored changes."""
     cycle_accuracy: float = 1e-6
-    """Relative error of the period and of the largest y of each cycle, where cycles are asked for."""
+    """Relative accuracy of the period and of the largest y of each cycle, if cycles are requested."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
-    """One row: the class and the unstable modes at each value, shape (values,), and all changes along it."""
+    """One row: class and number of unstable modes at each value, (values,), and all changes along the row."""
 
     motion: NDArray[np.int8]
     unstable_count: NDArray[np.int32]
@@ -73,35 +73,35 @@ class DiagramRow:
 
 
 def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row of rods that differ from one along an axis; failures are a status, never an exception."""
+    """The row of rods along an axis; a failure is a status, never an exception."""
 
     def failed(cause: str) -> DiagramRow:
         return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
 
-    # ValueError: the model has no rod where a search along the row asks for one.
-    return solved(lambda: _searched(rod, request), failed, also=(ValueError,))
+    # ValueError: a search along the row needs a rod with parameters outside their range.
+    return solved(lambda: _searched(rod, request), failed, more_failures=(ValueError,))
 
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row between its first and its last rod that is not crushed."""
+    """The row, searched between its first and its last rod that is not crushed."""
     name, values = request.name, request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
     share = rod.build.crushing_share(rod.taper)
     crushing = k1 * share
-    alive = crushing * (1 - SHORT_OF_CRUSHED) > F
+    alive = crushing * (1 - CRUSHING_MARGIN) > F
     crushed = crushing * (1 - MEETS_K1) <= F
     if not alive.any():
         row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
         return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
     start, stop = float(values[alive][0]), float(values[alive][-1])
     if name == "F" and not alive.all():
-        stop = rod.crushing_force * (1 - SHORT_OF_CRUSHED)
+        stop = rod.crushing_force * (1 - CRUSHING_MARGIN)
     if name == "k1" and not alive.all():
-        start = rod.F / (share * (1 - SHORT_OF_CRUSHED)) if rod.F > 0 else start
+        start = rod.F / (share * (1 - CRUSHING_MARGIN)) if rod.F > 0 else start
     found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
     motion, unstable = classes(found, values)
-    # What is nearly crushed lies beyond the search.
+    # Nearly crushed rods lie outside the searched range.
     motion[crushed], unstable[crushed] = Motion.crushed, -1
     motion[~alive & ~crushed], unstable[~alive & ~crushed] = Motion.undecided, -1
     changes = judged(found, stop, request.accuracy, request.certify, request.crossings)
@@ -109,7 +109,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
 
 
 def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: str = "") -> DiagramRow:
-    """A row of one class without any change."""
+    """A row of a single class, without changes."""
     return DiagramRow(
         motion=np.full(len(values), motion, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
@@ -118,7 +118,8 @@ def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: st
 
 
 def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
-    """(class, unstable modes) at each value of the parameter of a path, from the changes along it."""
+    """(class, number of unstable modes) at each value of a path's parameter, (values,) each, from the
+    changes."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)

@@ -8,50 +8,51 @@ from ...model.rod import Rod
 from ..point import solved
 from ..status import PointStatus
 from .along_path import Transitions, transitions
-from .unstable_modes import SHORT_OF_CRUSHED, Crossing, Kind
+from .unstable_modes import CRUSHING_MARGIN, Crossing, Kind
 
 
 class ThresholdStatus(PointStatus):
-    """Outcome of a search for changes along a path."""
+    """Outcome of a search for stability changes along a path."""
 
     ok = (
         0,
-        "the changes are as accurate as asked for, and their list is certified where asked for",
+        "the changes have the requested accuracy, and their list is certified if requested",
         True,
     )
     not_certified = (
         1,
-        "the changes are accurate, but a count of the unstable modes between them could not be decided or "
-        "does not agree, or it is not proved which eigenvalue leads; `certify: false` accepts that",
+        "the changes are accurate, but a count of the unstable modes between them is undecided or disagrees, "
+        "or it is not proved which eigenvalue leads; `certify: false` accepts such a list",
     )
     window_open = (
         2,
-        "within the open range two crossings are about to meet, so it is undecided whether a window of "
-        "flutter opens and closes there; move a parameter slightly",
+        "within the open range two crossings nearly coincide, so it is undecided whether the rod flutters "
+        "between them; move a parameter slightly",
     )
     accuracy_not_reached = (
         3,
-        "a change is less accurate than asked for and its error says by how much, as where two changes are "
-        "about to meet; ask for a lower accuracy there",
+        "a change misses the requested accuracy, as its error says, for example where two changes nearly "
+        "coincide; request a lower accuracy",
     )
     list_full = 4, "there are more changes than the list holds; raise the option crossings"
-    failed = 5, "the search failed and nothing is stored; the log has its message"
+    failed = 5, "the search failed and nothing is stored; the log has the message"
 
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsRequest:
-    """What is asked of every rod: the largest force, a relative accuracy of each threshold, a proof."""
+    """Request for every rod: the largest force, the relative accuracy of each threshold, and whether to
+    certify."""
 
     F_max: float
     accuracy: float
     certify: bool
     crossings: int
-    """Most changes that will be kept."""
+    """Maximum number of stored changes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:
-    """The changes along a path up to the value `end` of its parameter, F or another."""
+    """The changes along a path up to the value `end` of its parameter."""
 
     status: ThresholdStatus
     transitions: Transitions
@@ -66,8 +67,9 @@ class Thresholds:
 
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
-    """All changes for one rod under any force; failures are a status, never an exception."""
-    end = min(request.F_max, rod.crushing_force * (1 - SHORT_OF_CRUSHED))
+    """All changes of one rod along the force, whatever its own force; a failure is a status, never an
+    exception."""
+    end = min(request.F_max, rod.crushing_force * (1 - CRUSHING_MARGIN))
 
     def search() -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify)
@@ -77,13 +79,13 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
 
 def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
-    """The outcome where nothing was searched, or the search failed."""
+    """The outcome without a search, or after a failed search."""
     found = Transitions(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
 def judged(found: Transitions, end: float, accuracy: float, certify: bool, most: int) -> Thresholds:
-    """The changes along a path, and how far they can be relied on; what matters most is said first."""
+    """The changes along a path with a status; the gravest problem determines the status."""
     status = ThresholdStatus.ok
     if not math.isnan(found.open_range[0]):
         status = ThresholdStatus.window_open
@@ -97,7 +99,7 @@ def judged(found: Transitions, end: float, accuracy: float, certify: bool, most:
 
 
 def warm_up() -> None:
-    """Loads what is compiled and created at first use, so that no point pays for it."""
+    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
     solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 

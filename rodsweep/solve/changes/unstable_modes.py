@@ -1,6 +1,6 @@
-"""The changes along a path as a list, and how many modes are unstable between them.
+"""Changes along a path as a list, and the number of unstable modes between them.
 
-The covering and the directions in which pairs cross the axis give the number after every crossing; the
+The crossings and the directions in which pairs cross the axis determine the number after every crossing; the
 winding number confirms it at both ends and between.
 """
 
@@ -13,16 +13,17 @@ if TYPE_CHECKING:
     from .path_problem import PathProblem  # for annotations only: the module imports solvers
 
 
-SHORT_OF_CRUSHED = 1e-6
-"""How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
-PLACES = (0.5, 0.3, 0.7)
-"""Where between two crossings the unstable modes are counted, until a count is decided."""
-TOGETHER = 1e-3
-"""Relative distance of crossings below which nothing is counted between: the pair is too near the axis."""
+CRUSHING_MARGIN = 1e-6
+"""Relative distance below the crushing force at which a search ends; at F = k1 the rod is crushed."""
+COUNT_PLACES = (0.5, 0.3, 0.7)
+"""Places between two crossings, as fractions, at which the unstable modes are counted until a count is
+decided."""
+TOO_CLOSE_TO_COUNT = 1e-3
+"""Relative distance of two crossings below which no count is made between: a pair is too near the axis."""
 
 
 class Kind(IntEnum):
-    """What happens at a point of a path, in the direction in which the parameter grows."""
+    """Kind of a change along a path, in the direction of increasing parameter."""
 
     onset = 1
     hopf = 2
@@ -34,21 +35,21 @@ class Kind(IntEnum):
 
     @property
     def of_the_leader(self) -> bool:
-        """Whether the leading eigenvalue becomes a pair or real, rather than a pair crosses the axis."""
+        """Whether the leading eigenvalue changes its kind, as opposed to a pair that crosses the axis."""
         return self in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads)
 
     @property
     def to_pair(self) -> bool:
-        """Whether a pair leads beyond it."""
+        """Whether a pair leads beyond the change."""
         return self in (Kind.onset, Kind.pair_leads)
 
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """One change: the value of the parameter with its error, and the eigenvalue there, in 1/tau2.
+    """One change: the value of the parameter with its error, and the eigenvalue, in 1/tau2.
 
-    unstable_after: unstable modes just beyond it, -1 where that is not known. frequency_error: of the
-    frequency where a pair crosses the axis, nan elsewhere.
+    unstable_after: number of unstable modes just beyond the change, -1 if unknown. frequency_error: of the
+    frequency of a pair that crosses the axis, else nan.
     """
 
     at: float
@@ -61,9 +62,9 @@ class Crossing:
 
 
 class Counts:
-    """The number of unstable modes along a path, carried from crossing to crossing and counted beside.
+    """Number of unstable modes along a path, carried from crossing to crossing and confirmed by counts.
 
-    gaps: intervals of the parameter in which crossings may lie that are not in the list. doubts: what
+    gaps: intervals of the parameter that may contain crossings missing from the list. doubts: statements that
     the counts do not confirm.
     """
 
@@ -72,20 +73,20 @@ class Counts:
         self.doubts: list[str] = []
 
     def at(self, value: float) -> int:
-        """The winding number at a value of the parameter; -1 where it is undecided."""
+        """The winding number at a value of the parameter; -1 if undecided."""
         number = self.problem.count(0.0, self.path.variable(value)).number
         return -1 if number is None else number
 
     def amid(self, a: float, b: float) -> int:
-        """The winding number somewhere between two values; -1 where it is undecided at each of PLACES."""
-        for share in PLACES:
+        """The winding number between two values; -1 if undecided at all of COUNT_PLACES."""
+        for share in COUNT_PLACES:
             number = self.at(a + share * (b - a))
             if number >= 0:
                 return number
         return -1
 
     def first(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
-        """The number at the start, counted there or, where that is undecided, before anything changes."""
+        """The number at the start, counted there or, if undecided, before the first change."""
         number = self.at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.amid(start, until)
@@ -93,7 +94,8 @@ class Counts:
     def along(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
     ) -> tuple[tuple[Crossing, ...], int]:
-        """(crossings with the unstable modes after each, the number at the end); doubts anew."""
+        """(crossings with the number of unstable modes after each, the number at the end); resets
+        `doubts`."""
         self.doubts = []
         out: list[Crossing] = []
         place = ends[0]
@@ -116,13 +118,14 @@ class Counts:
             a = max(gap[1] for gap in inside)
         elif not self.certify:
             return unstable
-        if b - a <= TOGETHER * abs(b):
+        if b - a <= TOO_CLOSE_TO_COUNT * abs(b):
             return -1 if inside else unstable
         counted = self.amid(a, b)
         if inside or unstable < 0:
             return counted
         if counted != unstable:
-            found = f"{counted} modes are unstable" if counted >= 0 else "the unstable modes are not counted"
+            undecided = "the count of unstable modes is undecided"
+            found = f"{counted} modes are unstable" if counted >= 0 else undecided
             self.doubts.append(
                 f"{found} between {self.path.name} = {a:.12g} and {b:.12g}"
                 + (f", not {unstable}" if counted >= 0 else "")

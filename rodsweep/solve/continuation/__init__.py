@@ -1,1 +1,1 @@
-"""One follower for all curves of solutions: steps, their lengths, where a curve ends."""
+"""Continuation of all curves of solutions: step, step length, ends of a curve."""

@@ -1,7 +1,8 @@
-"""The curves through points that rows of a plane have: each is traced once, every point then found on one.
+"""Curves through the points of a plane's rows: each curve is traced once, and every point is then found on a
+curve.
 
-Knows nothing of what the curves are, nor who traces them: where the result of a unit of work is lacking, the
-search says so and is run again when there are more.
+Knows neither the kind of the curves nor who traces them. If the result of a unit of work is lacking, the
+search reports the unit, and is run again with more results.
 """
 
 import math
@@ -13,29 +14,30 @@ Curve = TypeVar("Curve")
 
 
 class BoundaryProblem(Protocol[Curve]):
-    """What the curves through numbered points of rows must know of themselves."""
+    """The curves through numbered points of rows, as the search needs them."""
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """Index of the point, among points on no curve, from which the next curve starts."""
+        """Index of the point, among the points on no curve, from which the next curve starts."""
 
     def lacking(self, seed: int) -> list[int]:
-        """Units of work without whose results the curve from a point is not known."""
+        """Units of work whose results the curve from a point still needs."""
 
     def curve(self, seed: int) -> Curve | None:
-        """The curve from a point; None where it cannot be followed."""
+        """The curve from a point; None if it cannot be followed."""
 
     def distance(self, curve: Curve, seed: int) -> float:
-        """How far a point lies from a curve, in units of the rows' length."""
+        """Distance of a point from a curve, in units of the rows' length."""
 
     def same(self, one: Curve, other: Curve) -> bool:
-        """Whether two curves are one."""
+        """Whether two curves are the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
-    """All curves of a plane; how far the points of rows lie from them, in units of the rows' length.
+    """All curves of a plane. agreement: largest distance of a point from its curve, in units of the rows'
+    length.
 
-    untraced: points through which no curve could be followed.
+    untraced: number of points through which no curve could be followed.
     """
 
     curves: tuple[Curve, ...]
@@ -45,10 +47,10 @@ class Boundaries(Generic[Curve]):
 
 @dataclass(slots=True)
 class BoundarySearch(Generic[Curve]):
-    """The curves through some points, as far as they are known.
+    """The curves through some points, as far as known.
 
     agree: distance from a curve within which a point lies on it. distances: of each point from the nearest
-    curve. needed: units of work without which the search cannot go on; left: the points on no curve then.
+    curve. needed: units of work that the search lacks. left: points on no curve at that time.
     """
 
     agree: float
@@ -59,7 +61,7 @@ class BoundarySearch(Generic[Curve]):
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """The curves, once nothing is needed."""
+        """The curves, once no unit is needed."""
         found = [distance for distance in self.distances.values() if distance <= self.agree]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
@@ -67,7 +69,7 @@ class BoundarySearch(Generic[Curve]):
 def boundary_search(
     problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
 ) -> BoundarySearch[Curve]:
-    """Traces curves until every point lies on one or was tried, or a result is lacking."""
+    """Traces curves until every point lies on a curve or was tried, or until a result is lacking."""
     search: BoundarySearch[Curve] = BoundarySearch(agree, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:

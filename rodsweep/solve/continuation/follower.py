@@ -1,8 +1,8 @@
 """Continuation of one curve of solutions: the loop that all curves share.
 
-A step of some length ahead predicts a solution and corrects it; how, the curve's problem knows. The follower
-chooses the length by how good the prediction was and how far the curve turned, takes back a step that fails,
-and ends the curve where the first of its margins becomes zero, where it closes, or where no step succeeds.
+The problem of the curve predicts and corrects a solution at a step length ahead. The follower chooses the
+length from the prediction error and the turn of the curve, repeats a failed step with half its length, and
+ends the curve where a margin becomes zero, where the curve closes, or where no step succeeds.
 
 Knows nothing of rods, meshes, eigenvalues or cycles. Reference: Keller 1977; Govaerts 2000, ch. 2.
 """
@@ -21,14 +21,14 @@ from ..point import FAILURES, Unsolvable
 
 Solution = TypeVar("Solution")
 
-LEAST = 1e-9
-"""Distance from a prediction, or angle in radians, below which a step was as good as one can be."""
+MIN_MEASURED = 1e-9
+"""Smallest prediction error, or angle in radians, that is distinguished from 0."""
 
 
 class Stepped(NamedTuple, Generic[Solution]):
-    """A solution a step ahead.
+    """A solution at one step ahead.
 
-    off: its distance from the prediction, relative. cosine: of the angle by which the curve has turned.
+    off: relative distance from the prediction. cosine: of the angle by which the curve has turned.
     """
 
     solution: Solution
@@ -37,30 +37,31 @@ class Stepped(NamedTuple, Generic[Solution]):
 
 
 class CurveProblem(Protocol[Solution]):
-    """What a curve must know of itself."""
+    """A curve of solutions, as the follower needs it."""
 
     def step(self, behind: Sequence[Solution], length: float) -> Stepped[Solution]:
-        """The solution at a length ahead of the last of some; raises Unsolvable where none is near."""
+        """The solution at a length ahead of `behind[-1]`; raises Unsolvable if no solution is near."""
 
     def margins(self, solution: Solution) -> Array:
-        """Numbers that are positive as long as the curve goes on, (margins,)."""
+        """Numbers that are positive as long as the curve continues, (margins,)."""
 
     def landed(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
-        """The solution between the last of some and the next at which a margin is 0; None if not found."""
+        """The solution between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
 
     def closes(self, behind: Sequence[Solution], there: Solution) -> bool:
-        """Whether the first solution of the curve lies between the last one and the next."""
+        """Whether the first solution of the curve lies between its last solution and the next."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """How long the steps along a curve are.
+    """Control of the step lengths along a curve.
 
-    first, longest, shortest: lengths; a step as short as that which still fails ends the curve. aim: distance
-    from the prediction that the next step is chosen for; far: beyond which the solution may be of another
-    curve. order: of the prediction, whose distance grows as length**order; with fewer solutions behind it is
-    their number. turn: angle in radians that the next step is chosen for; sharpest: the largest one of a
-    step. growth, shrinkage: ratios of successive steps. most: solutions on one curve, more than any has.
+    first, longest, shortest: lengths; the curve ends if a step fails whose half is below `shortest`. aim:
+    prediction error for which the next step is chosen. far: prediction error beyond which the solution may
+    belong to another curve. order: of the prediction, whose error grows as length**order; limited by the
+    number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest: largest
+    angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most: maximum number
+    of solutions; no curve has more.
     """
 
     first: float
@@ -76,17 +77,17 @@ class StepControl:
     most: int = 5000
 
     def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
-        """Next solution of the same curve; raises Unsolvable if it may lie on another curve."""
+        """The next solution of the same curve; raises Unsolvable if it may lie on another curve."""
         if not there.off <= self.far:
             raise Unsolvable("the solution is far from its prediction")
         if not _angle(there.cosine) <= self.sharpest:
-            raise Unsolvable("the curve bends")
+            raise Unsolvable("the curve turns by too large an angle")
         return there
 
     def next_length(self, length: float, there: Stepped[Solution], solutions: int) -> float:
-        """Length of the step after one that was accepted, when the curve has a number of solutions."""
-        by_distance = (self.aim / max(there.off, LEAST)) ** (1 / min(self.order, solutions))
-        by_turn = self.turn / max(_angle(there.cosine), LEAST)
+        """Length of the step after an accepted step, for a curve with a number of solutions."""
+        by_distance = (self.aim / max(there.off, MIN_MEASURED)) ** (1 / min(self.order, solutions))
+        by_turn = self.turn / max(_angle(there.cosine), MIN_MEASURED)
         factor = min(max(min(by_distance, by_turn), self.shrinkage), self.growth)
         return min(self.longest, length * factor)
 
@@ -97,20 +98,20 @@ def _angle(cosine: float) -> float:
 
 
 class CurveStop(Enum):
-    """Why a curve ends."""
+    """Reason for the end of a curve."""
 
     margin = "a margin is zero"
-    closed = "the curve came back to its start"
+    closed = "the curve returned to its start"
     lost = "no solution was found beyond"
-    full = "the curve has as many solutions as are kept"
+    full = "the curve has the maximum number of solutions"
 
 
 @dataclass(frozen=True, slots=True)
 class Curve(Generic[Solution]):
-    """Solutions in order from the start, and why the curve ends.
+    """Solutions in order from the start, and the reason for the end of the curve.
 
-    margin: that which is negative beyond the end, -1 for none. The last solution is where it is 0, if that
-    was found.
+    margin: index of the margin that is negative beyond the end, -1 for none; the last solution is its zero,
+    if found.
     """
 
     solutions: list[Solution]
@@ -121,10 +122,11 @@ class Curve(Generic[Solution]):
 def advance(
     step: Callable[[float], Stepped[Solution]], length: float, control: StepControl
 ) -> tuple[Stepped[Solution], float]:
-    """(the next solution of a curve, the length of the step to it), the length given or halves of it.
+    """(the next solution of a curve, the length of the step to it); the given length is halved as long as it
+    fails.
 
-    step: the solution at a length ahead; raises one of FAILURES where none is near. So does this where no
-    step is short enough.
+    step: gives the solution at a length ahead, or raises one of FAILURES; so does `advance` if no step
+    succeeds.
     """
     length = min(length, control.longest)
     while True:
@@ -142,7 +144,7 @@ def follow(
     control: StepControl,
     report: Callable[[Sequence[Solution]], None],
 ) -> Curve[Solution]:
-    """The curve ahead of a solution; the problem knows which way that is. report: hears of every step."""
+    """The curve ahead of a solution; the problem knows the direction. report: called before every step."""
     solutions, length = [start], control.first
     margins = problem.margins(start)
     while len(solutions) < control.most:
@@ -165,7 +167,8 @@ def follow(
 
 
 def crossed(before: Array, after: Array) -> int:
-    """Index of the margin, of (margins,), that falls below 0 first along a straight step; -1 if none does."""
+    """Index of the margin, of (margins,), that is first to fall below 0 along a straight step; -1 for
+    none."""
     falls = (after < 0) & (after < before)
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
     first = int(np.argmin(share))
@@ -175,12 +178,12 @@ def crossed(before: Array, after: Array) -> int:
 def zero_along(
     value: Callable[[float], float], ends: tuple[float, float], length: float, enough: float, relative: float
 ) -> float:
-    """Where a number along a step is zero, by Brent's method; raises Unsolvable where its signs agree.
+    """Zero of a function along a step, by Brent's method; raises Unsolvable without a change of sign.
 
-    value: at a length; ends: its values at 0 and at the length, which are not computed again; enough: modulus
-    of a value that is none. relative: last bracket in units of the length.
+    value: at a length. ends: values at 0 and at the full length, which are not computed again. enough:
+    modulus below which a value counts as zero. relative: last bracket in units of the length.
     """
-    from scipy.optimize import brentq  # a tenth of a second of every start
+    from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
     known = {0.0: ends[0], length: ends[1]}
     if not ends[0] * ends[1] <= 0:

@@ -29,7 +29,7 @@ from ..point import Unsolvable
 
 PREDICTION_DISTANCE = 0.3
 """Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""
-STEPS = StepControl(
+PARAMETER_STEPS = StepControl(
     first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
 )
 """Step lengths as shares of the divided parameter change. Newton's method takes two matrices for a prediction
@@ -153,7 +153,7 @@ def in_steps(
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)
     share = 0.0
-    length = STEPS.first
+    length = PARAMETER_STEPS.first
     predictor = start
 
     def step(length: float) -> Stepped[Converged]:
@@ -163,14 +163,14 @@ def in_steps(
         found = near_prediction(predicted, tolerance, workspace, name)
         return Stepped(found, _distance(predicted, found), 1.0)
 
-    for _ in range(STEPS.most):
+    for _ in range(PARAMETER_STEPS.most):
         try:
-            ahead, length = advance(step, min(length, 1.0 - share), STEPS)
+            ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEPS)
         except Unsolvable as why:
             raise Unsolvable("the branch of cycles cannot be followed: it ends or turns") from why
         share += length
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), predictor, name)
-        length = STEPS.next_length(length, ahead, STEPS.order)
-    raise Unsolvable(f"the branch of cycles was not followed to its end in {STEPS.most} steps")
+        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.order)
+    raise Unsolvable(f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.most} steps")

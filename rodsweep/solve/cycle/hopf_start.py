@@ -34,14 +34,15 @@ LEADING = SpectrumRequest(1, 1e-9, False)
 """Spectrum request for the leading eigenvalue, without a proof."""
 SCAN_RATIO = 0.93
 """Ratio of successive forces at which the scan evaluates the leading growth rate."""
-LEAST_FORCE = 1e-2
+MIN_FORCE = 1e-2
 """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
 HOPF_TOLERANCE = 1e-6
 """Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
-MOST_NEWTON_STEPS = 15
-LAST_STEP = 4.0
+MAX_HOPF_STEPS = 15
+"""Maximum number of Newton steps to a Hopf point."""
+CONVERGED_GROWTH = 4.0
 """Growth rate, in units of its error, at which Newton's method for the Hopf point ends."""
-ROUNDING = 1e-15
+CONVERGED_FORCE_STEP = 1e-15
 """Relative step of the force at which Newton's method for the Hopf point ends."""
 NORMAL_FORM_ACCURACY = 1e-3
 """Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
@@ -51,13 +52,13 @@ order. In most rods the normal form's amplitude is off by a quarter at the first
 DIRECT_DISTANCE = 1e-2
 """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
 rod itself: the amplitude is off by 1 percent there in most rods."""
-ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
+ORDER_PER_WAVE, MIN_COARSE_ORDER = 0.55, 12
 """Order of the coarse mesh in units of a cycle's largest wave number; and the smallest order."""
 COARSE_ACCURACY = 1e-4
 """Accuracy of the linear problem on the coarse mesh of an arm."""
-INTERVALS, STAGES = 8, 3
+START_INTERVALS, START_STAGES = 8, 3
 """Time intervals over half a period, and collocation stages, of the coarse mesh."""
-TOLERANCE = 3e-3
+BRANCH_TOLERANCE = 3e-3
 """Newton tolerance of the intermediate orbits on the branch, relative."""
 
 
@@ -84,7 +85,7 @@ def hopf_point_below(rod: Rod) -> Onset | None:
     """The nearest Hopf point of the leading mode below the rod's force; None if there is none."""
     F = rod.F
     above = leading_eigenvalue(rod)
-    while F > LEAST_FORCE:
+    while F > MIN_FORCE:
         lower = F * SCAN_RATIO
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
@@ -123,12 +124,12 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
 
 def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]) -> Onset | None:
     """The force between `ends`, near F, at which the eigenvalue near a guess is imaginary; None if none."""
-    for _ in range(MOST_NEWTON_STEPS):
+    for _ in range(MAX_HOPF_STEPS):
         w, slope, error = problem.eigenvalue(guess, F)
         if not (slope.real and isfinite(slope.real)):
             return None
         step = -w.real / slope.real
-        if abs(w.real) <= LAST_STEP * error or abs(step) <= ROUNDING * abs(F):
+        if abs(w.real) <= CONVERGED_GROWTH * error or abs(step) <= CONVERGED_FORCE_STEP * abs(F):
             return Onset(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
@@ -163,7 +164,7 @@ def _coarse_mesh(rod: Rod) -> Mesh:
     """Mesh of the intermediate orbits on the branch."""
     wave_number = WAVES_PER_ROOT_FORCE * abs(rod.F) ** 0.5
     if rod.standard:
-        return mesh(1, max(LEAST_ORDER, int(ORDER_PER_WAVE * wave_number)))
+        return mesh(1, max(MIN_COARSE_ORDER, int(ORDER_PER_WAVE * wave_number)))
     elements = arm_elements(rod, wave_number, COARSE_ACCURACY)
     return mesh_on(elements.edges, elements.order)
 
@@ -200,13 +201,13 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
 def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod, followed from the normal form's orbit at the force F; raises Unsolvable."""
     start = orbit_of(normal, replace(form, rod=replace(form.rod, F=F)))
-    found = at_orbit(newton(start, TOLERANCE, workspace, "F"), TOLERANCE, "F")
+    found = at_orbit(newton(start, BRANCH_TOLERANCE, workspace, "F"), BRANCH_TOLERANCE, "F")
     squared = normal.cycle(F)[0]
     if not 0.3 < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < 3.0:
         raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
-    return in_steps(predictor_from(found, None, "F"), form, "F", TOLERANCE, workspace).orbit
+    return in_steps(predictor_from(found, None, "F"), form, "F", BRANCH_TOLERANCE, workspace).orbit
 
 
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
@@ -217,8 +218,8 @@ def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
 
 def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
-    X = normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
+    X = normal.motion(amplitude, np.pi * node_times(START_INTERVALS, START_STAGES))
     S, V = normal.form.fields(X)
     E = normal.form.mesh.evaluation(form.mesh.positions)
     states = form.layout.state(S @ E.T, V @ E.T)
-    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, STAGES)
+    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, START_STAGES)

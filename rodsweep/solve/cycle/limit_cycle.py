@@ -42,10 +42,10 @@ displacement-form code, and the relative deviation accepted by `warm_up`."""
 MOTION_ACCURACY = 1e-5
 """Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction; Newton's
 method supplies the digits of the cycle."""
-STORED_MULTIPLIERS, LEAST_MULTIPLIER = 6, 1e-6
+STORED_MULTIPLIERS, MIN_STORED_MULTIPLIER = 6, 1e-6
 """Number of stored Floquet multipliers, and the smallest modulus of a stored multiplier."""
 NO_MULTIPLIER = complex(nan, nan)
-"""Stored for multipliers below LEAST_MULTIPLIER."""
+"""Stored for multipliers below MIN_STORED_MULTIPLIER."""
 
 
 def solve_cycle(
@@ -217,7 +217,7 @@ def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> C
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome with the stored multipliers of a cycle and their error."""
     mu = first_of(found.multipliers, STORED_MULTIPLIERS, NO_MULTIPLIER)
-    mu[np.abs(mu) < LEAST_MULTIPLIER] = NO_MULTIPLIER
+    mu[np.abs(mu) < MIN_STORED_MULTIPLIER] = NO_MULTIPLIER
     return replace(
         cycle,
         multiplier=found.largest_multiplier,

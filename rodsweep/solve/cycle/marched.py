@@ -44,24 +44,24 @@ from .transient.returns import (
     until_returns,
 )
 
-TOLERANCE = 0.01
+LOCAL_TOLERANCE = 0.01
 """Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as much."""
-TOLERANCE_RATIO, MORE_ORDERS = 0.2, 2
+TOLERANCE_RATIO, ORDERS_PER_REFINEMENT = 0.2, 2
 """Tolerance of the second integration in units of the first one's, and additional orders of its mesh."""
-MOST_PAIRS = 3
+MAX_COMPARISONS = 3
 """Maximum number of comparisons; the finer integration of a pair is the coarser one of the next."""
-SETTLED = 0.1
+SETTLED_DISTANCE = 0.1
 """Relative distance from the cycle, in units of the accuracy, at which a motion has settled."""
-NOISE = 10.0
+RETURN_NOISE = 10.0
 """Distance of two returns, in units of the tolerance, that the integrator's error may cause."""
-CHUNK = 5
+TEST_RETURNS = 5
 """Returns of the tip between two tests for repetition."""
-SAFETY = 2.0
+PAIR_FACTOR = 2.0
 """Safety factor on the difference of two integrations."""
 LIMIT_DISTANCE_RATIO = 2.0
 """Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
 proportion to the distance, so the cycles' difference is the error of the nearer approximation."""
-STAGES, INTERVALS = 3, 48
+MEASURED_STAGES, MEASURED_INTERVALS = 3, 48
 """Collocation stages of the measured orbit, and its intervals per return of the tip."""
 
 
@@ -99,7 +99,7 @@ class _Marching:
         self.request, self.limit = request, rod
         self.rod = near_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        self.scheme = TimeScheme("arkimex", "5", tolerance=TOLERANCE * request.accuracy)
+        self.scheme = TimeScheme("arkimex", "5", tolerance=LOCAL_TOLERANCE * request.accuracy)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
         self.waited = 0
@@ -112,10 +112,10 @@ class _Marching:
             z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._settled(z)
             path = self._path(settled)
-            for _ in range(MOST_PAIRS):
+            for _ in range(MAX_COMPARISONS):
                 settled = self._refined(settled)
                 before, path = path, self._path(settled)
-                errors = _errors(before, path, SETTLED * self.request.accuracy)
+                errors = _errors(before, path, SETTLED_DISTANCE * self.request.accuracy)
                 if errors.largest <= self.request.accuracy:
                     break
             if self.rod != self.limit:
@@ -130,7 +130,7 @@ class _Marching:
     def _refined(self, settled: _Settled) -> _Settled:
         """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
         before = self.beam
-        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MORE_ORDERS)
+        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + ORDERS_PER_REFINEMENT)
         self.scheme = replace(self.scheme, tolerance=TOLERANCE_RATIO * self.scheme.tolerance)
         self.beam = self._beam()
         stresses = before.stresses(settled.z) @ before.mesh.evaluation(self.beam.mesh.positions).T
@@ -146,25 +146,25 @@ class _Marching:
         most = self.request.most_periods
         while self.waited < most:
             report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
-            run = self._run(z, 3 * CHUNK * self.mode.period, step, until_returns(row, z, CHUNK))
+            run = self._run(z, 3 * TEST_RETURNS * self.mode.period, step, until_returns(row, z, TEST_RETURNS))
             z, step = run.states[-1], float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
                 raise _Ended(MarchedStatus.straight, "decayed to rounding")
-            if len(past) <= CHUNK:
+            if len(past) <= TEST_RETURNS:
                 continue
             turns, distance = repetition(list(past))
-            noise = NOISE * self.scheme.tolerance
+            noise = RETURN_NOISE * self.scheme.tolerance
             # Within the noise the quotient of two distances says nothing about the contraction per return.
             if last > noise:
-                rate = min(max(distance, noise) / last, 1.0) ** (turns / CHUNK)
+                rate = min(max(distance, noise) / last, 1.0) ** (turns / TEST_RETURNS)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
             # A geometric sequence of distances has distance/(1 - rate) left to its limit.
-            if distance <= SETTLED * self.request.accuracy * (1 - rate):
+            if distance <= SETTLED_DISTANCE * self.request.accuracy * (1 - rate):
                 return _Settled(z, turns, step)
         why = f"{self.waited} returns of the tip, the last at a relative distance of {last:.1e}"
         raise _Ended(MarchedStatus.not_settled, why)
@@ -206,9 +206,9 @@ class _Marching:
             raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
-        states = spline(times[0] + period * node_times(INTERVALS * settled.turns, STAGES))
+        states = spline(times[0] + period * node_times(MEASURED_INTERVALS * settled.turns, MEASURED_STAGES))
         form = StressForm(self.rod, self.beam.mesh)
-        return CyclePath(Orbit.of(form, NONE, period, stressed(self.beam, form, states), STAGES))
+        return CyclePath(Orbit.of(form, NONE, period, stressed(self.beam, form, states), MEASURED_STAGES))
 
     def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """The errors plus the effect of integrating a rod near the limit instead of in it; raises _Ended."""
@@ -245,5 +245,5 @@ def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
     worst = max(abs(a[name] - b[name]) for name in a) / size
-    period, height, worst = (float(SAFETY * difference + share) for difference in (period, height, worst))
-    return CycleErrors(period, height, worst, nan)
+    stated = (float(PAIR_FACTOR * difference + share) for difference in (period, height, worst))
+    return CycleErrors(*stated, nan)

@@ -1,9 +1,9 @@
 """Curves of generalised Hopf points over three parameters.
 
-Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters; with a third
-parameter they form a curve. Each step holds the parameter that changes fastest along the curve, so that the
-curve may have folds in all three parameters. In the plane of the two free parameters the secant method moves
-along the Hopf curve, from the point that a line through the last two points predicts, to Re c = 0.
+Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters and form a curve
+over three. Each step holds the parameter that changes fastest along the curve, so that folds in all
+parameters are possible. A line through the last two points predicts; the secant method then moves along the
+Hopf curve in the plane of the two free parameters, to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ ON_EDGE = 1e-12
 MIN_BAUTIN_LOOP = 5
 """Minimum number of points of a closed curve."""
 SAME_POINT = 1e-6
-"""Distance, in units of the ranges, below which two points are the same."""
+"""Two points at a smaller distance, in units of the ranges, are the same."""
 
 
 class BautinEnd(IntEnum):
@@ -118,11 +118,9 @@ class BautinSpace:
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
-        found_values = np.empty(3)
-        found_values[free] = point.values
+        found_values, errors = np.empty(3), np.zeros(3)
+        found_values[free], errors[free] = point.values, point.errors
         found_values[held] = values[self.axes[held].name]
-        errors = np.zeros(3)
-        errors[free] = point.errors
         found = BautinCurvePoint(
             values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
         )
@@ -143,9 +141,9 @@ class BautinSpace:
         return Stepped(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_Place, bool]:
-        """(point after a change, (4,), or where the change leaves the ranges; whether it leaves them).
+        """(point after a change, (4,), or at the edge that the change crosses; whether it crosses an edge).
 
-        No point beyond the ranges is solved for: its parameters may describe no rod. Raises Unsolvable.
+        No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
         """
         ahead = (here + change)[:3]
         beyond = np.where(ahead > 1, 1.0, np.where(ahead < 0, 0.0, np.nan))
@@ -174,8 +172,7 @@ class BautinSpace:
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The zero of Re c along a Hopf curve from a start, (3,), along `way`, (3,); raises Unsolvable."""
-        before = 0.0
-        s = PROBE
+        before, s = 0.0, PROBE
         last = hopf.at(start, way, hopf.accuracy).share
         for _ in range(MAX_BAUTIN_SECANTS):
             here = hopf.at(start + s * way, way, hopf.accuracy)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import pair_crossings
-from ..changes.unstable_modes import SHORT_OF_CRUSHED
+from ..changes.unstable_modes import CRUSHING_MARGIN
 from .coefficient_errors import hopf_coefficients
 
 FARTHEST_FORCE = 1.5
@@ -41,7 +41,7 @@ def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     Hopf points or a coefficient fails.
     """
     low = rod.F / FARTHEST_FORCE
-    high = min(rod.F * FARTHEST_FORCE, rod.crushing_force * (1 - SHORT_OF_CRUSHED))
+    high = min(rod.F * FARTHEST_FORCE, rod.crushing_force * (1 - CRUSHING_MARGIN))
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings

@@ -1,1 +1,1 @@
-"""The leading eigenvalues of one rod: found on a mesh, refined on D, counted."""
+"""Leading eigenvalues of one rod: solved on a mesh, refined on D, counted."""

@@ -1,4 +1,4 @@
-"""Krylov-Schur for arms that are not uniform, on elements that end where coefficients jump."""
+"""Krylov-Schur for nonuniform arms, on elements that end at jumps of a coefficient."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,14 +9,14 @@ from ..backend.kept import LruPool
 from .shift_invert import Loaded, ShiftInvertSolver
 
 ARM_SOLVERS_KEPT = 8
-"""Solvers kept for the next point on an equal mesh."""
+"""Number of solvers kept for later points on equal meshes."""
 
 
 class ArmSolver(ShiftInvertSolver):
     """Krylov-Schur for one mesh."""
 
     matrices: Matrices
-    """Of the arm that was solved last."""
+    """Matrices of the last solved arm."""
 
     def __init__(self, mesh: ArmMesh):
         self.pencil = ArmPencil(mesh)
@@ -45,10 +45,10 @@ _kept = LruPool(ArmSolver, ARM_SOLVERS_KEPT)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
-    """The solver for a mesh, kept for the next point."""
+    """The solver for a mesh; kept for later points."""
     return _kept.get(mesh)
 
 
 def forget_arm_solvers() -> None:
-    """Drops every kept solver: a PETSc object is not usable after an error inside it."""
+    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
     _kept.clear()

@@ -1,7 +1,7 @@
-"""One attempt at a rod's leading eigenvalues, and its judge, which knows nothing of meshes.
+"""One attempt at the leading eigenvalues of a rod, and its verdict.
 
-A mesh finds them, Newton's method on D refines them, the winding number of D judges whether one is
-missing. What to do about it is `rodsweep.solve.spectrum.search`'s to decide.
+A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether one is
+missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
 """
 
 from dataclasses import dataclass
@@ -17,24 +17,25 @@ from ..backend.petsc import PETSC_ERRORS
 from ..point import cause_of
 from .problem import Mesh, TransverseProblem, forget_solvers
 
-WAVES_A_NODE = 2.0
-"""Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
+MAX_WAVES_PER_NODE = 2.0
+"""Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
 WIDE_GAP, WIDE_GAP_OF_FLUTTER = 0.2, 0.05
-"""Relative gap between two real parts that is wide enough to draw a line through: in a wider one a count is
-cheaper, but where modes grow those far to the left are found last, and to ask for them costs a finer mesh."""
+"""Relative gap between two real parts that is wide enough for the line of a count, for a stable rod and for
+an unstable one. A count in a wider gap is cheaper; but if modes grow, eigenvalues far to the left converge
+last and need a finer mesh."""
 BEHIND = 0.05
-"""How far behind the last eigenvalue found the unknown is counted in, in units of its modulus."""
+"""Distance of the last line behind the last eigenvalue found, in units of its modulus."""
 NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
 LINES_TRIED = 3
-"""Lines tried before the count is given up."""
+"""Number of lines tried before the count is given up."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """What one attempt found: roots of D, k of them, sorted as `rodsweep.model` states.
+    """Result of one attempt: k roots of D, sorted as defined in `rodsweep.model`.
 
-    vectors: the mesh's, shape (unknowns, k), or None; failure: why SLEPc or LAPACK gave nothing, or empty.
+    vectors: of the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty.
     """
 
     mesh: Mesh
@@ -51,12 +52,12 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The count right of a line, and how many of the found eigenvalues lie there."""
+    """Number of eigenvalues right of a line by the count, and number of found eigenvalues there."""
 
     count: Count
     here: int
     clear: bool
-    """Whether every found eigenvalue is farther from the line than twice its error."""
+    """Whether every found eigenvalue is further from the line than twice its error."""
 
     @property
     def agrees(self) -> bool:
@@ -64,10 +65,11 @@ class Verdict:
 
 
 def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
-    """The eigenvalues nearest the problem's shift, at least `wanted` where they converge, without impostors.
+    """Eigenvalues nearest the shift of the problem, at least `wanted` if they converge, without spurious
+    ones.
 
-    tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
-    is no eigenvalue found: to them another mesh is another matrix, on which the same need not happen.
+    tight: whether the mesh is solved to its last digit before the refinement on D. After an error inside
+    PETSc, SLEPc or LAPACK no eigenvalue is returned: another mesh is another matrix, which may not fail.
     """
     raw: Complex = np.empty(0, complex)
     kept, failure = None, ""
@@ -78,14 +80,14 @@ def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, 
     except PETSC_ERRORS as error:
         forget_solvers()
         failure = cause_of(error)
-    kept_roots = problem.roots(raw, WAVES_A_NODE * mesh.elements * mesh.order)
+    kept_roots = problem.roots(raw, MAX_WAVES_PER_NODE * mesh.elements * mesh.order)
     kept = kept[:, kept_roots.chosen] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)
 
 
 def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
-    """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
-    w: Any = found.w.tolist()  # so few that Python is faster than NumPy
+    """Counts the eigenvalues right of a line that lies left of the last wanted and of every unstable mode."""
+    w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     for line in lines(w, modes):
         count = problem.count(line)
@@ -97,9 +99,9 @@ def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
 
 
 def lines(w: list[complex], modes: int) -> list[float]:
-    """Where to draw the line, best first: in gaps between the real parts, the first wide one foremost.
+    """Lines for the count, best first: in the gaps between real parts, the first wide gap foremost.
 
-    Behind the last of them it is drawn through the unknown, where the count may ask for more.
+    The last line lies behind all eigenvalues found, where the count may include further eigenvalues.
     """
     wide = WIDE_GAP_OF_FLUTTER if w[0].real > 0 else WIDE_GAP
     target = min(w[modes - 1].real, 0.0)
@@ -109,7 +111,7 @@ def lines(w: list[complex], modes: int) -> list[float]:
         width = (right - left) / abs(left)
         if width > NO_GAP:
             gaps.append((min(width, wide), (left + right) / 2))
-    gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
+    gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last = below[-1]
     behind = last - BEHIND * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
     return [*(middle for _, middle in gaps[: LINES_TRIED - 1]), behind]

@@ -1,8 +1,9 @@
-"""A count of eigenvalues carried along a path: from one point to all that a proof on a moving line reaches.
+"""A count of eigenvalues carried along a path, from one point to all points that a proof on a moving line
+reaches.
 
-At a point the first so many of the eigenvalues that are followed are `known` to be all there are right of
-some line between two of them. Where a line in a gap that stays open is crossed by none from there to another
-point (`rodsweep.determinant.moving_line`), those right of it are all there are at every point on the way.
+At one point the first `known` followed eigenvalues are proved to be all right of a line. If no eigenvalue
+crosses a line that moves in an open gap from this point to another (`rodsweep.determinant.moving_line`), the
+same eigenvalues are all right of that line at every point between.
 """
 
 import numpy as np
@@ -15,28 +16,29 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from .prediction import Track
 
-RECTANGLES, RECTANGLES_A_POINT = 60, 20
-"""Rectangles examined before a proof is given up; a count at a point costs as much as some twenty."""
-WIDE = 0.2
-"""Half the width of a gap, in units of its distance, that is as good as any: of such the last is taken."""
-NARROWEST = 1e-6
-"""Width below which nothing is counted in a gap."""
+RECTANGLES, RECTANGLES_PER_POINT = 60, 20
+"""Number of rectangles after which a proof is given up: the first number plus the second per point; a count
+at a point costs as much as twenty rectangles."""
+WIDE_ENOUGH = 0.2
+"""Relative half width above which all gaps are equally good; the last of these is taken."""
+NARROWEST_GAP = 1e-6
+"""Relative half width below which a gap is not used."""
 
 
 @compiled
 def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
-    """(the middle of the gap behind the first `gap` eigenvalues of point i, half its relative width)."""
+    """(middle of the gap behind the first `gap` eigenvalues of point i, half its relative width)."""
     right, left = track.w[i, track.order[i, gap - 1]].real, track.w[i, track.order[i, gap]].real
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, WIDE)
+    return line, min((right - line) / -line, WIDE_ENOUGH)
 
 
 @compiled
 def best_gap(track: Track, i: int, modes: int) -> int:
-    """The gap to count in at point i, behind `modes` or more and left of the axis; 0 where there is none."""
-    best, widest = 0, NARROWEST
+    """The gap for a count at point i, behind at least `modes` eigenvalues and left of the axis; 0 if none."""
+    best, widest = 0, NARROWEST_GAP
     for gap in range(modes, track.w.shape[1]):
         width = line_in(track, i, gap)[1]
         if width >= widest:
@@ -46,7 +48,8 @@ def best_gap(track: Track, i: int, modes: int) -> int:
 
 @compiled
 def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
-    """Whether at all points from one end to the other just the first `gap` lie right of the line, clearly."""
+    """Whether at all points between the ends exactly the first `gap` eigenvalues lie right of the line,
+    clearly."""
     i, j = ends
     for s in range(i, j + 1):
         share = (p[s] - p[i]) / (p[j] - p[i])
@@ -61,12 +64,12 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
-    """The gap among the first `known` that stays open best from one point to another; 0 where none does."""
-    best, widest = 0, NARROWEST
+    """The widest gap among the first `known` that stays open from one point to another; 0 if none."""
+    best, widest = 0, NARROWEST_GAP
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
-        (here, wide), (there, also) = line_in(track, ends[0], gap), line_in(track, ends[1], gap)
-        if min(wide, also) >= widest and _stays_open(track, ends, gap, (here, there), p):
-            best, widest = gap, min(wide, also)
+        (here, wide), (there, wide_there) = line_in(track, ends[0], gap), line_in(track, ends[1], gap)
+        if min(wide, wide_there) >= widest and _stays_open(track, ends, gap, (here, there), p):
+            best, widest = gap, min(wide, wide_there)
     return best
 
 
@@ -80,10 +83,10 @@ def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> End:
 def carry(
     track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, known: NDArray
 ) -> int:
-    """The last point that the count of the first can be carried to; at least the first.
+    """Index of the last point to which the count of the first point can be carried.
 
-    coefficients: shape (points, 4); p: (points,); known: (points,), how many of the leading eigenvalues are
-    all there are right of a line, given at the first point.
+    coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all right of a
+    line, (points,); given at the first point, filled here.
     """
     i, last = 0, len(p) - 1
     ahead = last
@@ -93,7 +96,7 @@ def carry(
         proved = False
         if gap > 0:
             first, end = _end(track, i, gap, p, coefficients), _end(track, j, gap, p, coefficients)
-            most = RECTANGLES + RECTANGLES_A_POINT * (j - i)
+            most = RECTANGLES + RECTANGLES_PER_POINT * (j - i)
             proved, _ = none_crosses(first, end, direction, most)
         if proved:
             known[i + 1 : j + 1] = gap
@@ -107,9 +110,11 @@ def carry(
 
 @compiled
 def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
-    """(whether each point is certified and its leading modes accurate, its unstable modes), shape (points,).
+    """(whether each point is certified with accurate leading modes, number of unstable modes), (points,)
+    each.
 
-    Not where one may lie on the imaginary axis, nor where the last digits are lost, as next to a double one.
+    A point fails if an eigenvalue may lie on the imaginary axis, or if digits are lost beside a double
+    eigenvalue.
     """
     n = len(known)
     good, unstable = np.empty(n, np.bool_), np.zeros(n, np.int64)
@@ -128,7 +133,7 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
 
 @compiled
 def leading(track: Track, modes: int) -> tuple[Complex, Array]:
-    """The leading `modes` eigenvalues and their errors, shape (points, modes)."""
+    """The leading `modes` eigenvalues and their errors, (points, modes) each."""
     n = track.w.shape[0]
     w, error = np.empty((n, modes), np.complex128), np.empty((n, modes))
     for s in range(n):

@@ -1,6 +1,6 @@
-"""The leading eigenvalue of a rod from that of a rod near by, without a mesh.
+"""The leading eigenvalue of a rod from that of a neighbouring rod, without a mesh.
 
-Newton's method on D leads from one to the other; that it leads here too is for the winding number to prove.
+Newton's method on D follows the eigenvalue; the winding number proves that it still leads.
 """
 
 from ...determinant.certificate.winding_number import count_right_of
@@ -10,14 +10,14 @@ from ...model.rod import Rod
 from .candidates import BEHIND
 
 FAR_BEHIND = 0.5
-"""Distance of the first line behind it that may prove it to lead, in units of its modulus: the farther from
-an eigenvalue a line passes, the fewer nodes it takes. Where another eigenvalue is so near, BEHIND tells."""
+"""Distance behind the eigenvalue of the first line that may prove its lead, in units of its modulus. A
+distant line takes fewer nodes; BEHIND is tried next, in case another eigenvalue lies between."""
 
 
 def followed_leader(rod: Rod, near: complex, accuracy: float) -> complex | None:
-    """The leading eigenvalue, 1/tau2, not below the real axis; None where it is not proved to lead.
+    """The leading eigenvalue, in 1/tau2, with Im w >= 0; None unless it is proved to lead.
 
-    near: the one of a rod near by; accuracy: relative.
+    near: leading eigenvalue of a neighbouring rod. accuracy: relative.
     """
     w = refined(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)

@@ -1,7 +1,7 @@
-"""Eigenvalues followed from point to point of a path: predicted, then corrected by Newton's method on D.
+"""Eigenvalues followed along the points of a path: predicted, then corrected by Newton's method on D.
 
-Nothing here proves that they are all, or that one has not become another: that is for the count. What is
-promised is that each is a root of D within its error, and that no two are the same.
+Each result is a root of D within its error, and no two are the same root. Whether they are all eigenvalues,
+and whether two have exchanged, is left to the count.
 """
 
 import math
@@ -18,17 +18,19 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from .prediction import Track, guess_at, mates_of
 
-MOST_CORRECTIONS = 8
-ROUGH = 1e-9
-"""Relative error allowed of those that do not lead: they only show where to count."""
+MAX_EIGENVALUE_CORRECTIONS = 8
+"""Maximum number of Newton steps for one eigenvalue."""
+FOLLOWED_ACCURACY = 1e-9
+"""Relative accuracy of eigenvalues that do not lead, and only show where to count."""
 SAFE_CURVATURE = 4.0
-"""Factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over the other roots, from the known."""
-LAST_STEP = 4.0
-"""A step, in units of the rounding error, that ends the corrections."""
+"""Safety factor on |D''/(2 D')|, which is the modulus of the sum of 1/(w - w_j) over the other roots, of
+which only some are known."""
+ROUNDING_STEP = 4.0
+"""A step below this multiple of the rounding error ends the corrections."""
 
 
 class Corrected(NamedTuple):
-    """An eigenvalue after a step of Newton's method, dw/dp, the length of the step, the rounding error."""
+    """An eigenvalue after one Newton step: w, slope dw/dp, length of the step, rounding error `blur`."""
 
     w: complex
     slope: complex
@@ -38,7 +40,7 @@ class Corrected(NamedTuple):
 
 @compiled
 def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> Corrected:
-    """One step of Newton's method; what is real stays real."""
+    """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     size = abs(D_w)
     if not size > 0:
@@ -51,7 +53,7 @@ def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -
 
 @compiled
 def _crowding(w: Complex, k: int) -> float:
-    """A generous |D''/(2 D')| at the k-th of the known roots."""
+    """Upper estimate of |D''/(2 D')| at the k-th known root."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
@@ -63,12 +65,12 @@ def _crowding(w: Complex, k: int) -> float:
 def _settled(
     first: Corrected, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[Corrected, float]:
-    """(the last correction, error): Newton's method until what is left of it, crowding step^2, is small."""
+    """(last correction, error): Newton steps until the estimated remainder, crowding step^2, is small."""
     here = first
-    for _ in range(MOST_CORRECTIONS):
+    for _ in range(MAX_EIGENVALUE_CORRECTIONS):
         left = crowding * here.step * here.step
-        allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else ROUGH * abs(here.w)
-        if left <= allowed or here.step <= LAST_STEP * here.blur:
+        allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWED_ACCURACY * abs(here.w)
+        if left <= allowed or here.step <= ROUNDING_STEP * here.blur:
             return here, max(here.blur, min(left, here.step))
         here = corrected(here.w, rod, direction)
     return here, math.inf
@@ -76,7 +78,7 @@ def _settled(
 
 @compiled
 def _distinct_roots(w: Complex, error: Array) -> bool:
-    """Whether all are finite numbers, each with its error, and no two may be the same root."""
+    """Whether all eigenvalues and errors are finite and no two eigenvalues may be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
@@ -90,7 +92,7 @@ def _distinct_roots(w: Complex, error: Array) -> bool:
 def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Makes roots of the guesses for point i, into the track; whether all became roots, and pairs pairs."""
+    """Corrects the guesses for point i into the track; whether all converged and every pair stayed a pair."""
     w, slope, error, order = track.w[i], track.slope[i], track.error[i], track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
@@ -121,10 +123,10 @@ def _correct_all(
 
 @compiled
 def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int) -> int:
-    """How many points, from the first, the eigenvalues can be followed to; fills the track as far.
+    """Number of points, from the first, to which the eigenvalues can be followed; fills the track so far.
 
-    track: with w and order of the first point; coefficients, shape (points, 4), and p, (points,): the points'
-    rods and path variables; direction: d(F, nu, c2, gamma3)/dp. The leading `modes` get all digits.
+    track: with w and order at the first point. coefficients: (points, 4); p: path variables, (points,).
+    direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues get all digits.
     """
     guess = track.w[0].copy()
     for i in range(len(p)):

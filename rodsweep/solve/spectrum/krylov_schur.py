@@ -1,4 +1,4 @@
-"""Krylov-Schur for one uniform rod on equal elements: its matrices are affine in the coefficients."""
+"""Krylov-Schur for one uniform rod on equal elements; its matrices are affine in the coefficients."""
 
 import math
 
@@ -14,12 +14,13 @@ from ..backend.kept import LruPool
 from .shift_invert import Loaded, ShiftInvertSolver
 
 EIGEN_SOLVERS_KEPT = 24
-"""Solvers kept for the next point of an equal resolution: a sweep uses few, and one has some megabytes."""
+"""Number of solvers kept for later points of equal resolution; a sweep uses few, and each takes some
+megabytes."""
 
 
 @compiled
 def _fill(A: NDArray, coefficients: NDArray, pieces: NDArray, shift: NDArray) -> None:
-    """A = sum_i coefficients[i] pieces[i] - diag(shift) in the memory of A, whose transpose is given."""
+    """A = sum_i coefficients[i] pieces[i] - diag(shift), in the memory of A; the pieces are transposed."""
     flat = A.reshape(-1)
     flat[:] = 0.0
     for i in range(len(coefficients)):
@@ -74,10 +75,10 @@ _kept = LruPool(EigenSolver, EIGEN_SOLVERS_KEPT)
 
 
 def eigen_solver(resolution: Resolution) -> EigenSolver:
-    """The solver for a resolution, kept for the next point."""
+    """The solver for a resolution; kept for later points."""
     return _kept.get(resolution)
 
 
 def forget_uniform_solvers() -> None:
-    """Drops every kept solver: a PETSc object is not usable after an error inside it."""
+    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
     _kept.clear()

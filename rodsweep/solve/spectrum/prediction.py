@@ -1,9 +1,9 @@
-"""Where eigenvalues will be at the next point of a path, from their values and slopes at the last two.
+"""Prediction of eigenvalues at the next point of a path, from values and slopes at the last two points.
 
-Cubic Hermite polynomials extrapolate single real eigenvalues. Two that meet, or have just met, are no smooth
-functions of the rod, but half their sum and the square of half their difference are, as those of a pair:
-these are extrapolated, and close to where they meet the quadratic that D is about their middle decides what
-they have become.
+Cubic Hermite polynomials extrapolate single real eigenvalues. Two real eigenvalues that meet, or have just
+met, are not smooth functions of the rod, but half their sum and the square of half their difference are
+smooth, as for a pair; these are extrapolated. Near the meeting point, the quadratic approximation of D about
+their mean decides between two real eigenvalues and a pair.
 """
 
 import cmath
@@ -18,15 +18,16 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 
 CLOSING = 4.0
-"""Steps after or before which two real eigenvalues meet, at their pace, that are extrapolated together."""
+"""Two real eigenvalues are extrapolated together if, at their present rate, they meet or met within this many
+steps."""
 MEETING = 0.25
-"""Share of its last value that is left of a squared difference where D has to decide."""
+"""If the squared difference shrinks below this fraction of its last value, D decides on real or complex."""
 
 
 class Track(NamedTuple):
-    """Eigenvalues that are followed, dw/dp and how far each may be off: w, slope, error, shape (points, m).
+    """Followed eigenvalues w, their slopes dw/dp and errors, (points, m) each.
 
-    order: shape (points, m), which of them is the first, second, ... by descending real part, then frequency.
+    order: indices of the eigenvalues by descending real part, then frequency, (points, m).
     """
 
     w: Complex
@@ -36,14 +37,14 @@ class Track(NamedTuple):
 
 
 def part(track: Track, start: int, stop: int) -> Track:
-    """The track of the points from start to stop."""
+    """The track from point start up to point stop."""
     here = slice(start, stop)
     return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
 
 
 @compiled
 def mates_of(w: Complex, mate: NDArray) -> None:
-    """Which is the complex conjugate of each, into `mate`, shape (m,); -1 for the real ones."""
+    """Index of the complex conjugate of each eigenvalue, into `mate`, (m,); -1 for real eigenvalues."""
     for k in range(len(w)):
         mate[k] = -1
         if w[k].imag != 0:
@@ -54,7 +55,7 @@ def mates_of(w: Complex, mate: NDArray) -> None:
 
 @compiled
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
-    """Makes mates of real eigenvalues, too, that meet within some steps, the nearest first."""
+    """Also makes mates of real eigenvalues that meet within some steps, the earliest meeting first."""
     while True:
         soonest, a, b = CLOSING, -1, -1
         for k in range(len(w)):
@@ -73,7 +74,8 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
 def extrapolated(
     values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
 ) -> float:
-    """The cubic with these values and slopes at two points, at a third: `steps` between them, and to it."""
+    """The cubic with values and slopes at two points, at a third point; steps: between the two, and to the
+    third."""
     h, ahead = steps
     t = ahead / h
     difference = values[1] - values[0]
@@ -84,7 +86,7 @@ def extrapolated(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of two, squared half of their difference, the slopes of both)."""
+    """(half the sum of two eigenvalues, squared half of their difference, slopes of both)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle, slope_of_middle = (w[k] + w[j]).real / 2, (slope[k] + slope[j]).real / 2
@@ -95,7 +97,7 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
 def _two_ahead(
     track: Track, i: int, two: tuple[int, int], steps: tuple[float, float], coefficients: Coefficients
 ) -> tuple[complex, complex]:
-    """The guesses for two that are extrapolated together, the larger real part or frequency first."""
+    """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first."""
     k, j = two
     middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
     before = square
@@ -116,7 +118,7 @@ def _two_ahead(
 
 @compiled
 def guess_at(track: Track, i: int, p: Array, coefficients: Coefficients, guess: Complex) -> None:
-    """Guesses for point i >= 1, whose rod has the coefficients, into `guess`, shape (m,); p: (points,)."""
+    """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,)."""
     w, slope = track.w[i - 1], track.slope[i - 1]
     mate = np.empty(len(w), np.int64)
     mates_of(w, mate)

@@ -1,4 +1,4 @@
-"""The transverse problem of one rod, as the search for its leading eigenvalues needs it.
+"""The transverse eigenvalue problem of one rod, as the search for its leading eigenvalues needs it.
 
 A uniform rod of linear material has D in closed form and a pencil that is affine in its coefficients. Every
 other arm has D from propagators and a pencil that is filled anew.
@@ -28,17 +28,17 @@ from .krylov_schur import EigenSolver, eigen_solver, forget_uniform_solvers
 
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
-SAMPLES = 33
-"""Points of each smooth piece of an arm at which its largest local growth rate is looked up."""
+GROWTH_SAMPLES = 33
+"""Number of points of each smooth piece of an arm at which the local growth rate is evaluated."""
 
 Mesh = Resolution | ArmMesh
-"""A mesh of either kind."""
+"""Mesh of a uniform rod or of an arm."""
 
 
 class TransverseProblem(ABC):
-    """What is asked of one rod.
+    """Discretization and determinant of one rod.
 
-    shift: right of most spectra, in 1/tau2. bounded: whether an a-priori bound of its eigenvalues is known.
+    shift: right of most spectra, in 1/tau2. bounded: whether an a-priori bound of the eigenvalues is known.
     """
 
     rod: Rod
@@ -47,31 +47,33 @@ class TransverseProblem(ABC):
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
-        """The mesh that should give so many leading modes to a relative accuracy."""
+        """The mesh expected to give a number of leading modes to a relative accuracy."""
 
     @abstractmethod
     def finer(self, mesh: Any) -> Any:
-        """The next mesh after one that proved too coarse."""
+        """The next mesh after a mesh that is too coarse."""
 
     @abstractmethod
     def informed(self, mesh: Any, waves: Array, accuracy: float) -> Any:
-        """The next mesh, from the wave numbers of the leading modes, (modes,), that a mesh gave."""
+        """The next mesh, from the wave numbers of the leading modes found, (modes,)."""
 
     @abstractmethod
     def solver(self, mesh: Any) -> Any:
-        """The Krylov-Schur solver of a mesh."""
+        """The Krylov-Schur solver for a mesh."""
 
     @abstractmethod
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Eigenvalues of a mesh, (n,), refined to roots of D; most_waves: |q| that the mesh can stand for."""
+        """Eigenvalues of a mesh, (n,), refined to roots of D; most_waves: largest |q| that the mesh
+        represents."""
 
     @abstractmethod
     def count(self, line: float) -> Count:
-        """The number of eigenvalues with Re w > line."""
+        """Number of eigenvalues with Re w > line."""
 
     @abstractmethod
     def fields(self, mesh: Any, vectors: Complex) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes of a mesh, (nodes + 1, k), of vectors of the last solve, (unknowns, k)."""
+        """(y, theta) at all nodes of a mesh, (nodes + 1, k) each, from vectors of the last solve, (unknowns,
+        k)."""
 
     def evaluation(self, mesh: Any, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
@@ -96,7 +98,7 @@ class UniformProblem(TransverseProblem):
         return finer(mesh)
 
     def informed(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh that the wave numbers, (modes,), ask for, at least the next finer one."""
+        """The mesh for the wave numbers, (modes,), but at least the next finer mesh."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer(mesh), key=lambda each: each.unknowns)
 
@@ -111,7 +113,7 @@ class UniformProblem(TransverseProblem):
         return count_right_of(line, self.rod)
 
     def fields(self, mesh: Resolution, vectors: Complex) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k), of vectors, (unknowns, k)."""
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors, (unknowns, k)."""
         return eigen_solver(mesh).pencil.fields(vectors, self.rod)
 
 
@@ -124,7 +126,7 @@ class ArmProblem(TransverseProblem):
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
         breaks = rod.build.breaks
-        inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        inside = (np.arange(GROWTH_SAMPLES) + 0.5) / GROWTH_SAMPLES
         growth, _ = local_growth(rod, (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel())
         self.shift = SHIFT_ABOVE_GROWTH * float(growth.max())
 
@@ -135,7 +137,7 @@ class ArmProblem(TransverseProblem):
         return finer_arm_mesh(self.rod, mesh)
 
     def informed(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
-        """The next finer mesh, whatever the wave numbers, (modes,)."""
+        """The next finer mesh; the wave numbers, (modes,), are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
     def solver(self, mesh: ArmMesh) -> ArmSolver:
@@ -149,17 +151,17 @@ class ArmProblem(TransverseProblem):
         return count_of_arm(line, self._determinant, self._hull)
 
     def fields(self, mesh: ArmMesh, vectors: Complex) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k), of vectors of the last solve, (unknowns, k)."""
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
         solver = arm_solver(mesh)
         return solver.pencil.fields(vectors, solver.matrices.scale)
 
 
 def problem_of(rod: Rod) -> TransverseProblem:
-    """The problem of a rod."""
+    """The problem of a rod: uniform, or an arm."""
     return UniformProblem(rod) if rod.standard else ArmProblem(rod)
 
 
 def forget_solvers() -> None:
-    """Drops every kept solver: a PETSc object is not usable after an error inside it."""
+    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
     forget_uniform_solvers()
     forget_arm_solvers()

@@ -1,8 +1,9 @@
-"""The leading eigenvalues of one rod: as few unknowns as the accuracy needs, none missed.
+"""Search for the leading eigenvalues of one rod: as few unknowns as the accuracy needs, no eigenvalue
+missing.
 
-One attempt (`rodsweep.solve.spectrum.candidates`) solves at a resolution, about a shift, for a number of
-eigenvalues, and refines them on D. How far the mesh was off, the error that is left and the count decide
-what to change next; all must be in order before a point is ok.
+One attempt (`rodsweep.solve.spectrum.candidates`) solves on a mesh, about a shift, for a number of
+eigenvalues, and refines them on D. Mesh error, remaining error and count determine the next attempt. A point
+is ok once all three are sufficient.
 """
 
 from dataclasses import dataclass, replace
@@ -19,62 +20,64 @@ from .status import SpectrumStatus
 __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 SPARE_MODES = 1
-"""Eigenvalues asked for beyond those that the winding number counts."""
-MOST_MESHES_TRIED = 12
-MOST_FAILURES = 3
-"""Attempts that may end with an error inside PETSc, SLEPc or LAPACK."""
+"""Number of eigenvalues requested beyond the count of the winding number."""
+MAX_MESHES_TRIED = 12
+"""Maximum number of attempts."""
+MAX_FAILURES = 3
+"""Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
 NO_PROGRESS = 2
-"""Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
-SAFETY, STALLED_SAFETY = 0.5, 0.8
-"""Share of the accuracy that the error estimate may use up, being an estimate; more where rounding stalls."""
+"""Number of refinements without a smaller error after which rounding is taken as the limit."""
+ERROR_SHARE, STALLED_ERROR_SHARE = 0.5, 0.8
+"""Largest error estimate in units of the accuracy: it is an estimate only. The second value holds if rounding
+limits the error."""
 LARGEST_DISPLACEMENT, UNBOUNDED_DISPLACEMENT = 1e-3, 1e-6
-"""Relative displacement of a mesh's eigenvalues from the roots of D that they lead to, beyond which it may
-have missed what it was to find; where no bound holds its convergence is the only witness."""
+"""Relative distance of the mesh's eigenvalues from the roots of D, above which the mesh may have missed an
+eigenvalue. The second value holds without an a-priori bound, if convergence is the only evidence."""
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
-    """Candidates with their count, if one was asked for, and how far short of the request they fall."""
+class JudgedCandidates:
+    """Candidates with their count, if requested, and their distance from the request."""
 
     found: Candidates
     verdict: Verdict | None
     short: float
-    """The largest of what may be too large, in units of what is allowed."""
+    """Largest error in units of its limit."""
 
     @property
     def grade(self) -> tuple[bool, float]:
-        """Less is better: first what a count decides, then what is more accurate."""
+        """Sort key, smaller is better: first a decided count, then accuracy."""
         return self.verdict is not None and self.verdict.count.number is None, self.short
 
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of `rod`; failures are a status, never an exception."""
+    """The leading `request.modes` eigenvalues of a rod; a failure is a status, never an exception."""
 
     def failed(cause: str) -> Spectrum:
         forget_solvers()
         return no_spectrum(SpectrumStatus.failed, request, cause)
 
     if rod.uniform and not rod.standard:
-        return _in_own_time(rod, request)
+        return _from_equivalent(rod, request)
     return solved(lambda: Search(rod, request).outcome(), failed)
 
 
-def _in_own_time(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The spectrum of a uniform rod of any law, from that of the linear rod to which it is equivalent."""
+def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
+    """Spectrum of a uniform rod of any law, from the equivalent linear rod; rates are rescaled."""
     linear, rate = rod.equivalent
     found = solve_spectrum(linear, request)
     return replace(found, eigenvalues=rate * found.eigenvalues, error_estimate=rate * found.error_estimate)
 
 
 def warm_up() -> None:
-    """Loads what is compiled and created at first use, so that no point pays for it."""
+    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
     Search(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
 class Search:
-    """The search for one rod's leading eigenvalues: what to try next, the best so far, what went wrong.
+    """State of the search for the leading eigenvalues of one rod: next attempt, best result, failures.
 
-    wanted: how many eigenvalues the mesh is asked for at first, by default as many as the request.
+    wanted: number of eigenvalues first requested from the mesh; by default `request.modes`.
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
@@ -84,18 +87,18 @@ class Search:
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.aim)
         self.wanted = request.modes if wanted is None else wanted
-        self.best: Judged | None = None
+        self.best: JudgedCandidates | None = None
         self.stalled = self.failures = 0
         self.lost: Verdict | None = None
-        """The last count that the eigenvalues found do not explain."""
+        """The last count that disagrees with the eigenvalues found."""
         self.unresolved = False
-        """Whether neither mesh nor count could tell what leads."""
+        """Whether neither a mesh nor a count could decide which eigenvalue leads."""
         self.why = "no mesh within the limit resolves the wanted modes"
 
     def outcome(self) -> Spectrum:
-        """Tries meshes until one is good enough or none gets better."""
-        for turn in range(MOST_MESHES_TRIED):
-            if self.mesh.unknowns > MOST_UNKNOWNS or self.failures > MOST_FAILURES:
+        """Tries meshes until the result is good enough or improves no more."""
+        for turn in range(MAX_MESHES_TRIED):
+            if self.mesh.unknowns > MOST_UNKNOWNS or self.failures > MAX_FAILURES:
                 break
             tight = self.with_vectors or turn > 0
             found = attempt(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
@@ -103,15 +106,15 @@ class Search:
             if judged is None:
                 continue
             self.keep(judged)
-            if judged.short <= SAFETY or self.stalled >= NO_PROGRESS:
+            if judged.short <= ERROR_SHARE or self.stalled >= NO_PROGRESS:
                 break
             self.mesh = self.problem.informed(found.mesh, found.roots.wave[: self.modes], self.aim)
         return self.concluded()
 
-    def judged(self, found: Candidates) -> Judged | None:
-        """The candidates if nothing is missing among them; else what to change before the next attempt."""
+    def judged(self, found: Candidates) -> JudgedCandidates | None:
+        """The candidates if none is missing; otherwise None, after a change of the next attempt."""
         if len(found.roots.w) < self.modes:
-            # Too few converged, what converged stands for no root yet, or SLEPc failed: do both more.
+            # Too few converged, or converged to no root, or SLEPc failed: request more, on a finer mesh.
             self.failures += bool(found.failure)
             self.why = found.failure or self.why
             self.wanted, self.mesh = self.wanted + self.modes, self.problem.finer(self.mesh)
@@ -124,12 +127,12 @@ class Search:
             self.lost = verdict
             self.search_more(verdict.count.number, verdict.here)
             return None
-        return Judged(found, verdict, self.shortfall(found, verdict))
+        return JudgedCandidates(found, verdict, self.shortfall(found, verdict))
 
     def shortfall(self, found: Candidates, verdict: Verdict | None) -> float:
-        """`Judged.short`: roots of D that the count proves to be all need no witness in the mesh.
+        """`JudgedCandidates.short`. Roots of D that the count proves complete need no evidence from the mesh.
 
-        Vectors do, and what no count can prove.
+        Vectors do need it, and so do eigenvalues without a proof.
         """
         error = found.worst(self.modes) / self.request.accuracy
         if verdict is not None and verdict.agrees and not self.with_vectors:
@@ -139,41 +142,43 @@ class Search:
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def search_more(self, number: int, here: int) -> None:
-        """Asks for more after a count of `number`, of which `here` were found."""
-        if number <= here:  # impostors, or a line that the mesh leaves within the errors
+        """Requests more eigenvalues after a count of `number`, of which `here` were found."""
+        if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer(self.mesh)
             return
         more = number + SPARE_MODES
-        if more <= self.wanted:  # enough were asked for: they are farther from the shift, or beyond the mesh
+        if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
             more, self.mesh = self.wanted + number - here + SPARE_MODES, self.problem.finer(self.mesh)
         while more > self.mesh.unknowns // 6 and self.mesh.unknowns <= MOST_UNKNOWNS:
             self.mesh = self.problem.finer(self.mesh)
         self.wanted = more
 
-    def keep(self, judged: Judged) -> None:
-        """Keeps the candidates if they are the best so far, and notes whether there is progress."""
+    def keep(self, judged: JudgedCandidates) -> None:
+        """Keeps the candidates if they are the best so far, and counts attempts without progress."""
         best = self.best
         progress = best is None or judged.grade < (best.grade[0], 0.5 * best.short)
         self.stalled = 0 if progress else self.stalled + 1
-        if best is None or judged.grade <= best.grade or judged.short <= SAFETY:
+        if best is None or judged.grade <= best.grade or judged.short <= ERROR_SHARE:
             self.best = judged
 
     def concluded(self) -> Spectrum:
-        """The best that was found, or why there is nothing."""
+        """The best result, or the reason for having none."""
         if self.best is not None:
             return _result(self.best, self.problem, self.request)
         if self.lost is not None:
             counted = f"the winding number counts {self.lost.count.number}"
             return no_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
-            return no_spectrum(SpectrumStatus.modes_missing, self.request, "no mesh resolves what may lead")
+            return no_spectrum(
+                SpectrumStatus.modes_missing, self.request, "no mesh resolves all eigenvalues that may lead"
+            )
         return no_spectrum(SpectrumStatus.failed, self.request, self.why)
 
 
-def _result(best: Judged, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
-    """The outcome with its numbers, and how far they are proved."""
+def _result(best: JudgedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
+    """The outcome with its numbers and the extent of their proof."""
     found, verdict = best.found.roots, best.verdict
-    status = SpectrumStatus.ok if best.short <= STALLED_SAFETY else SpectrumStatus.accuracy_not_reached
+    status = SpectrumStatus.ok if best.short <= STALLED_ERROR_SHARE else SpectrumStatus.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
     w: Any = found.w.tolist()
     on_the_axis: Any = found.on_the_axis.tolist()
@@ -185,7 +190,7 @@ def _result(best: Judged, problem: TransverseProblem, request: SpectrumRequest) 
         elif not proved:
             status, message = SpectrumStatus.not_certified, verdict.count.why_not if verdict else ""
     unstable = sum(value.real > 0 for value in w)
-    # Where no proof is asked for the unstable modes are counted if the search went past them.
+    # Without a request for a proof, the unstable modes are known if the search went beyond them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))
     return Spectrum(
         status=status,

@@ -1,10 +1,10 @@
 """Krylov-Schur of SLEPc for the eigenvalues of a pencil nearest a real shift, by shift-and-invert.
 
-The matrices of a solver are created once and filled with new values for every rod. The shift enters the
-values: the pencil (A - shift B, B) is solved about 0, so that a diagonal B meets a dense A and nothing is
-copied. B is singular; its null vectors belong to infinite eigenvalues, which shift-and-invert sends
-to zero and never returns. The factorisation pivots: LAPACK's where the matrix is small or PETSc has
-nothing else, otherwise a sparse one.
+The matrices of a solver are created once and filled with new values for every rod. The shift is part of the
+values: the pencil (A - shift B, B) is solved about 0, so that a diagonal B is combined with a dense A without
+copies. B is singular; its null vectors belong to infinite eigenvalues, which shift-and-invert maps to zero
+and never returns. The factorisation pivots: LAPACK's for small matrices or if PETSc has no other package,
+otherwise a sparse one.
 """
 
 from abc import ABC, abstractmethod
@@ -19,32 +19,35 @@ from ...watch import report
 from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 DENSE_UP_TO = 300
-"""Unknowns up to which the dense factorisation is no slower than a sparse one; it rounds less."""
+"""Number of unknowns up to which the dense factorisation is as fast as a sparse one; its rounding errors are
+smaller."""
 START_TOLERANCE, START_SPARE = 1e-4, 5
-"""Krylov tolerance, and Krylov vectors beyond the wanted eigenvalues, where these are refined on D."""
+"""Krylov tolerance, and number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are
+refined on D."""
 TIGHT_TOLERANCE, TIGHT_SPARE = 1e-14, 13
-"""The same where nothing refines them, nor their vectors: the mesh is to be the only error."""
-MOST_RESTARTS = 200
+"""The same for eigenvalues and vectors that are not refined: the mesh is then the only error."""
+MAX_RESTARTS = 200
+"""Maximum number of restarts of the Krylov space."""
 STEPS_OF_INFINITY = 2
-"""Steps of shift-and-invert after which nothing of infinite eigenvalues is left: one, or two where k2 = inf.
-All that a Krylov space has beyond these and the finite ones is rounding, in which LAPACK may fail (trexc)."""
+"""Number of steps of shift-and-invert that remove the components of infinite eigenvalues: one, or two for k2
+= inf. A larger Krylov space contains only rounding errors in addition, on which LAPACK may fail (trexc)."""
 START_WIDTH = 3.3
 """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
-every mode moves, as smooth as the wanted modes are. It saves two steps of eleven."""
+every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""
 SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
 
 
 class Pattern(Protocol):
-    """What a solver asks of a pencil: its pattern and its nodes."""
+    """Sparsity pattern and nodes of a pencil, as a solver needs them."""
 
     @property
     def rows(self) -> NDArray[np.int32]:
-        """Of each entry of the pattern, (nnz,)."""
+        """Row of each entry, (nnz,)."""
 
     @property
     def columns(self) -> NDArray[np.int32]:
-        """Of each entry of the pattern, (nnz,)."""
+        """Column of each entry, (nnz,)."""
 
     @property
     def positions(self) -> Array:
@@ -52,18 +55,18 @@ class Pattern(Protocol):
 
     @property
     def nodes(self) -> int:
-        """The number of nodes without the clamp."""
+        """Number of nodes without the clamp."""
 
     @property
     def unknowns(self) -> int:
-        """The number of unknowns."""
+        """Number of unknowns."""
 
 
 class Loaded(NamedTuple):
-    """What a solver was filled with.
+    """Contents of a filled solver.
 
     finite: number of finite eigenvalues. shift: in units of the pencil. pace: eigenvalues of the pencil are
-    those of the rod times pace^2, and its y those of the rod over pace.
+    those of the rod times pace^2, its y are those of the rod over pace.
     """
 
     finite: int
@@ -123,20 +126,21 @@ class ShiftInvertSolver(ABC):
         """Fills A - shift B and B for a rod."""
 
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
-        """At least `wanted` eigenvalues nearest the shift where they converge, unsorted; none is left out.
+        """At least `wanted` eigenvalues nearest the shift if they converge, unsorted, complex, (k,), in
+        1/tau2.
 
-        Complex, shape (k,), in 1/tau2. tight: to the last digit of the mesh, not just to start from.
-        Raises PETSc.Error where PETSc fails.
+        tight: whether they converge to the last digit of the mesh, or only enough for a start. Raises
+        PETSc.Error.
         """
         report()
         self.loaded = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
         most = self.loaded.finite
-        wanted = min(wanted, most - 1)  # a pair may be one more
+        wanted = min(wanted, most - 1)  # a conjugate pair may add one
         spare, tolerance = (TIGHT_SPARE, TIGHT_TOLERANCE) if tight else (START_SPARE, START_TOLERANCE)
         krylov = self.users_krylov or max(2 * wanted, wanted + spare)
-        self.eps.setTolerances(self.users_tolerance or tolerance, MOST_RESTARTS)
+        self.eps.setTolerances(self.users_tolerance or tolerance, MAX_RESTARTS)
         krylov = min(krylov, most + STEPS_OF_INFINITY)
         self.eps.setDimensions(wanted, krylov, krylov)
         self.eps.setInitialSpace(self.start)
@@ -146,7 +150,7 @@ class ShiftInvertSolver(ABC):
         return (w + self.loaded.shift) / self.loaded.pace**2
 
     def vectors(self, found: int) -> Complex:
-        """The vectors of what the last `solve` found, shape (unknowns, found)."""
+        """Vectors of the eigenvalues of the last `solve`, (unknowns, found)."""
         real, imag = self.A.createVecs()
         X = np.empty((len(self.line) - 1, found), dtype=complex)
         for i in range(found):
@@ -158,6 +162,6 @@ class ShiftInvertSolver(ABC):
         return X
 
     def destroy(self) -> None:
-        """Gives the objects of PETSc and SLEPc back."""
+        """Frees the objects of PETSc and SLEPc."""
         for held in (self.eps, self.A, self.B, self.start):
             held.destroy()

@@ -1,4 +1,4 @@
-"""The leading eigenvalues of a rod, or of several: their request, and their outcome."""
+"""Leading eigenvalues of one rod or of several: the request and the outcome."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,29 +14,29 @@ from .status import SpectrumStatus
 
 @dataclass(frozen=True, slots=True)
 class SpectrumRequest:
-    """What is asked of every point: the number of modes, a relative accuracy, and the extras."""
+    """Request for every point: number of modes, relative accuracy, certification, vectors."""
 
     modes: int
     accuracy: float
     certify: bool
     vector_nodes: int = 0
-    """Number of Lobatto nodes on which (Y, Theta) are wanted; 0 for none."""
+    """Number of Lobatto nodes for (Y, Theta); 0 for no vectors."""
 
 
 EachRod = Any
-"""A number of one rod, or those of n rods that were solved together, shape (n,)."""
+"""A number of one rod, or the numbers of n rods that were solved together, (n,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """The leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,).
+    """Leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,).
 
-    eigenvalues: complex, (modes,), in 1/tau2, in the order that `rodsweep.model` states; error_estimate:
-    |D/D'|, (modes,): at least a tenth of the error, and at most ten times it where that is no less than
-    rounding of the force or of w makes it. unstable_count: eigenvalues with Re w > 0, or -1 where it is not
-    known; proved where that was asked for. certified: the winding number proves that none right of the last
-    given mode is missing. elements, order: of the mesh, 0 where none was needed. seconds: of several rods the
-    even share of each. vectors: (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
+    eigenvalues: complex, (modes,), in 1/tau2, in the order defined in `rodsweep.model`. error_estimate:
+    |D/D'|, (modes,): at least a tenth of the error, and at most ten times the error or the effect of rounding
+    of the force or of w. unstable_count: number of eigenvalues with Re w > 0, -1 if unknown; proved if
+    requested. certified: whether the winding number proves that no eigenvalue right of the last mode is
+    missing. elements, order: of the mesh, 0 without a mesh. seconds: for several rods the mean. vectors: (Y,
+    Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
 
     status: EachRod
@@ -65,9 +65,9 @@ class Spectrum:
 def vectors_on_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: Mesh, found: Complex | None
 ) -> Complex | None:
-    """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), of a mesh's vectors, (unknowns, k).
+    """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), from vectors of a mesh, (unknowns, k).
 
-    NaN where Y(1) vanishes and cannot be scaled to 1.
+    NaN if Y(1) vanishes and cannot be scaled to 1.
     """
     if found is None:
         return None
@@ -77,7 +77,7 @@ def vectors_on_nodes(
 
 
 def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
-    """The outcome without numbers."""
+    """The outcome of a failure: all numbers are NaN."""
     empty = np.full(request.modes, np.nan)
     shape = (2, request.modes, request.vector_nodes)
     vectors = np.full(shape, np.nan + 0j) if request.vector_nodes else None

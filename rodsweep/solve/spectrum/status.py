@@ -1,4 +1,4 @@
-"""How the computation of a spectrum ended: the sentence that the user reads for each outcome."""
+"""Status of a spectrum, with its sentence for the user."""
 
 from ..status import PointStatus
 
@@ -6,11 +6,11 @@ from ..status import PointStatus
 class SpectrumStatus(PointStatus):
     """Outcome of a point of the tasks spectrum and modes."""
 
-    ok = 0, "every number is as accurate as asked for, and certified where asked for", True
+    ok = 0, "every number has the requested accuracy, and is certified if requested", True
     not_certified = (
         1,
         "the eigenvalues are accurate, but no a-priori bound applies or the winding number could "
-        "not be proved, so an unstable mode may be missing; `certify: false` accepts that",
+        "not be proved, so an unstable mode may be missing; `certify: false` accepts this",
     )
     undecided = (
         2,
@@ -19,12 +19,11 @@ class SpectrumStatus(PointStatus):
     )
     accuracy_not_reached = (
         3,
-        "a number is less accurate than asked for and its error estimate says by how much; near "
-        "a double eigenvalue half of the digits are lost, so ask for a lower accuracy there",
+        "a number misses the requested accuracy, as its error estimate says; near a double eigenvalue "
+        "half of the digits are lost: request a lower accuracy there",
     )
     modes_missing = (
         4,
-        "the eigenvalues found are fewer than the winding number counts, so none are stored; ask for "
-        "more modes",
+        "fewer eigenvalues are found than the winding number counts, so none are stored; request more modes",
     )
-    failed = 5, "the solver failed and nothing is stored; the log has its message"
+    failed = 5, "the solver failed and nothing is stored; the log has the message"

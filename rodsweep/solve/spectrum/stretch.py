@@ -1,8 +1,9 @@
-"""Spectra of neighbouring points along one parameter: eigenvalues are followed, one count serves them all.
+"""Spectra of neighbouring points along one parameter: eigenvalues are followed, and one count serves all
+points.
 
-Krylov-Schur solves the first point for some modes more than wanted. Where following stops, or a count does
-not agree, it solves again from there on; what stays unproved or blurred is left to the solver of single
-points. The outcome depends on the points of the stretch alone.
+Krylov-Schur solves the first point for some modes more than requested, and solves again where following stops
+or a count disagrees. Points without proof or with lost digits are solved singly. The outcome depends on the
+points of the stretch alone.
 """
 
 import time
@@ -26,12 +27,12 @@ from .search import warm_up as warm_up_search
 from .status import SpectrumStatus
 
 FURTHER_MODES = 2
-"""Modes that are followed beyond those wanted: between them the count finds its gaps."""
+"""Number of modes followed beyond the requested modes; the count uses the gaps between them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Rods on a path, at values of its parameter, shape (n,)."""
+    """Rods along a path, at values of its parameter, (n,)."""
 
     path: Path
     values: Array
@@ -45,7 +46,7 @@ class Stretch:
 
     @property
     def coordinates(self) -> Array:
-        """The path variable of every rod, shape (n,)."""
+        """Path variable of every rod, (n,)."""
         return 1 / self.values if self.path.inverse else self.values
 
     @property
@@ -60,9 +61,9 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """The first n points of what is left of a stretch: eigenvalues and errors, shape (n, modes).
+    """The next n points of a stretch: leading eigenvalues w and errors, (n, modes) each.
 
-    unstable: how many are unstable, good: whether certified and accurate, both of shape (n,).
+    unstable: number of unstable modes; good: whether certified and accurate; (n,) each.
     """
 
     w: Complex
@@ -80,7 +81,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     while place < n:
         found = _followed(stretch, place, request)
         end = place + (len(found.good) if found else min(patience, n - place))
-        # Where nothing can be proved, as without a bound, a first point is tried ever more seldom.
+        # If no proof succeeds, as without a bound, following is tried less and less often.
         patience = 1 if found else 2 * patience
         if found:
             here = slice(place, end)
@@ -96,7 +97,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
 
 
 def _unsolved(n: int, modes: int) -> dict[str, Any]:
-    """Fields of a `Spectrum` of n rods, each to be filled."""
+    """Fields of a `Spectrum` of n rods, to be filled."""
     whole = np.zeros(n, np.int64)
     return {
         "eigenvalues": np.full((n, modes), np.nan + 0j),
@@ -111,7 +112,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
-    """The points from `start` on as far as they can be followed and counted; None where none can be."""
+    """The points from `start` on that can be followed and counted; None if even the first cannot."""
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
         return None
@@ -145,7 +146,8 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, how many of the first of them are proved to be all), pairs whole; or None."""
+    """(eigenvalues to follow, number of the first of these that are proved complete), pairs unsplit; or
+    None."""
     try:
         modes = request.modes + FURTHER_MODES
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
@@ -167,7 +169,7 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
 
 
 def warm_up() -> None:
-    """Loads what is compiled and created at first use, so that no point pays for it."""
+    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
     warm_up_search()
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
     solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))

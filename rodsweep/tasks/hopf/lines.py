@@ -39,14 +39,14 @@ class HopfLine:
         """Hopf points on the line; None if the range is empty or the search fails. Needs no PETSc."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
-        from ...solve.changes.unstable_modes import SHORT_OF_CRUSHED
+        from ...solve.changes.unstable_modes import CRUSHING_MARGIN
         from ...solve.point import FAILURES
 
         start, stop = self.start, self.stop
         if self.name == "F":
-            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - SHORT_OF_CRUSHED))
+            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CRUSHING_MARGIN))
         if self.name == "k1":
-            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - SHORT_OF_CRUSHED)))
+            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - CRUSHING_MARGIN)))
         if not start < stop:
             return None
         at_start: dict[str, Any] = self.fixed | {self.name: start}

@@ -17,7 +17,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
-from rodsweep.solve.branch.following import BranchLimits, _range_end, _at_range_end
+from rodsweep.solve.branch.following import BranchLimits, _at_range_end, _range_end
 from rodsweep.solve.branch.settling import due, refined
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_points

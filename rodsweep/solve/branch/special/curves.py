@@ -39,7 +39,7 @@ CURVE_STEPS = StepControl(
 `Scale.place`."""
 MIN_LOOP_POINTS = 5
 """Minimum number of points of a closed curve."""
-ON_EDGE = 1e-8
+ON_PLANE_EDGE = 1e-8
 """A point within this scaled distance of an edge lies on it."""
 LAST_BRACKET = 1e-10
 """Fraction of a step to which the crossing of an edge is located."""
@@ -161,7 +161,7 @@ class CurveLimits:
         if END_AT_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= ON_EDGE:
+        if ends[0] <= ON_PLANE_EDGE:
             return None
         try:
             if margin in ROW_EDGES:

@@ -22,9 +22,9 @@ from ...orbit.orbit_mesh import (
 )
 from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
 from ...orbit.tails import lasting_tails, tails_of
-from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
+from .cycle_errors import ERROR_ROUNDING, MIN_CLAIM, CycleErrors, largest_error
 
-SAFETY = 3.0
+ERROR_FACTOR = 3.0
 """Safety factor on measured errors of period, extrema and multiplier."""
 HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
 """Smallest errors of largest y, period and other extrema, in units of the distance between the tip's paths on
@@ -35,26 +35,26 @@ MUTUAL_BOUND = 2.0
 """Smallest error of period and of largest y, in units of the larger error of the two. The two errors fall as
 the squares of the tails and rarely change sign near the same mesh. Without this bound, one cycle in a
 thousand was off by more than the estimate, by up to 4.5 times."""
-PLANNED_SHARE = 0.5
+PLANNED_ERROR = 0.5
 """Error for which a mesh is chosen, in units of the accuracy."""
-FALL_BY_DECAY, LEAST_FALL, LARGEST_FALL = 1.6, 0.5, 2.2
+FALL_BY_DECAY, MIN_FALL, MAX_FALL = 1.6, 0.5, 2.2
 """Decay of errors in space per order, natural logarithm: in units of the decay of the coefficients, whose
 squares the errors follow (1.4 to 2 were measured), and its bounds."""
 POWER_BY_STAGES, LARGEST_POWER_RATIO = 1.5, 2.0
 """Order in time in units of the stages, where it was not measured, and the largest measured order in units of
 the smallest, stages + 1."""
-FEWER_ORDERS, FEWER_INTERVALS, MOST_ORDERS, MOST_GROWTH = 3, 0.6, 12, 4
+FEWER_ORDERS, FEWER_INTERVALS, MAX_MORE_ORDERS, MAX_INTERVAL_RATIO = 3, 0.6, 12, 4
 """Bounds of a planned mesh beside the present one: fewer orders, ratio of intervals if fewer, additional
 orders, ratio of intervals."""
-LARGEST_REACH, LARGEST_GROWTH = 0.2, 4.0
+MAX_REACH, MAX_CALIBRATED_GROWTH = 0.2, 4.0
 """Relative change of the parameter, and growth of the errors, beyond which the mesh is calibrated again."""
-LEAST_SIZE_RATIO = 0.75
+MIN_SIZE_RATIO = 0.75
 """Size of the orbit, in units of its size at the calibration, below which the mesh is calibrated again. Near
 the Hopf point at which cycles end, the error of the largest y grows fast beyond a change of sign."""
-LEAST_REPEATED_SHARE = 0.5
+MIN_REPEATED_SHARE = 0.5
 """Smallest error of a repeated calibration, in units of the previous error scaled with the tails. Near a
 change of sign an error is small at one cycle, and has the old size three cycles later."""
-LEAST_TAIL = 1e-15
+MIN_TAIL = 1e-15
 """Smallest tail, for rounding errors."""
 MULTIPLIER = 4
 """Index of the largest multiplier's error, behind the indices of `path_differences`."""
@@ -97,7 +97,7 @@ class Calibration:
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The calibration for the orbit of the next point, after a relative change of the parameter."""
         tails = _tails(orbit)
-        dies = tails[-1] < LEAST_SIZE_RATIO * self.tails[-1]
+        dies = tails[-1] < MIN_SIZE_RATIO * self.tails[-1]
         return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
@@ -116,15 +116,15 @@ class Calibration:
     @property
     def holds(self) -> bool:
         """Whether the calibration still applies to the orbit."""
-        return self.reach <= LARGEST_REACH and float(self.growth.max()) <= LARGEST_GROWTH
+        return self.reach <= MAX_REACH and float(self.growth.max()) <= MAX_CALIBRATED_GROWTH
 
     def lasts(self, change: float) -> bool:
         """Whether the calibration may apply after a further relative change of the parameter."""
-        return self.reach + change <= LARGEST_REACH
+        return self.reach + change <= MAX_REACH
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
         """Smallest errors in space and in time, (5,) each, of a new calibration of this mesh at an orbit."""
-        in_space, in_time = LEAST_REPEATED_SHARE * np.minimum(_change(self.tails, _tails(orbit)), 1.0)
+        in_space, in_time = MIN_REPEATED_SHARE * np.minimum(_change(self.tails, _tails(orbit)), 1.0)
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
@@ -144,9 +144,9 @@ class Calibration:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
         lowest = max(MIN_ORBIT_ORDER, present.order - FEWER_ORDERS)
-        orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MOST_ORDERS) + 1)
+        orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MAX_MORE_ORDERS) + 1)
         fewest = max(MIN_INTERVALS, ceil(FEWER_INTERVALS * present.intervals))
-        intervals = np.arange(fewest, min(MOST_GROWTH * present.intervals, MAX_INTERVALS) + 1)
+        intervals = np.arange(fewest, min(MAX_INTERVAL_RATIO * present.intervals, MAX_INTERVALS) + 1)
         # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
         # distance, and in time with the smallest order.
         least = np.minimum(self.fall, self.fall[APART])
@@ -155,7 +155,7 @@ class Calibration:
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * ((present.intervals - 1) / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= PLANNED_SHARE * accuracy
+        enough = largest_error(*errors[:3]) <= PLANNED_ERROR * accuracy
         meshes = [
             replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
@@ -165,7 +165,7 @@ class Calibration:
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
     """Errors of `CycleErrors`, (4, ...), from the parts of the error in space and in time, (5, ...) each."""
-    whole, apart = SAFETY * (space + time), space[APART] + time[APART]
+    whole, apart = ERROR_FACTOR * (space + time), space[APART] + time[APART]
     in_time = SHARE_IN_TIME * time[APART]
     either = MUTUAL_BOUND * sum(np.maximum(part[PERIOD], part[HEIGHT]) for part in (space, time))
     stated = [
@@ -174,13 +174,13 @@ def _stated(space: Array, time: Array, accuracy: float) -> Array:
         np.maximum(whole[OTHERS], OTHERS_SHARE * apart),
         whole[MULTIPLIER],
     ]
-    least: Array = np.maximum(np.array(stated), max(LEAST_CLAIM * accuracy, ROUNDING))
+    least: Array = np.maximum(np.array(stated), max(MIN_CLAIM * accuracy, ERROR_ROUNDING))
     return least
 
 
 def _tails(orbit: Orbit) -> Array:
     """Tails in space and in time, at least rounding errors, and the orbit's size, (3,)."""
-    return np.append(np.maximum(lasting_tails(orbit), LEAST_TAIL), orbit.size)
+    return np.append(np.maximum(lasting_tails(orbit), MIN_TAIL), orbit.size)
 
 
 def _growth(before: Array, after: Array) -> Array:
@@ -211,7 +211,7 @@ def calibration_of(
     tails = _tails(orbit)
     if before is None:
         decay = FALL_BY_DECAY * tails_of(orbit).decay
-        fall = np.full(PARTS, min(max(decay, LEAST_FALL), LARGEST_FALL))
+        fall = np.full(PARTS, min(max(decay, MIN_FALL), MAX_FALL))
         power = np.full(PARTS, POWER_BY_STAGES * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous, fall, power = before.mesh, before.fall, before.power
@@ -224,7 +224,7 @@ def calibration_of(
 
 def _fall(before: Array, after: Array, orders: int) -> Array:
     """Decay of errors in space per order, (5,), from errors before and after added orders, (5,) each."""
-    fall: Array = np.clip(_logarithm(before, after) / orders, LEAST_FALL, LARGEST_FALL)
+    fall: Array = np.clip(_logarithm(before, after) / orders, MIN_FALL, MAX_FALL)
     return fall
 
 

@@ -17,8 +17,8 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
-from .calibration import LARGEST_FALL, LEAST_FALL, Calibration, calibration_of
-from .finer_meshes import TOLERANCE, ComparedCycle
+from .calibration import MAX_FALL, MIN_FALL, Calibration, calibration_of
+from .finer_meshes import COMPARED_TOLERANCE, ComparedCycle
 
 ORDER_DIFFERENCE, INTERVAL_RATIO = 2, 1.4
 """Difference in orders, and ratio of intervals, of the fine mesh and the coarse mesh made to predict it."""
@@ -36,7 +36,7 @@ class CoarserMeshes:
         order = mesh.order - ORDER_DIFFERENCE
         intervals = round((mesh.intervals - 1) / INTERVAL_RATIO) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = TOLERANCE * accuracy
+        self._tolerance = COMPARED_TOLERANCE * accuracy
         self._workspace = workspace
         self._both = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
@@ -54,7 +54,7 @@ class CoarserMeshes:
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
         fine, in_intervals, coarse = (mesh.carry(each.orbit) for each in (space, time, self._both))
         orbit = replace(fine, values=fine.values + in_intervals.values - coarse.values)
-        fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, LEAST_FALL), LARGEST_FALL)
+        fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, MIN_FALL), MAX_FALL)
         by_orders = np.exp(fall * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # Each of the two meshes has one of the errors. The fine mesh's multipliers may be as wrong as the two

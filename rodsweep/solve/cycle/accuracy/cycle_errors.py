@@ -7,9 +7,9 @@ import numpy as np
 
 from ....arrays import Array
 
-ROUNDING = 2e-14
+ERROR_ROUNDING = 2e-14
 """Smallest stated relative error of period and extrema: rounding errors on any mesh."""
-LEAST_CLAIM = 0.1
+MIN_CLAIM = 0.1
 """Smallest stated error in units of the accuracy: a smaller estimate may be small by coincidence."""
 EXTREMA_SLACK = 100.0
 """Tolerance of the tip's other extrema in units of the tolerance of period and largest y. Period and largest

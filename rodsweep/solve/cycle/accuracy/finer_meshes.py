@@ -17,18 +17,18 @@ from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import path_differences
 from .calibration import Calibration, calibration_of
 
-MORE_ORDERS, MORE_INTERVALS = 2, 1.4
+COMPARED_MORE_ORDERS, COMPARED_MORE_INTERVALS = 2, 1.4
 """Additional orders of the mesh finer in space, and ratio of intervals of the mesh finer in time."""
-TOLERANCE, DISTANCE = 0.1, 1e-3
+COMPARED_TOLERANCE, COMPARED_DISTANCE = 0.1, 1e-3
 """Newton tolerance on the compared meshes, in units of the accuracy, and largest relative distance between an
 orbit and the matrix that gives its multipliers."""
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
-    longer = ceil(MORE_INTERVALS * mesh.intervals)
+    longer = ceil(COMPARED_MORE_INTERVALS * mesh.intervals)
     share = 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
-    return (replace(mesh, order=mesh.order + MORE_ORDERS), replace(mesh, intervals=longer)), share
+    return (replace(mesh, order=mesh.order + COMPARED_MORE_ORDERS), replace(mesh, intervals=longer)), share
 
 
 def calibrated(found: Converged, accuracy: float, before: Calibration | None) -> Calibration:
@@ -40,7 +40,7 @@ def calibrated(found: Converged, accuracy: float, before: Calibration | None) ->
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
-    tolerance = TOLERANCE * accuracy
+    tolerance = COMPARED_TOLERANCE * accuracy
     others = (newton(target.carry(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
@@ -61,7 +61,7 @@ class ComparedCycle:
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers, (rank - 1,), by descending modulus."""
-        return multipliers_of(at_orbit(self._found, DISTANCE))[0]
+        return multipliers_of(at_orbit(self._found, COMPARED_DISTANCE))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
         """Difference from the cycle on a finer mesh, in the quantities of `Calibration.space`, (5,)."""

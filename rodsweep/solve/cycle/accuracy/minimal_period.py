@@ -20,7 +20,7 @@ PRESENT = 1e-3
 """Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not known."""
 CERTAIN = 10.0
 """Smallest relative size of a certainly present harmonic, in units of the extrema's relative error."""
-LEAST_PRESENT = 1e-6
+MIN_PRESENT = 1e-6
 """Lower bound of this size: the error estimate is the tip's, and the bending strain may have a larger
 error."""
 
@@ -45,7 +45,7 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
 
     error: relative error of the extrema.
     """
-    return common_divisor(path, max(CERTAIN * error, LEAST_PRESENT))
+    return common_divisor(path, max(CERTAIN * error, MIN_PRESENT))
 
 
 def shortened(orbit: Orbit) -> Orbit:

@@ -24,25 +24,25 @@ from .cycle_errors import CycleErrors
 from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
 
-MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
+MATRIX_DISTANCE, MIN_MATRIX_DISTANCE, MAX_MATRIX_DISTANCE = 3.0, 1e-7, 1e-5
 """Relative distance of Newton's matrix for accurate multipliers, in units of the accuracy, and its bounds."""
 MULTIPLIER_FACTOR = 10.0
 """Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
-LEAST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
+FINEST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
 """Finest accuracy for which a mesh is chosen, by measured errors and by the tails of a nearby orbit."""
-NEAR, AIM_FACTOR = 1e-3, 1e-3
+NEARBY_TOLERANCE, AIM_FACTOR = 1e-3, 1e-3
 """Newton tolerance of the nearby orbit, and factor on the accuracy where a mesh is too coarse."""
-FIRST_SHARE = 0.5
+FIRST_MESH_ACCURACY = 0.5
 """Relative accuracy of a single cycle's first mesh: a second round costs more than a finer first mesh."""
-LEAST_PREDICTED = 6
+MIN_PREDICTED_INTERVALS = 6
 """Smallest number of intervals of a predicted mesh. For 5, the prediction would use meshes with 4 and 5,
 where errors in time do not yet fall as a power (the largest y was off by four times its estimate)."""
-PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
+PREDICTED_WITHIN, MIN_PREDICTED_DISTANCE = 30.0, 1e-9
 """Largest distance of a cycle from its prediction, in units of the accuracy, at which predicted errors hold
 (up to 4.4 was seen), and the smallest bound on the distance, for rounding errors."""
-LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
+MIN_SIZE, MAX_SIZE = 0.2, 5.0
 """Bounds on the size of a solution in units of the start's size: the motion must stay the same."""
-ALLOWED_INCREASE, MOST_ROUNDS = 10.0, 8
+ALLOWED_INCREASE, MAX_ROUNDS = 10.0, 8
 """Factor by which an error may grow on a finer mesh, by coincidence, and maximum number of meshes tried."""
 
 
@@ -136,20 +136,20 @@ def refine(
     aim, start = max(accuracy, FIRST_ACCURACY), orbit
     while True:
         try:
-            rough = same_motion(newton(start, NEAR, workspace), orbit.size)
+            rough = same_motion(newton(start, NEARBY_TOLERANCE, workspace), orbit.size)
             near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
-                first = wanted_mesh(near, FIRST_SHARE * aim, stages)
-                first = replace(first, intervals=max(first.intervals, LEAST_PREDICTED))
+                first = wanted_mesh(near, FIRST_MESH_ACCURACY * aim, stages)
+                first = replace(first, intervals=max(first.intervals, MIN_PREDICTED_INTERVALS))
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
             found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
-            if aim <= LEAST_ACCURACY or not orbit.symmetric:  # only symmetric cycles are born at Hopf points
+            if aim <= FINEST_ACCURACY or not orbit.symmetric:  # only symmetric cycles are born at Hopf points
                 raise
-            aim = max(AIM_FACTOR * aim, LEAST_ACCURACY)
+            aim = max(AIM_FACTOR * aim, FINEST_ACCURACY)
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
@@ -163,7 +163,7 @@ def _predicted_cycle(
     """
     coarser, last = CoarserMeshes(mesh, near, accuracy, workspace), inf
     orbit, known = best = coarser.predicted(mesh)
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         error = known.errors(accuracy).largest
         if error < best[1].errors(accuracy).largest:
             best = orbit, known
@@ -179,9 +179,9 @@ def _predicted_cycle(
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
     found = same_motion(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
-    if found.distance > max(PREDICTED_WITHIN * accuracy, LEAST_WITHIN):
+    if found.distance > max(PREDICTED_WITHIN * accuracy, MIN_PREDICTED_DISTANCE):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    return judged_by(known, at_orbit(found, min(accuracy, LARGEST_DISTANCE)), accuracy)
+    return judged_by(known, at_orbit(found, min(accuracy, MAX_MATRIX_DISTANCE)), accuracy)
 
 
 def calibrated_cycle(
@@ -192,7 +192,7 @@ def calibrated_cycle(
     before: calibration at a nearby cycle. The best cycle is returned if no allowed mesh reaches the accuracy.
     """
     best, last = None, inf
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         before = calibrated(found, accuracy, before)
         cycle = judged_by(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
@@ -218,7 +218,7 @@ def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | Non
 
 def same_motion(found: Converged, size: float) -> Converged:
     """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
-    if not LEAST_SIZE * size < found.orbit.size < LARGEST_SIZE * size:
+    if not MIN_SIZE * size < found.orbit.size < MAX_SIZE * size:
         raise Unsolvable("Newton's method converged to another motion than the one at its start")
     return found
 
@@ -235,7 +235,7 @@ def refined_cycle(
     if common_divisor(found.path, PRESENT) > 1:
         found = refine(shortened(found.orbit), accuracy, workspace, parameter)
     if found.stable is None:
-        found = refine(found.orbit, max(accuracy / 100, LEAST_ACCURACY), workspace, parameter)
+        found = refine(found.orbit, max(accuracy / 100, FINEST_ACCURACY), workspace, parameter)
     return found
 
 
@@ -246,4 +246,4 @@ def newton_tolerance(accuracy: float) -> float:
 
 def matrix_distance(accuracy: float) -> float:
     """Largest relative distance between an orbit and a matrix with accurate multipliers."""
-    return min(max(MATRIX_SHARE * accuracy, LEAST_DISTANCE), LARGEST_DISTANCE)
+    return min(max(MATRIX_DISTANCE * accuracy, MIN_MATRIX_DISTANCE), MAX_MATRIX_DISTANCE)

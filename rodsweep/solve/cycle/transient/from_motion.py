@@ -10,11 +10,11 @@ from ...motion.integrator import Trajectory
 from ...orbit.orbit import Orbit, node_times
 from ...orbit.symmetry import NONE, REFLECTION
 
-STAGES, INTERVALS = 3, 20
+MOTION_STAGES, MOTION_INTERVALS = 3, 20
 """Collocation stages of the start, and its intervals per return of the tip."""
 PHASES = 128
 """Number of times at which the largest y is searched."""
-SYMMETRIC = 0.2
+MAX_ASYMMETRY = 0.2
 """Largest relative distance of a symmetric motion from its reflection half a period later."""
 
 
@@ -30,13 +30,13 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     times = begin + period * np.arange(PHASES) / PHASES
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
-    symmetry = REFLECTION if asymmetry(beam, whole) < SYMMETRIC else NONE
-    intervals = INTERVALS * turns // symmetry.parts
+    symmetry = REFLECTION if asymmetry(beam, whole) < MAX_ASYMMETRY else NONE
+    intervals = MOTION_INTERVALS * turns // symmetry.parts
     duration = period / symmetry.parts
-    at = top + duration * node_times(intervals, STAGES)
+    at = top + duration * node_times(intervals, MOTION_STAGES)
     at = np.where(at > run.times[-1], at - period, at)
     states = stressed(beam, form, spline(at))
-    return Orbit.of(form, symmetry, period, states, STAGES)
+    return Orbit.of(form, symmetry, period, states, MOTION_STAGES)
 
 
 def asymmetry(beam: Beam, states: Array) -> float:

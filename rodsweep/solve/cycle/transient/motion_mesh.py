@@ -12,7 +12,7 @@ EXPECTED_MODES = 3
 """Number of modes whose wave number determines the first mesh; the cycle refines the mesh later."""
 WAVES_PER_ROOT_FORCE = 2.5
 """Largest wave number of a cycle in units of sqrt(F), the inverse of the length to which F bends a rod."""
-STIFFEST, LEAST_DRAG = 1e8, 1e-6
+STIFFEST, MIN_DRAG = 1e8, 1e-6
 """Largest stiffness and smallest gamma3 of an integrated rod. Rods beyond move alike, to 1e-6 or better."""
 
 
@@ -30,6 +30,4 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
 
 def near_rod(rod: Rod) -> Rod:
     """The rod; a nearby rod for a rod in a limit, which the time stepper cannot integrate."""
-    return replace(
-        rod, k1=min(rod.k1, STIFFEST), k2=min(rod.k2, STIFFEST), gamma3=max(rod.gamma3, LEAST_DRAG)
-    )
+    return replace(rod, k1=min(rod.k1, STIFFEST), k2=min(rod.k2, STIFFEST), gamma3=max(rod.gamma3, MIN_DRAG))

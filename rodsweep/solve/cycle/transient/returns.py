@@ -16,7 +16,7 @@ from ...motion.integrator import Ending, RunLimit, Trajectory
 STRAIGHT_SIZE = 1e-6
 """Norm of z below which a rod with a stable straight state is called straight, and norm of the bending and
 shear part of z below which a rod no longer swings. Smaller motions are governed by numerical damping."""
-SAME_CROSSING = 0.03
+SAME_RETURN = 0.03
 """Largest relative distance of two returns at the same crossing of the orbit."""
 LONGEST_ORBIT = 8
 """Maximum number of returns per period."""
@@ -99,5 +99,5 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     if size < STRAIGHT_SIZE:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
-    enough = max(2 * min(found)[0], SAME_CROSSING)
+    enough = max(2 * min(found)[0], SAME_RETURN)
     return next((m, distance) for distance, m in found if distance <= enough)

@@ -40,33 +40,33 @@ from .returns import (
 )
 from .trace import TipTrace
 
-TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
+USUAL_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-5)
 """Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
-QUICK = TimeScheme("arkimex", "4", tolerance=1e-4)
+QUICK_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-4)
 """Scheme of the first run of a fast-growing motion, which often closes: no decision uses the growth."""
-CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
+CAREFUL_SCHEME = TimeScheme("arkimex", "5", tolerance=1e-9)
 """Scheme where the sign of a small growth per period must be correct, and for stored paths."""
 
-CHUNK, FIRST_CHUNK = 5, 3
+RETURNS_PER_RUN, FIRST_RETURNS = 5, 3
 """Returns per run, before the motion is classified, and returns of the first run, after which only closed
 motions are recognised: a fast-growing motion may close early."""
 NEWTON_DISTANCE = 0.1
 """Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
 STORED_PATH_DISTANCE = 1e-3
 """NEWTON_DISTANCE for a stored path, in the first half of the allowed periods, to show the settling."""
-MOST_NEWTON_FAILURES = 5
+MAX_NEWTON_FAILURES = 5
 """Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
 WEAK_GROWTH = 0.01
-"""Linear growth per period below which the scheme is CAREFUL."""
-NOISE, CAREFUL_NOISE = 1e-3, 1e-5
+"""Linear growth per period below which the scheme is CAREFUL_SCHEME."""
+GROWTH_NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 """Growth per period that the integrator may add; 3e-4 and 8e-6 were measured."""
-MOST_JUMPS = 60
+MAX_JUMPS = 60
 """Maximum number of scaled or restarted states."""
 RESTART_DEFLECTION = 1e-3
 """Tip deflection of a restart in L; its square is the relative change of the linear growth."""
 NEUTRAL_DISTANCE = 3e-8
 """Distance of the largest multiplier from 1 below which a closed orbit does not determine its amplitude."""
-MOST_RETURNS = 400
+MAX_RETURNS = 400
 """Number of last returns that are kept to recognise a torus."""
 
 
@@ -111,12 +111,12 @@ class Transient:
         self.row = angle_weights(self.beam)
         rate, period = straight.growth_rate(self.mode.w.real), self.mode.period
         careful = abs(rate) * period < WEAK_GROWTH or request.transient > 0
-        self.scheme, noise = (CAREFUL, CAREFUL_NOISE) if careful else (TRANSIENT, NOISE)
-        self.first_scheme = QUICK if rate * period > SLOW_GROWTH and not careful else self.scheme
+        self.scheme, noise = (CAREFUL_SCHEME, CAREFUL_NOISE) if careful else (USUAL_SCHEME, GROWTH_NOISE)
+        self.first_scheme = QUICK_SCHEME if rate * period > SLOW_GROWTH and not careful else self.scheme
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / 1000
         """First time step of the next run, tau2."""
-        self.past: deque[tuple[float, Array]] = deque(maxlen=MOST_RETURNS)
+        self.past: deque[tuple[float, Array]] = deque(maxlen=MAX_RETURNS)
         """Times and bending moments of the last returns since the last jump."""
         self.clock = 0.0
         self.waited = self.jumps = self.failures = self.next_newton = 0
@@ -136,7 +136,7 @@ class Transient:
             if self.straight.stable is not False and np.linalg.norm(z) < STRAIGHT_SIZE:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
             if self.straight.stable is False and not self._swings(z):
-                if self.trace or self.jumps >= MOST_JUMPS:
+                if self.trace or self.jumps >= MAX_JUMPS:
                     break
                 z = self._jumped(RESTART_DEFLECTION * self.mode.z.real)
                 continue
@@ -145,7 +145,7 @@ class Transient:
                 continue
             if not early and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
-            factor = None if early or self.jumps >= MOST_JUMPS else self.small.jump(times, states)
+            factor = None if early or self.jumps >= MAX_JUMPS else self.small.jump(times, states)
             if factor is not None and self.trace:
                 continue  # a stored path has no jumps
             if factor is not None:
@@ -206,8 +206,8 @@ class Transient:
         return TransientOutcome(status, why, self.waited, found)
 
     def _chunk(self, z: Array, first: bool) -> Trajectory:
-        """A run over CHUNK returns, limited to three times the expected duration."""
-        returns, scheme = (FIRST_CHUNK, self.first_scheme) if first else (CHUNK, self.scheme)
+        """A run over RETURNS_PER_RUN returns, limited to three times the expected duration."""
+        returns, scheme = (FIRST_RETURNS, self.first_scheme) if first else (RETURNS_PER_RUN, self.scheme)
         limit = until_returns(self.row, z, returns)
         duration = 3 * returns * self.mode.period
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
@@ -222,8 +222,8 @@ class Transient:
         turns, distance = repetition([state for _, state in self.past][-1 - LONGEST_ORBIT :])
         if distance >= self._near_enough() or self.waited < self.next_newton:
             return None
-        self.next_newton = self.waited + CHUNK * 2**self.failures
-        self.failures = min(self.failures + 1, MOST_NEWTON_FAILURES)
+        self.next_newton = self.waited + RETURNS_PER_RUN * 2**self.failures
+        self.failures = min(self.failures + 1, MAX_NEWTON_FAILURES)
         return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
     def _near_enough(self) -> float:
