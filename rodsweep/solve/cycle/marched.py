@@ -245,5 +245,5 @@ def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
     worst = max(abs(a[name] - b[name]) for name in a) / size
-    stated = (float(PAIR_FACTOR * difference + share) for difference in (period, height, worst))
-    return CycleErrors(*stated, nan)
+    stated = [float(PAIR_FACTOR * difference + share) for difference in (period, height, worst)]
+    return CycleErrors(stated[0], stated[1], stated[2], nan)
