@@ -1,8 +1,8 @@
 """Access for one thread of this process at a time, and signal handlers only where a solve is safe.
 
 PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time. Compiled
-code calls Python to make a NamedTuple of its results; an exception raised there by a signal handler, as
-Ctrl-C does, is a segmentation fault, and pydantic turns it into another exception.
+code calls Python to make a NamedTuple of its results. An exception of a signal handler during this call, as
+by Ctrl-C, is a segmentation fault. pydantic turns the exception into a different one.
 """
 
 import inspect
@@ -23,7 +23,7 @@ _one = RLock()
 
 
 def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, which waits until no other thread is inside a function decorated this way."""
+    """`function`, which waits until no other thread executes a decorated function."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:

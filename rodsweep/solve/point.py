@@ -19,7 +19,7 @@ class Unsolvable(Exception):
 
 
 FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
-"""Exceptions by which a solve may fail; any other exception is a bug, which ends the run."""
+"""Exceptions by which a solve may fail; any other exception is a bug and ends the run."""
 
 
 def solved(

@@ -1,4 +1,4 @@
-"""Check that this process can solve, without starting PETSc, whose start is collective over all ranks."""
+"""Check that PETSc can solve here, without starting PETSc: the start is collective over all ranks."""
 
 import os
 from importlib.util import find_spec

@@ -36,7 +36,8 @@ POINTER, INT = types.intp, types.int32 if PETSc.IntType == np.int32 else types.i
 
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:
-    """Compiles a function of these arguments into one that C can call and that returns an error code."""
+    """Compiles a function with these argument types for calls from C; the C function returns an error
+    code."""
     return partial(c_callback, signature=types.int32(*arguments))
 
 

@@ -36,7 +36,7 @@ by at most a tenth."""
 
 @dataclass(frozen=True, eq=False)
 class PreviousCycle:
-    """The orbit one step back, and its derivative along the branch in any unit, (N + 1,)."""
+    """The previous orbit and its derivative along the branch, in any unit, (N + 1,)."""
 
     orbit: Orbit
     tangent: Array
@@ -46,9 +46,9 @@ class PreviousCycle:
 class ArcPoint:
     """A cycle of a branch.
 
-    length: of the next step. before: the previous cycle. calibration: errors of the last cycle at which they
-    were measured. unmeasured: number of steps since that cycle, 0 if it is this one. way: arc length since
-    that cycle.
+    length: of the next step. before: the previous cycle. calibration: errors of the last measured cycle.
+    unmeasured: number of steps since the last measured cycle, 0 for a measured one. way: arc length since
+    then.
     """
 
     cycle: RefinedCycle
@@ -105,7 +105,7 @@ class ArcPoint:
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> Condition:
-        """The condition that prescribes the arc length, at a length ahead of this cycle."""
+        """The condition of a given arc length from this cycle."""
         return Condition.at(self.scale, self.ahead, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:

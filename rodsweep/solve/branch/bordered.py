@@ -32,7 +32,7 @@ from ..orbit.orbit_mesh import OrbitMesh
 from ..point import Unsolvable
 
 LONGEST_CORRECTION = 0.5
-"""Largest relative change of an orbit in one iteration; a larger one means that no cycle is near."""
+"""Largest relative change of an orbit in one iteration; no cycle is near if the change is larger."""
 SLOW_CONTRACTION = 0.1
 """Ratio of successive corrections above which a new matrix is assembled."""
 
@@ -102,7 +102,7 @@ class BorderedMatrix:
         return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
-        """`step` at a neighbouring orbit, which may have another parameter, by the factors of this matrix."""
+        """`step` at a neighbouring orbit, of any nearby parameter, by the factors of this matrix."""
         factors, p = self._memory.factors, self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, ends[0]), length)

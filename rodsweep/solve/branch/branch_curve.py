@@ -1,4 +1,4 @@
-"""A branch as it is stored: numbers of its cycles, and its special points."""
+"""Stored form of a branch: numbers of the cycles, and special points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

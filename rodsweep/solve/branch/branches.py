@@ -1,8 +1,8 @@
 """The task branch for one rod: all cycles born at its Hopf points along a parameter, followed to their ends.
 
 The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
-once, from the first. Where a branch loses its mirror symmetry, the branch of asymmetric cycles born there is
-followed too. Cycles on other branches are not found.
+once, from the first. Where a branch loses its mirror symmetry, the branch of asymmetric cycles is followed
+too. Cycles on other branches are not found.
 """
 
 from dataclasses import dataclass, field, replace

@@ -31,7 +31,7 @@ def _as(status: ThresholdStatus) -> tuple[int, str, bool]:
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles: of its stability changes first, then of its branches."""
+    """Outcome of a row with cycles: of the stability changes first, then of the branches."""
 
     ok = _as(ThresholdStatus.ok)
     not_certified = _as(ThresholdStatus.not_certified)
@@ -138,8 +138,7 @@ def _judged(row: DiagramRow, branches: BranchesOfRod, special: int) -> tuple[Coe
 class BranchStretch:
     """Part of a branch between two special points.
 
-    within: range of the parameter that it surely covers. about: range that it may cover. stable: 1 yes, 0 no,
-    -1 unknown.
+    within: parameters surely covered. about: parameters possibly covered. stable: 1 yes, 0 no, -1 unknown.
     """
 
     within: tuple[float, float]

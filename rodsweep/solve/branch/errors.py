@@ -128,8 +128,8 @@ class BranchCalibration:
         return replace(self.known, space=parts[0], time=parts[1])
 
     def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
-        """Errors of a cycle between this one and another on the same mesh. share: of the way; slope: at that
-        cycle.
+        """Errors of a cycle between two measured ones on one mesh. share: of the way to `other`; slope: at
+        the cycle.
 
         Each error is interpolated geometrically and multiplied by INTERPOLATION_FACTOR.
         """

@@ -1,4 +1,4 @@
-"""One branch of cycles, from the Hopf point or symmetry breaking where it is born to its end."""
+"""One branch of cycles, followed from its Hopf point or symmetry breaking to its end."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -99,7 +99,7 @@ def _followed(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcP
 
 
 def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
-    """A branch from its first cycle, whose errors are measured, to its end."""
+    """A branch followed to its end from a first cycle with measured errors."""
     trail = Trail(curve, limits.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):

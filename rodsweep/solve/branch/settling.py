@@ -20,13 +20,12 @@ MAX_MESHES = 8
 CHEAPER_COST = 0.5
 """A cheaper mesh is taken if its cost is below this fraction of the present cost."""
 PLANNED_SHARE = 0.5
-"""Fraction of the accuracy that a mesh is planned for, so that it also serves the next cycles."""
+"""Fraction of the accuracy for which a mesh is planned, so that the mesh serves the next cycles too."""
 MIN_RATE_SHARE = 0.7
-"""Errors are not interpolated where the parameter changes along the branch slower than this fraction of its
-slower rate at the two measured cycles: beside a fold they do not bound the errors between."""
+"""Smallest rate of the parameter along the branch, in units of the slower rate at the two measured cycles,
+for interpolated errors: beside a fold the rate is smaller, and the measured errors are no bound."""
 MAX_TAIL_GROWTH = 2.0
-"""Errors are not interpolated where the estimated errors have grown by more than this factor since either
-measured cycle."""
+"""Largest growth of the estimated errors since either measured cycle for interpolated errors."""
 MAX_UNMEASURED_CYCLES = 3
 """Errors are measured at least at every third cycle."""
 REMEASURE_GROWTH = 4.0
@@ -94,7 +93,7 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
 
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: float) -> ArcPoint:
-    """The cycle on another mesh, its errors not measured; raises Unsolvable."""
+    """The cycle on another mesh, without measured errors; raises Unsolvable."""
     found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
     known = point.place

@@ -28,15 +28,14 @@ from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
 FIRST_CHANGES = (0.03, 0.01, 0.1)
-"""Relative change from the symmetric cycle to the first asymmetric one; tried in this order."""
+"""Relative change from the symmetric cycle to the first asymmetric cycle; tried in this order."""
 SMALL_ASYMMETRY = 0.2
 """Asymmetry, in units of the largest moment, from which a branch may step across the symmetric cycle where it
 ends."""
 MIN_ASYMMETRY = 0.02
 """Asymmetry, in units of the largest moment, below which shorter steps cannot identify that cycle better."""
 LOST_ASYMMETRY = 0.1
-"""A step whose asymmetry falls below this fraction has passed a symmetric cycle or has come to symmetric
-ones."""
+"""A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
 BREAKING_WITHIN = 0.3
 """Tolerance for the extrapolated place of a symmetry breaking, in units of the last cycle's distance."""
 CLOSE_PLACE = 1e-6
@@ -49,8 +48,7 @@ ASYMMETRY_RATIOS = 0.5, 2.0
 
 @dataclass(frozen=True, slots=True)
 class Breaking:
-    """A symmetry breaking: the number of its branch, from 1, and its place among the special points of that
-    branch."""
+    """A symmetry breaking: number of its branch, from 1, and index among the special points of the branch."""
 
     branch: int
     place: int

@@ -14,9 +14,8 @@ EXPLAINED = 0.25
 class Anchor:
     """A rod of the path with its leading eigenvalues w and their slopes dw/dp, (ANCHOR_MODES,).
 
-    time, lengthening: a relaxation time of the rod, smooth along the path, and its slope. In units of its
-    inverse w is of order one; without shear and rotational drag, w itself grows like nu^-2 for a nearly
-    crushed rod.
+    time, lengthening: a relaxation time of the rod, smooth along the path, and its slope. w times time is of
+    order one; without shear and rotational drag, w grows like nu^-2 for a nearly crushed rod.
     """
 
     p: float
@@ -31,8 +30,8 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, its slope) of the two leading eigenvalues if both are real or form a pair;
-        else None."""
+        """((w1 - w2)^2 time^2, its slope) of the two leading eigenvalues if both are real or a pair; else
+        None."""
         if self.oscillates:
             gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
             return -(gap**2), -2 * gap * slope
@@ -42,7 +41,7 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(distance of the real part from the first eigenvalue of the other kind, times time, its slope); or
+        """(lead of the real part over the first eigenvalue of the other kind, times time; its slope), or
         None."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
@@ -50,12 +49,12 @@ class Anchor:
         return None
 
     def _timed(self, value: float, slope: float) -> tuple[float, float]:
-        """(value times time, its slope): this scaling changes no zero and no sign."""
+        """(value times time, its slope); the factor time preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
 def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
-    """(least value on [0, 1] of the cubic with these values and slopes at its ends, its place)."""
+    """(least value on [0, 1], its place) of the cubic with values a, b and slopes at the ends."""
     square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
     lowest, at = min(a, b), 0.5
     spread = square * square - 3 * cube * slope_a

@@ -20,7 +20,7 @@ MIN_KNOWN_MODES = 4
 MAX_KNOWN_MODES = 40
 """Largest number of leading eigenvalues known at a place."""
 PLACE_ACCURACY = 1e-6
-"""Accuracy of these eigenvalues; Newton's method on D refines them."""
+"""Accuracy of the eigenvalues at a place; Newton's method on D refines them."""
 SMALLEST_INTERVAL = 1e-6
 """Length of an interval, in units of the path, that is not divided further: two crossings in it stay
 undecided."""
@@ -119,7 +119,7 @@ class CrossingSearch:
         return (before, behind) if change == right.unstable - left.unstable else None
 
     def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
-        """The crossing between two places whose counts differ by one pair; None if not found."""
+        """The crossing between two places whose counts differ by a pair; None if not found."""
         grows = right.unstable > left.unstable
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]

@@ -25,7 +25,7 @@ BOUNDARY_STEPS = StepControl(
 """Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
 curve."""
 BESIDE_AN_EDGE = 1e-9
-"""A point on one edge may lie this far beyond another edge."""
+"""Largest distance beyond one edge of the plane for a point on another edge."""
 COINCIDENT_POINTS = 1e-9
 """Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
 FOLD_ACCURACY = 1e-13
@@ -107,8 +107,7 @@ class _Trace:
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """The point on the edge that a step crosses; None if it lies beyond another edge or the rod is
-        crushed."""
+        """The point on the edge that a step crosses; None beyond another edge or for a crushed rod."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)

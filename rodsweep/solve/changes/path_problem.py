@@ -35,7 +35,7 @@ class PathProblem(ABC):
 
     @abstractmethod
     def edges(self, low: float, high: float) -> list[float]:
-        """Places from low to high, both included, between which the rods change little."""
+        """Places from low to high, with little change of the rods between neighbours."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:

@@ -41,7 +41,7 @@ class Motion(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class RowRequest:
-    """Request for every row: the parameter along it and its increasing values, (values,)."""
+    """Request for every row: the varied parameter and its increasing values, (values,)."""
 
     name: str
     values: Array
@@ -83,7 +83,7 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
 
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row, searched between its first and its last rod that is not crushed."""
+    """The row, searched between the first and the last rod that are not crushed."""
     name, values = request.name, request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)

@@ -67,8 +67,7 @@ class Thresholds:
 
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
-    """All changes of one rod along the force, whatever its own force; a failure is a status, never an
-    exception."""
+    """All changes of one rod along the force, from 0; a failure is a status, never an exception."""
     end = min(request.F_max, rod.crushing_force * (1 - CRUSHING_MARGIN))
 
     def search() -> Thresholds:

@@ -1,7 +1,7 @@
 """Changes along a path as a list, and the number of unstable modes between them.
 
-The crossings and the directions in which pairs cross the axis determine the number after every crossing; the
-winding number confirms it at both ends and between.
+Crossings and crossing directions give the number after every crossing; the winding number confirms the number
+at both ends and between.
 """
 
 import math

@@ -23,7 +23,7 @@ class BoundaryProblem(Protocol[Curve]):
         """Units of work whose results the curve from a point still needs."""
 
     def curve(self, seed: int) -> Curve | None:
-        """The curve from a point; None if it cannot be followed."""
+        """The curve from a point; None if not found."""
 
     def distance(self, curve: Curve, seed: int) -> float:
         """Distance of a point from a curve, in units of the rows' length."""
@@ -47,10 +47,10 @@ class Boundaries(Generic[Curve]):
 
 @dataclass(slots=True)
 class BoundarySearch(Generic[Curve]):
-    """The curves through some points, as far as known.
+    """The curves through numbered points, as far as known.
 
-    agree: distance from a curve within which a point lies on it. distances: of each point from the nearest
-    curve. needed: units of work that the search lacks. left: points on no curve at that time.
+    agree: distance within which a point lies on a curve. distances: of each point from the nearest curve.
+    needed: units of work whose results the search lacks. left: points on no curve so far.
     """
 
     agree: float

@@ -77,7 +77,7 @@ class StepControl:
     most: int = 5000
 
     def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
-        """The next solution of the same curve; raises Unsolvable if it may lie on another curve."""
+        """The next solution; raises Unsolvable if the solution may lie on another curve."""
         if not there.off <= self.far:
             raise Unsolvable("the solution is far from its prediction")
         if not _angle(there.cosine) <= self.sharpest:

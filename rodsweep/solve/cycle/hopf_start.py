@@ -82,7 +82,7 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 
 def hopf_point_below(rod: Rod) -> Onset | None:
-    """The nearest Hopf point of the leading mode below the rod's force; None if there is none."""
+    """The nearest Hopf point of the leading mode below the rod's force; None without a Hopf point."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while F > MIN_FORCE:
@@ -123,7 +123,7 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
 
 
 def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]) -> Onset | None:
-    """The force between `ends`, near F, at which the eigenvalue near a guess is imaginary; None if none."""
+    """The force between `ends`, near F, at which the eigenvalue near a guess is imaginary; or None."""
     for _ in range(MAX_HOPF_STEPS):
         w, slope, error = problem.eigenvalue(guess, F)
         if not (slope.real and isfinite(slope.real)):

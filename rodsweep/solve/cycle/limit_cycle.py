@@ -76,7 +76,7 @@ def solve_cycle(
 
 
 def warm_up() -> None:
-    """Triggers compilation and caches once, so that no timed point includes them.
+    """Loads compiled code and fills caches, so that the first point takes no extra time.
 
     Raises EnvironmentIncomplete if PETSc options with the prefix cycle_ spoil the cycle of a reference rod.
     """

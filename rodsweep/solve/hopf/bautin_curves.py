@@ -75,7 +75,7 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Points of a curve in order, and the reasons why it stops at its first and at its last point."""
+    """Points of a curve in order, and the reasons for its first and last end."""
 
     points: tuple[BautinCurvePoint, ...]
     ends: tuple[BautinEnd, BautinEnd]

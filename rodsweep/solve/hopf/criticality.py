@@ -1,7 +1,7 @@
 """Task `criticality` for one rod: all Hopf points, each with the criticality of its branch of cycles.
 
-The Hopf points are found and proved complete as in `task: thresholds`. They do not depend on gamma1, so that
-rods that differ in gamma1 only share one search.
+Hopf points are found and proved complete as in `task: thresholds`. They are independent of gamma1: rods with
+different gamma1 alone share one search.
 """
 
 import math
@@ -102,7 +102,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 
 
 def warm_up() -> None:
-    """Triggers compilation and caches once, so that no timed point includes them."""
+    """Loads compiled code and fills caches, so that the first point takes no extra time."""
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
@@ -112,7 +112,7 @@ def _hopf_points(path: Path, end: float, certify: bool) -> Transitions:
 
 
 def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
-    """Coefficients of one Hopf point; a failure becomes a message and leaves other points untouched."""
+    """Coefficients of one Hopf point; a failure becomes the message of this point alone."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.at), hopf, request.accuracy)
     except FAILURES as error:

@@ -1,7 +1,7 @@
-"""Subcritical Hopf point next to a force at which the straight rod is stable, if there is one.
+"""Subcritical Hopf point next to a force at which the straight rod is stable.
 
-The unstable cycles of a subcritical Hopf point coexist with the stable straight rod. They separate its basin:
-a perturbation larger than the unstable cycle leaves the straight rod, mostly for a stable cycle on the same
+The unstable cycles of a subcritical Hopf point coexist with the stable straight rod and bound its basin: a
+perturbation larger than the unstable cycle leaves the straight rod, mostly for a stable cycle on the same
 branch behind a fold.
 """
 

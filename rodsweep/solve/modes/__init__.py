@@ -1,1 +1,1 @@
-"""Leading modes of one rod, their adjoints, and the transient growth that non-normality allows."""
+"""Leading modes and adjoint modes of one rod, and transient growth due to non-normality."""

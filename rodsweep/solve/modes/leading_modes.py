@@ -29,7 +29,7 @@ from .transient_growth import Growth, growth_of
 GROWTH_WAVE_NUMBER = 24.0
 """Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
 SIGNIFICANT_ERRORS = 4.0
-"""A growth rate is positive if it exceeds this many error estimates."""
+"""Smallest positive growth rate in units of its error estimate."""
 
 
 @dataclass(frozen=True, slots=True)

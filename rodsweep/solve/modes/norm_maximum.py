@@ -24,7 +24,7 @@ MAX_OPEN_INTERVALS = 4000
 BATCH = 128
 """Number of times at which the propagator is evaluated at once."""
 LARGEST_EXPONENT = 300.0
-"""Largest exponent that is used; its exponential is still finite."""
+"""Largest exponent, with an exponential that is still finite."""
 MAX_PEAK_STEPS = 40
 """Maximum number of steps of the search for a peak."""
 RISE_LEFT = 1e-14

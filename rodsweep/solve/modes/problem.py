@@ -1,4 +1,4 @@
-"""Meshes and determinant of one rod, as its modes need them.
+"""Meshes and determinant of one rod for its modes.
 
 A uniform rod of linear material has equal elements and a determinant D in closed form. Every other arm has
 elements that end at jumps of a coefficient, and D from propagators.
@@ -24,7 +24,7 @@ PENCILS_KEPT = 16
 
 
 class ModesProblem(ABC):
-    """Discretization and determinant of one rod for its modes."""
+    """Discretization and determinant of a rod for its modes."""
 
     rod: Rod
 
@@ -34,7 +34,7 @@ class ModesProblem(ABC):
 
     @abstractmethod
     def of_order(self, mesh: Any, order: int) -> Any:
-        """A mesh with the same elements and another order."""
+        """A mesh with the same elements and a given order."""
 
     @abstractmethod
     def finer(self, mesh: Any) -> Any:

@@ -27,7 +27,7 @@ MIN_MODES = 8
 MORE_MODES = 1.5
 """Factor on the number of modes when more are needed."""
 TRUNCATION_MARGIN = 4.0
-"""exp(-this): share of the accuracy for the modes that are left out."""
+"""exp(-TRUNCATION_MARGIN) is the share of the accuracy for the modes left out."""
 SEARCH_SHARE = 0.25
 """Share of the accuracy for the bound between times."""
 MIN_SEARCH_TOLERANCE = 2e-13
@@ -70,7 +70,8 @@ GROWTH_BY_STABILITY = {
     False: Growth(transient_growth=inf, transient_time=inf, growth_error=0.0),
     None: Growth(growth_error=0.0),
 }
-"""The growth of a rod whose stability alone determines it; None if it must be computed."""
+"""Growth of a rod as far as stability alone determines it; None for a stable rod, whose growth is
+computed."""
 UNBOUNDED = Growth(growth_error=inf)
 """Placeholder for an unknown growth."""
 

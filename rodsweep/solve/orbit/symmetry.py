@@ -53,6 +53,6 @@ def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
 
 
 NONE = Symmetry(np.eye(3), 1)
-"""Symmetry of an orbit that closes after its whole period only."""
+"""Symmetry of an orbit that closes only after its whole period."""
 REFLECTION = Symmetry(np.diag([1.0, -1.0, -1.0]), 2)
-"""Symmetry of an orbit that is its own mirror image half a period later."""
+"""Symmetry of an orbit that equals its mirror image half a period later."""

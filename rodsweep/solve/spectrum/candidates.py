@@ -65,11 +65,12 @@ class Verdict:
 
 
 def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
-    """Eigenvalues nearest the shift of the problem, at least `wanted` if they converge, without spurious
+    """Eigenvalues nearest the shift of the problem, at least `wanted` if enough converge, without spurious
     ones.
 
     tight: whether the mesh is solved to its last digit before the refinement on D. After an error inside
-    PETSc, SLEPc or LAPACK no eigenvalue is returned: another mesh is another matrix, which may not fail.
+    PETSc, SLEPc or LAPACK no eigenvalue is returned: on another mesh, with a different matrix, the solver may
+    succeed.
     """
     raw: Complex = np.empty(0, complex)
     kept, failure = None, ""

@@ -1,9 +1,8 @@
-"""A count of eigenvalues carried along a path, from one point to all points that a proof on a moving line
-reaches.
+"""A count of eigenvalues carried along a path, as far as a proof on a moving line reaches.
 
 At one point the first `known` followed eigenvalues are proved to be all right of a line. If no eigenvalue
-crosses a line that moves in an open gap from this point to another (`rodsweep.determinant.moving_line`), the
-same eigenvalues are all right of that line at every point between.
+crosses a line that moves in an open gap to another point (`rodsweep.determinant.moving_line`), the
+eigenvalues right of the line are all at every point between.
 """
 
 import numpy as np
@@ -64,7 +63,7 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
-    """The widest gap among the first `known` that stays open from one point to another; 0 if none."""
+    """The widest gap among the first `known` that stays open between two points; 0 without an open gap."""
     best, widest = 0, NARROWEST_GAP
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
         (here, wide), (there, wide_there) = line_in(track, ends[0], gap), line_in(track, ends[1], gap)

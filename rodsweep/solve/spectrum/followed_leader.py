@@ -10,8 +10,8 @@ from ...model.rod import Rod
 from .candidates import BEHIND
 
 FAR_BEHIND = 0.5
-"""Distance behind the eigenvalue of the first line that may prove its lead, in units of its modulus. A
-distant line takes fewer nodes; BEHIND is tried next, in case another eigenvalue lies between."""
+"""Distance behind the eigenvalue of the first line for a count, in units of the modulus. A distant line takes
+fewer nodes; BEHIND follows, in case another eigenvalue lies between."""
 
 
 def followed_leader(rod: Rod, near: complex, accuracy: float) -> complex | None:

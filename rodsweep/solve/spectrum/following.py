@@ -23,8 +23,8 @@ MAX_EIGENVALUE_CORRECTIONS = 8
 FOLLOWED_ACCURACY = 1e-9
 """Relative accuracy of eigenvalues that do not lead, and only show where to count."""
 SAFE_CURVATURE = 4.0
-"""Safety factor on |D''/(2 D')|, which is the modulus of the sum of 1/(w - w_j) over the other roots, of
-which only some are known."""
+"""Safety factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over all other roots, computed from
+the known roots only."""
 ROUNDING_STEP = 4.0
 """A step below this multiple of the rounding error ends the corrections."""
 

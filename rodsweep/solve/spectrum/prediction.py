@@ -18,8 +18,8 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 
 CLOSING = 4.0
-"""Two real eigenvalues are extrapolated together if, at their present rate, they meet or met within this many
-steps."""
+"""Two real eigenvalues are extrapolated together if their present rates give a meeting within this many
+steps, before or after."""
 MEETING = 0.25
 """If the squared difference shrinks below this fraction of its last value, D decides on real or complex."""
 

@@ -1,4 +1,4 @@
-"""The transverse eigenvalue problem of one rod, as the search for its leading eigenvalues needs it.
+"""The transverse eigenvalue problem of one rod for the search of leading eigenvalues.
 
 A uniform rod of linear material has D in closed form and a pencil that is affine in its coefficients. Every
 other arm has D from propagators and a pencil that is filled anew.

@@ -37,7 +37,7 @@ eigenvalue. The second value holds without an a-priori bound, if convergence is 
 
 @dataclass(frozen=True, slots=True)
 class JudgedCandidates:
-    """Candidates with their count, if requested, and their distance from the request."""
+    """Candidates with a count, if requested, and the largest error in units of its limit."""
 
     found: Candidates
     verdict: Verdict | None
@@ -112,7 +112,7 @@ class Search:
         return self.concluded()
 
     def judged(self, found: Candidates) -> JudgedCandidates | None:
-        """The candidates if none is missing; otherwise None, after a change of the next attempt."""
+        """The candidates if complete; otherwise None, after a change of the next attempt."""
         if len(found.roots.w) < self.modes:
             # Too few converged, or converged to no root, or SLEPc failed: request more, on a finer mesh.
             self.failures += bool(found.failure)
@@ -130,9 +130,9 @@ class Search:
         return JudgedCandidates(found, verdict, self.shortfall(found, verdict))
 
     def shortfall(self, found: Candidates, verdict: Verdict | None) -> float:
-        """`JudgedCandidates.short`. Roots of D that the count proves complete need no evidence from the mesh.
+        """`JudgedCandidates.short`. The mesh need not resolve roots of D that the count proves complete.
 
-        Vectors do need it, and so do eigenvalues without a proof.
+        The mesh must resolve vectors, and eigenvalues without a proof.
         """
         error = found.worst(self.modes) / self.request.accuracy
         if verdict is not None and verdict.agrees and not self.with_vectors:
@@ -142,7 +142,7 @@ class Search:
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def search_more(self, number: int, here: int) -> None:
-        """Requests more eigenvalues after a count of `number`, of which `here` were found."""
+        """Requests more eigenvalues after a count of `number`, of which `here` are found."""
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer(self.mesh)
             return
@@ -154,7 +154,7 @@ class Search:
         self.wanted = more
 
     def keep(self, judged: JudgedCandidates) -> None:
-        """Keeps the candidates if they are the best so far, and counts attempts without progress."""
+        """Keeps the candidates if better than all before; counts attempts without progress."""
         best = self.best
         progress = best is None or judged.grade < (best.grade[0], 0.5 * best.short)
         self.stalled = 0 if progress else self.stalled + 1

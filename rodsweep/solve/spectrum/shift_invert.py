@@ -19,8 +19,8 @@ from ...watch import report
 from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 DENSE_UP_TO = 300
-"""Number of unknowns up to which the dense factorisation is as fast as a sparse one; its rounding errors are
-smaller."""
+"""Number of unknowns up to which the dense factorisation is as fast as the sparse, with smaller rounding
+errors."""
 START_TOLERANCE, START_SPARE = 1e-4, 5
 """Krylov tolerance, and number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are
 refined on D."""

@@ -146,8 +146,7 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, number of the first of these that are proved complete), pairs unsplit; or
-    None."""
+    """(eigenvalues to follow, pairs unsplit; number of leading ones that are proved complete), or None."""
     try:
         modes = request.modes + FURTHER_MODES
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)

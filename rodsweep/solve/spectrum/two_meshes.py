@@ -1,8 +1,8 @@
 """Leading eigenvalues of one rod by SLEPc alone: Krylov-Schur on two meshes, without D.
 
-The finer mesh gives the eigenvalues, and the coarser mesh their errors. Krylov-Schur finds the eigenvalues
-nearest a shift above the growth rate of the most amplified wave; their number is doubled until the leading
-ones stay the same. This is no proof: no result is certified.
+The finer mesh gives the eigenvalues, the coarser mesh the errors. Krylov-Schur finds the eigenvalues nearest
+a shift above the growth rate of the most amplified wave; the number of eigenvalues is doubled until the
+leading ones stay the same. No result is certified.
 """
 
 from dataclasses import replace
@@ -24,7 +24,7 @@ MAX_FINER_MESHES_TRIED = 8
 FIRST_SPARE = 2
 """Number of eigenvalues first requested beyond the wanted modes."""
 UNCHANGED = 1e-9
-"""Relative change of the leading eigenvalues below which they count as the same."""
+"""Relative change below which the leading eigenvalues count as unchanged."""
 MESH_ERROR_FACTOR, EIGENVALUE_ROUNDING = 3.0, 3e-13
 """Safety factor on the difference of two meshes, and rounding error of an eigenvalue in units of its modulus,
 the shift and F^2. Under a pull the first eigenvalue is exponentially small against F^2."""

@@ -1,1 +1,1 @@
-"""Special points of branches: their kinds, their location, and their curves over two parameters."""
+"""Special points of branches: kinds, location, and curves over two parameters."""

@@ -35,7 +35,7 @@ CONTRACTION_SAFETY = 3.0
 SLOW_CORRECTION = 0.3
 """Ratio of successive corrections above which a new matrix is assembled."""
 ROUNDING_CORRECTION = 1e-8
-"""A correction this small that hardly decreases is rounding error: iteration stops."""
+"""Size below which a correction that hardly decreases is rounding error: the iteration stops."""
 MAX_CYCLE_CORRECTIONS = 30
 """Maximum number of corrections of one cycle."""
 
@@ -113,7 +113,7 @@ class NearbyCycles:
         raise Unsolvable(f"the corrections of a cycle are at {change:.0e}")
 
     def _corrected(self, orbit: Orbit, condition: Condition) -> tuple[Orbit, float]:
-        """(an orbit after one correction, its relative change); raises Unsolvable."""
+        """(orbit after one correction, relative change); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.missed(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
         if not change <= LONGEST_CORRECTION:
@@ -208,7 +208,7 @@ class TorusFunction:
 INVERSE_SHIFT = 1e-9
 """Relative distance of inverse iteration's shift from the eigenvalue, which keeps the matrix regular."""
 INVERSE_ITERATIONS = 2
-"""Number of inverse iterations; each damps other eigenvectors by the shift over their distance."""
+"""Number of inverse iterations; each damps other eigenvectors by the ratio of shift and gap."""
 
 
 def _parts(vector: Array) -> Array:

@@ -23,13 +23,14 @@ FOLLOWED_KINDS = (SpecialKind.fold, SpecialKind.torus)
 ON_CURVE_DISTANCE = 1e-6
 """A special point of a row this close to a curve lies on it; in units of the line's axis."""
 NEAR_CHORD = 0.1
-"""A special point further from a chord of a curve, in units of the line's axis, is not on that part."""
+"""Distance from a chord of a curve, in units of the line's axis, beyond which a special point is not on the
+part."""
 NEAR_PERIOD = 0.1
-"""A special point whose period differs by more than this, relatively, is not on that part of a curve."""
+"""Relative difference of the period beyond which a special point is not on a part of a curve."""
 EQUAL_PERIOD = 1e-4
-"""Relative difference of the periods of two solutions that are the same cycle."""
+"""Largest relative difference of the periods of two solutions for one cycle."""
 EQUAL_ENDS = 1e-4
-"""Two curves are the same if both their ends agree within this scaled distance."""
+"""Scaled distance of both ends within which two curves are identical."""
 ON_LAST_CHORD = 1e-3
 """A special point this close to the last part of a curve, where cycles vanish, lies on it; in units of the
 line's axis."""
@@ -111,7 +112,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """A curve made of its halves, and the distances of nearby special points from it, by their index."""
+    """A curve joined from two halves, and the distances of nearby special points, by index."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -147,7 +148,7 @@ class _CurvesOfKind:
         return [unit for i in beside for unit in self.lacking(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve through a special point, joined from its halves; None if it cannot be followed."""
+        """The curve through a special point, joined from its halves; None if the curve cannot be followed."""
         ahead = TracedHalf.of(self.results[2 * seed])
         if ahead.half is None:
             return None

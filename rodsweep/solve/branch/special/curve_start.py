@@ -19,7 +19,7 @@ from .point import SpecialPoint
 START_ORDER_SHARE = 0.6
 """Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
 START_INTERVAL_SHARE = 0.5
-"""Intervals of a curve's first mesh, in units of those that located the special point."""
+"""Intervals of a curve's first mesh, in units of the intervals that located the special point."""
 
 
 def first_on_curve(

@@ -40,7 +40,7 @@ CURVE_STEPS = StepControl(
 MIN_LOOP_POINTS = 5
 """Minimum number of points of a closed curve."""
 ON_PLANE_EDGE = 1e-8
-"""A point within this scaled distance of an edge lies on it."""
+"""Largest scaled distance from an edge of a point on the edge."""
 LAST_BRACKET = 1e-10
 """Fraction of a step to which the crossing of an edge is located."""
 CURVE_CRUSHING_MARGIN = 1e-3
@@ -220,6 +220,6 @@ def lengths_of(points: Sequence[OnCurve]) -> Array:
 
 
 def slope_of(one: OnCurve, other: OnCurve) -> float:
-    """d(line's value)/d(place) between two points; 0 if they have the same place."""
+    """d(line's value)/d(place) between two points; 0 at equal places."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0

@@ -1,4 +1,4 @@
-"""A curve of folds or torus points as numbers: its points, the reasons for its ends, its vanishing cycles."""
+"""Numbers of a curve of folds or torus points: points, reasons for the ends, vanishing cycles."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -110,9 +110,9 @@ def _numbers(point: CurvePoint) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class CycleCurve:
-    """A curve of folds or torus points: its points in order, and the reasons for its two ends.
+    """A curve of folds or torus points: points in order, and the reasons for both ends.
 
-    vanishing: Hopf points at which the cycles vanish, for the ends with such a point.
+    vanishing: for each end the Hopf point at which the cycles vanish, or None.
     """
 
     kind: SpecialKind

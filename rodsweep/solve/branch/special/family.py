@@ -37,12 +37,13 @@ LONGEST_SECANT_STEP = 0.1
 MAX_SECANTS_ACROSS = 12
 """Maximum number of secant steps for one point."""
 MAX_LINEAR_PRODUCT = 1e-9
-"""The last step is taken along the line through the last two cycles, without solving at its end, if the
-product of its length and their distance is below this; the test function is known to about 1e-8."""
+"""The last secant step is taken without solving at its end if its length times the distance of the last two
+cycles is below this limit; the test function is known to about 1e-8."""
 MAX_LINEAR_STEP = 1e-6
-"""The same, if the derivatives come from other cycles at this point: these are known to 1e-3."""
+"""The limit of the last step with derivatives from other cycles at the same point, which are known to
+1e-3."""
 MAX_CARRIED_STEP = 1e-7
-"""The same, if the derivatives come from the previous point: these are known to a tenth."""
+"""The limit of the last step with derivatives from the previous point, which are known to a tenth."""
 MIN_COSINE = 0.9
 """Derivatives across the curve are reused if the cosine of the angle between both directions is at least
 this."""
@@ -109,8 +110,8 @@ class CycleFamily:
         """The point of the curve near an orbit, searched across the curve in a direction, (2,). Raises
         Unsolvable.
 
-        rates: approximate derivatives across the curve. same: whether these belong to this point on another
-        mesh.
+        rates: approximate derivatives across the curve. same: whether `rates` belong to the point sought, on
+        another mesh.
         """
         known = rates if rates and rates.way @ across >= MIN_COSINE else None
         search = _SecantAcross(self, start, place, across, known, same)
@@ -207,8 +208,8 @@ class _SecantAcross:
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
 
     def _rates_since(self, present: _CycleAcross) -> Across | None:
-        """Derivatives across the curve from the last two cycles; None if there is one only or both are too
-        near."""
+        """Derivatives across the curve from the last two cycles; None for a single cycle or too small a
+        distance."""
         before = self.before
         if before is None or abs(present.at - before.at) < MIN_SPAN or present.test == before.test:
             return None

@@ -13,9 +13,9 @@ from ..arc import ArcPoint
 PLACES_PER_NODE = 8
 """Number of places per node at which the least stretch is sampled."""
 SAFE_STRETCH = 0.2
-"""If h1 exceeds this at all nodes, it is positive between the nodes too."""
+"""If h1 exceeds this limit at all nodes, h1 is positive between the nodes too."""
 SAFE_AT_PLACES = 0.02
-"""If h1 exceeds this at all sampled places, it is positive between these too: a resolved polynomial hardly
+"""If h1 exceeds this limit at all sampled places, h1 is positive everywhere: a resolved polynomial hardly
 varies more."""
 
 

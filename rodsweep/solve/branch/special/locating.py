@@ -22,11 +22,11 @@ from .least_stretch import least_stretch
 from .point import SpecialKind, SpecialPoint
 
 REAL_MULTIPLIER = 1e-7
-"""A multiplier is real if its relative imaginary part is below this."""
+"""Largest imaginary part of a real multiplier, relative to its modulus."""
 LOCATION_ACCURACY = 1e-9
 """Relative accuracy of the parameter at a special point; the accuracy of the branch if that is smaller."""
 FIRST_MESH_SHARE = 0.1
-"""Fraction of that accuracy for which the first of the two meshes is planned."""
+"""Accuracy for which the first of the two meshes is planned, in units of LOCATION_ACCURACY."""
 CYCLE_TOLERANCE = 1e-10
 """Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
 left."""
@@ -76,7 +76,7 @@ class Segment:
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """Continues on another mesh; the last cycle found is not used as a start there."""
+        """Continues on another mesh, without a cycle to start from."""
         self.mesh, self._known = mesh, None
 
     def at(self, length: float, distance: float = CYCLE_TOLERANCE) -> Converged:

@@ -70,7 +70,7 @@ class CurveErrors:
 
     @property
     def carried(self) -> "CurveErrors":
-        """The same error, one point further along the curve."""
+        """The measured error, for the next point along the curve."""
         return replace(self, age=self.age + 1)
 
 

@@ -1,4 +1,4 @@
-"""Special points of a branch: their kinds, and their stored numbers."""
+"""Special points of a branch: kinds and stored numbers."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
