@@ -68,10 +68,11 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
 
 
 def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None) -> ArcPoint:
-    """The cycle with measured errors on a mesh that satisfies the accuracy; raises Unsolvable if none is
-    allowed.
+    """The cycle with measured errors within the accuracy, on the cheapest mesh found; raises Unsolvable
+    without one.
 
-    condition: holds on every mesh; by default the arc length along the branch is kept.
+    condition: holds on every mesh; by default the arc length along the branch is kept. A much cheaper mesh
+    replaces a mesh that is too fine.
     """
     condition = condition or point.condition(0.0)
     finest = False

@@ -7,7 +7,8 @@ from functools import cached_property
 from ...arrays import Complex
 
 EXPLAINED = 0.25
-"""Largest error of a cubic interpolation between two anchors, as a fraction of the interpolated quantity."""
+"""Tolerance of the interpolation between two places: the interpolant stays above this fraction of the smaller
+end value, so that no zero hides, and the slopes explain the change but for this fraction."""
 
 
 @dataclass(frozen=True)
