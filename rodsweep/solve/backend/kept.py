@@ -23,7 +23,8 @@ class LruPool(Generic[Key, Object]):
     """A pool of objects made by `create` from keys; a full pool drops the least recently used object."""
 
     def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
-        self._create, self._limit = create, limit
+        self._create = create
+        self._limit = limit
         self._objects: OrderedDict[Key, Object] = OrderedDict()
         _pools.add(self)
 

@@ -74,7 +74,8 @@ class HopfBirth:
     @property
     def coefficient_error(self) -> float:
         """Relative error of the amplitude coefficient: half of those of c, of the slope and of the place."""
-        c, slope = self.coefficients.landau, self.slope
+        c = self.coefficients.landau
+        slope = self.slope
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         return (landau + slope_error + self.crossing.error / abs(self.crossing.at)) / 2

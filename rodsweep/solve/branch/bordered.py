@@ -91,7 +91,8 @@ class BorderedMatrix:
         shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
         self._matrix = np.zeros((n + 2, n + 2))
         self._matrix[:n, :n] = self._memory.propagator - p.symmetry
-        self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[2]
+        self._matrix[:n, n] = ends[0]
+        self._matrix[:n, n + 1] = ends[2]
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift

@@ -122,7 +122,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
     path = Path(rod.changed(**{request.along: low}), request.along)
     found = pair_crossings(path, low, high, request.certify)
-    hopfs, failures = [], []
+    hopfs = []
+    failures = []
     for crossing in found.crossings:
         try:
             hopfs.append(hopf_point(path, crossing))
@@ -131,7 +132,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
     ends = (path.variable(low), path.variable(high))
     reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
     if path.inverse:
-        ends, reasons = ends[::-1], reasons[::-1]
+        ends = ends[::-1]
+        reasons = reasons[::-1]
     limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
     curves = _followed(limits, request.along)
     status, message = _judged(found, curves, failures, request)
@@ -147,7 +149,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     """(lowest value, highest value, index of the end at which the rod is crushed, -1 for neither)."""
-    low, high = request.start, request.stop
+    low = request.start
+    high = request.stop
     share = rod.build.crushing_share(rod.taper)
     if request.along == "F" and high > (1 - BRANCH_CRUSHING_MARGIN) * share * rod.k1:
         return low, (1 - BRANCH_CRUSHING_MARGIN) * share * rod.k1, 1
@@ -177,7 +180,8 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     """Branches from all Hopf points, then the asymmetric ones; a branch that connects two only once."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
-    left, count = limits.max_cycles, len(limits.hopfs)
+    left = limits.max_cycles
+    count = len(limits.hopfs)
     shares = shares_of_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
     for number in range(count):
         if number in arrived:

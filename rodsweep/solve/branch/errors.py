@@ -158,7 +158,8 @@ def measured_errors(
 ) -> BranchCalibration:
     """Errors of a cycle's mesh, from two finer meshes; raises Unsolvable. before: errors of a neighbouring
     cycle."""
-    mesh, orbit = mesh_of(found.orbit), found.orbit
+    mesh = mesh_of(found.orbit)
+    orbit = found.orbit
     finer, share = finer_meshes(mesh)
     condition = Condition.at(place.scale, place.ahead, orbit)
     rough = CyclePath(orbit)
@@ -178,14 +179,16 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
     The first five, as in `Calibration.space`, are at the rough mesh's value of the parameter; the last is
     that of the parameter at an equal moment.
     """
-    orbit, scale = rough.orbit, place.scale
+    orbit = rough.orbit
+    scale = place.scale
     moment, _, off = scale.place(orbit) - scale.place(fine.orbit)
     length = place.slide(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried(orbit, place.tangent[:-1], target), place.tangent[-1])
     slid = moved(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
-    by_moment, by_parameter = abs(place.ahead[0]), abs(place.rate)
+    by_moment = abs(place.ahead[0])
+    by_parameter = abs(place.rate)
     apart = abs(off * place.ahead[0] - moment * place.rate)
     own = apart / max(by_moment, MIN_MOMENT_SHARE * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
@@ -195,5 +198,6 @@ def slope_at(path: CyclePath, place: Place) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(moved(orbit, place.scale.name, SLOPE_STEP * place.tangent))
-    y, other = path.extrema["tip_y_max"], ahead.extrema["tip_y_max"]
+    y = path.extrema["tip_y_max"]
+    other = ahead.extrema["tip_y_max"]
     return abs((other - y) / (SLOPE_STEP * y)) / max(abs(place.rate), 1e-300)

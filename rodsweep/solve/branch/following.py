@@ -187,7 +187,8 @@ def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
 
     The tip's y is no criterion: on a large cycle an extremum of y may pass through 0.
     """
-    mesh, layout = mesh_of(end.orbit), end.orbit.form.layout
+    mesh = mesh_of(end.orbit)
+    layout = end.orbit.form.layout
     one = layout.field(mesh.carry(start.orbit).start, "m3")
     return float(one @ layout.field(end.orbit.start, "m3")) < 0
 

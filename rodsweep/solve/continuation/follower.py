@@ -145,7 +145,8 @@ def follow(
     report: Callable[[Sequence[Solution]], None],
 ) -> Curve[Solution]:
     """The curve ahead of a solution; the problem knows the direction. report: called before every step."""
-    solutions, length = [start], control.first
+    solutions = [start]
+    length = control.first
     margins = problem.margins(start)
     while len(solutions) < control.most:
         report(solutions)

@@ -84,12 +84,16 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
     start = elements_for(rod, w, min(accuracy / ACCURACY_SHARE, COARSEST))
-    fine, change, rounding = normal_form_on(start, rod, w, COARSEST), math.inf, 0.0
+    fine = normal_form_on(start, rod, w, COARSEST)
+    change = math.inf
+    rounding = 0.0
     for number in range(MAX_REFINEMENTS):
         here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
         more = a_third_finer(here) if number else Elements(here.edges, here.order + COEFFICIENT_MORE_ORDERS)
-        coarse, fine = fine, normal_form_on(more, rod, w, accuracy)
-        change, rounding = abs(fine.c - coarse.c) / abs(fine.c), _rounding(fine)
+        coarse = fine
+        fine = normal_form_on(more, rod, w, accuracy)
+        change = abs(fine.c - coarse.c) / abs(fine.c)
+        rounding = _rounding(fine)
         if change <= max(accuracy, rounding):
             break
     slope, bend = _slope(rod, w)
@@ -110,10 +114,13 @@ def _with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
     """All coefficients of a normal form, from the relative errors of c, dw/dF and the force."""
-    c, slope = normal.c, normal.slope
-    slope_off, c_off = slope_error * abs(slope), landau_error * abs(c)
+    c = normal.c
+    slope = normal.slope
+    slope_off = slope_error * abs(slope)
+    c_off = landau_error * abs(c)
     ratio = c.imag / c.real
-    a, b = normal.amplitude, normal.frequency_slope
+    a = normal.amplitude
+    b = normal.frequency_slope
     b_off = math.hypot(1, ratio) * (slope_off + abs(slope.real / c.real) * c_off)
     return HopfCoefficients(
         growth_slope=slope,

@@ -84,7 +84,8 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     """
     hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, COARSEST_FOR_LOCATING))
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
-    points, unlocated = [], 0
+    points = []
+    unlocated = 0
     decided = np.flatnonzero(signs != 0)  # a change may lie within the error of a point
     for a, b in zip(decided[:-1], decided[1:], strict=True):
         if signs[a] * signs[b] < 0:
@@ -123,7 +124,8 @@ class HopfCurve:
         if there is None:
             raise Unsolvable("no Hopf point is found between two of a curve")
         x, y, h = map(float, there.v)
-        rod, w = self.boundary.plane.at(x, y), complex(0.0, math.exp(h))
+        rod = self.boundary.plane.at(x, y)
+        w = complex(0.0, math.exp(h))
         along = determinant_along(w, rod.coefficients, rod.direction("F"))
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
@@ -135,7 +137,8 @@ class HopfCurve:
         """The zero of Re c between two points of opposite sign; None if Brent's method does not find it."""
         from scipy.optimize import brentq  # imported here: it costs a tenth of a second
 
-        start, chord = self.scaled[first], self.scaled[last] - self.scaled[first]
+        start = self.scaled[first]
+        chord = self.scaled[last] - self.scaled[first]
         normal = chord / np.linalg.norm(chord)
 
         def on_chord(s: float) -> _At:
@@ -155,7 +158,8 @@ class HopfCurve:
 
     def as_point(self, here: _At, after: int, moved: Array) -> GeneralisedHopfPoint:
         """Generalised Hopf point from its normal form; moved: position error along the chord, (3,)."""
-        there, axes = here.there, self.boundary.plane.axes
+        there = here.there
+        axes = self.boundary.plane.axes
         tangent = there.tangent
         way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))
         values = [axis.value(float(x)) for axis, x in zip(axes, there.v[:2], strict=True)]

@@ -185,8 +185,10 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
         factors = elements.factors(shift)
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
-            q, p = factors.solve(elements.times_M(q)), factors.solve(elements.times_M(p), adjoint=True)
-            q, p = q / np.abs(q).max(), p / np.abs(p).max()
+            q = factors.solve(elements.times_M(q))
+            p = factors.solve(elements.times_M(p), adjoint=True)
+            q = q / np.abs(q).max()
+            p = p / np.abs(p).max()
         Mq = elements.times_M(q)
         w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
         if abs(w - shift) <= FOUND * abs(w):

@@ -52,7 +52,8 @@ def converged_vectors(
         error = max(result.errors().values())
         improved = error < least / 2
         if best is None or error < least:
-            best, least = result, error
+            best = result
+            least = error
         if least <= accuracy or not improved:
             break
         coarse = fine

@@ -95,12 +95,15 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
 
 def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """Right and left vectors, (unknowns, modes) each, scaled at the tip, and `Vectors.rounding`."""
-    A, B = form.A, form.B
+    A = form.A
+    B = form.B
     m = len(eigenvalues)
-    X, Z = np.empty((len(B), m), complex), np.empty((len(B), m), complex)
+    X = np.empty((len(B), m), complex)
+    Z = np.empty((len(B), m), complex)
     for i, w in enumerate(eigenvalues):
         if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= CONJUGATE * abs(w):
-            X[:, i], Z[:, i] = X[:, i - 1].conj(), Z[:, i - 1].conj()
+            X[:, i] = X[:, i - 1].conj()
+            Z[:, i] = Z[:, i - 1].conj()
         else:
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)

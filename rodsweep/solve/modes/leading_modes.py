@@ -85,7 +85,8 @@ def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
     """Modes of a uniform rod of any law, from the equivalent linear rod; times are rescaled."""
     linear, rate = rod.equivalent
     found = solve_modes(linear, request)
-    spectrum, growth = found.spectrum, found.growth
+    spectrum = found.spectrum
+    growth = found.growth
     return replace(
         found,
         spectrum=replace(
@@ -110,7 +111,8 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     vectors = converged_vectors(problem, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
         return replace(outcome, status=SpectrumStatus.failed, message="no dense mesh resolves the modes")
-    result, errors = replace(outcome, vectors=vectors), vectors.errors()
+    result = replace(outcome, vectors=vectors)
+    errors = vectors.errors()
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
         mesh = problem.mesh_for(max(wave, GROWTH_WAVE_NUMBER), request.accuracy)

@@ -46,7 +46,11 @@ def highest(
     squares, bends = _squares(propagator, times)
     i = int(squares.argmax())
     best = _peak(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
-    t, h, left, right, bend = times[:-1], np.diff(times), squares[:-1], squares[1:], bends[:-1]
+    t = times[:-1]
+    h = np.diff(times)
+    left = squares[:-1]
+    right = squares[1:]
+    bend = bends[:-1]
     ceiling = best[0]
     for halving in range(MAX_BOUND_HALVINGS + 1):
         bound = np.sqrt(_bound(h, left, right, bend, abscissa))
@@ -61,8 +65,10 @@ def highest(
         i = int(middle.argmax())
         if middle[i] > best[0] ** 2:
             best = max(best, _peak(propagator, t[i], t[i] + 2 * h[i]))
-        t, h = np.concatenate([t, t + h]), np.concatenate([h, h])
-        left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
+        t = np.concatenate([t, t + h])
+        h = np.concatenate([h, h])
+        left = np.concatenate([left, middle])
+        right = np.concatenate([middle, right])
         bend = np.concatenate([bend, new_bend])
     return best, max(ceiling, best[0])
 
@@ -93,7 +99,11 @@ def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float
         if abs(rate) * (high - low) <= RISE_LEFT:
             break
         if rate > 0:
-            low, rate_low, rate_high = t, rate, rate_high / 2
+            low = t
+            rate_low = rate
+            rate_high = rate_high / 2
         else:
-            high, rate_high, rate_low = t, rate, rate_low / 2
+            high = t
+            rate_high = rate
+            rate_low = rate_low / 2
     return best

@@ -28,7 +28,8 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above it, which is possible only for a rod without rotational drag and with g < 0.
     """
     form = dense_form(rod, pencil)
-    A, B = form.averaged(*hermitian_tip(rod.F, slaving_of(rod))), form.B
+    A = form.averaged(*hermitian_tip(rod.F, slaving_of(rod)))
+    B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(MAX_ABSCISSA_SHIFTS):

@@ -108,7 +108,8 @@ def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | 
         error = max(inf if isnan(error) else error for error in result.errors(rate).values())
         improved = error < least / 2
         if error < least or step == 0:
-            best, least = result, error
+            best = result
+            least = error
         if least <= accuracy or not improved:
             break
     return best
@@ -138,7 +139,8 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
             stop, tail = _end(fine, first, patience)
         if stop > first and fine.norm(first)[0] >= 1:
             peak, bound = highest(fine, (first, stop), abscissa, best[0], tolerance)
-            best, ceiling = max(best, peak), max(ceiling, bound)
+            best = max(best, peak)
+            ceiling = max(ceiling, bound)
         stop = first
         before = exp(min(abscissa * first, LARGEST_EXPONENT))
         if before <= best[0] * (1 + tolerance) or k == len(fine.w):

@@ -126,7 +126,8 @@ class Integrator:
         step: the first step, or each step if the steps are equal. Tolerances are relative to the largest
         component of z, so that small motions are integrated as accurately as large ones.
         """
-        ts, scheme = self.ts, self.scheme
+        ts = self.ts
+        scheme = self.scheme
         self._limit = limit
         size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z

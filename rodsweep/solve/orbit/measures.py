@@ -59,7 +59,8 @@ class CyclePath:
         self._ends = np.ascontiguousarray(orbit.regular_states)
         matrices = tip_matrices(grid)
         self._path = tip_path(self._ends, orbit.period, orbit.semidiscrete, matrices)
-        self.tip_coefficients, self.tip_samples = self._path.coefficients, self._path.samples
+        self.tip_coefficients = self._path.coefficients
+        self.tip_samples = self._path.samples
 
     @cached_property
     def strain_coefficients(self) -> Complex:
@@ -84,7 +85,8 @@ class CyclePath:
     @cached_property
     def extrema(self) -> dict[str, float]:
         """Extrema of the tip, named as in `Measures`."""
-        least, largest = self._path.least.tolist(), self._path.largest.tolist()
+        least = self._path.least.tolist()
+        largest = self._path.largest.tolist()
         return {
             "tip_x_min": least[0],
             "tip_x_max": largest[0],
@@ -113,11 +115,13 @@ class CyclePath:
         theta = self.tip(samples)[2]
         dx, dy, _ = self._sampled(times[:, None] * self.tip_coefficients, samples).T
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
-        U, power = self.orbit.form.energy(self._ends), np.empty((2, len(self._ends)))
+        U = self.orbit.form.energy(self._ends)
+        power = np.empty((2, len(self._ends)))
         powers(self._ends, power, self.orbit.semidiscrete)
         rates = (power[0] - power[1]) * period
         if self.orbit.symmetric:
-            U, rates = np.tile(U, 2), np.tile(rates, 2)
+            U = np.tile(U, 2)
+            rates = np.tile(rates, 2)
         c = hermite_coefficients(U, rates)
         U, change = self._sampled(np.stack([c, times[: len(c)] * c], axis=1), samples).T
         return np.stack([U, injection, injection - change])

@@ -146,7 +146,9 @@ class FoldFunction:
 
     def correct(self, orbit: Orbit) -> None:
         """Corrects the tangent once at a cycle; the equation for the tangent is linear."""
-        matrix, tangent, p = self.matrix, self.vectors, orbit.semidiscrete
+        matrix = self.matrix
+        tangent = self.vectors
+        p = orbit.semidiscrete
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.varied(orbit, tangent[None])
         row = np.empty(len(orbit.start))

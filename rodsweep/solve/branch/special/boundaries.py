@@ -226,7 +226,8 @@ def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -
     near."""
     if limits.kind != one.kind:
         return math.inf
-    place, best = limits.rows.scaled(one.row), math.inf
+    place = limits.rows.scaled(one.row)
+    best = math.inf
     at = limits.line.scaled(one.at)
     for a, b in zip(points[:-1], points[1:], strict=True):
         if not min(a.place, b.place) <= place <= max(a.place, b.place) or not _near(limits, a, b, one):
@@ -242,7 +243,8 @@ def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -
 
 def _near(limits: CurveLimits, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
     """Whether a special point may lie on the part of a curve between two points."""
-    x, ends = limits.line.scaled(one.at), sorted(limits.line.scaled(p.at) for p in (a, b))
+    x = limits.line.scaled(one.at)
+    ends = sorted(limits.line.scaled(p.at) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     on_line = ends[0] - NEAR_CHORD <= x <= ends[1] + NEAR_CHORD
     return on_line and periods[0] / (1 + NEAR_PERIOD) <= one.period <= periods[1] * (1 + NEAR_PERIOD)

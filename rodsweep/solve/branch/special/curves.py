@@ -98,19 +98,25 @@ class CurveLimits:
         """The point a step ahead; raises Unsolvable."""
         last = behind[-1]
         if len(behind) == 1:
-            start, place = last.orbit, last.place + self.side * length
-            across, slope, rates = ALONG_BRANCH, 0.0, None
+            start = last.orbit
+            place = last.place + self.side * length
+            across = ALONG_BRANCH
+            slope = 0.0
+            rates = None
         else:
             start, place = self._predicted(behind, self._step_before_crushing(behind, length))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
-            across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
+            across = last.across(way)
+            slope = slope_of(*behind[-2:])
+            rates = last.rates
         point = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
             return Stepped(point, min(off, CURVE_STEPS.far), 1.0)
-        one, other = last.step_from(behind[-2]), point.step_from(last)
+        one = last.step_from(behind[-2])
+        other = point.step_from(last)
         return Stepped(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: OnCurve) -> CycleFamily:
@@ -129,7 +135,8 @@ class CurveLimits:
         lengths = lengths_of(known)
 
         def distance(longest: float) -> float:
-            weights, rod = weights_at(lengths, longest), known[-1].orbit.form.rod
+            weights = weights_at(lengths, longest)
+            rod = known[-1].orbit.form.rod
             at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
             return 1 - CURVE_CRUSHING_MARGIN / 2 - values["F"] / values["k1"]
@@ -150,7 +157,9 @@ class CurveLimits:
     def margins(self, point: OnCurve) -> Array:
         """Scaled distances from the four edges, distance from crushing, least h1, and the cycle's size,
         (7,)."""
-        x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
+        x = self.line.scaled(point.at)
+        y = point.place
+        rod = point.orbit.form.rod
         crushing = 1 - CURVE_CRUSHING_MARGIN - rod.F / rod.k1
         stretch = stretch_of(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - VANISHING])
@@ -184,8 +193,10 @@ class CurveLimits:
 
     def closes(self, behind: Sequence[OnCurve], point: OnCurve) -> bool:
         """Whether the first point of the curve lies between its last point and the next."""
-        first, last = behind[0], behind[-1]
-        step, back = point.step_from(last), point.step_from(first)
+        first = behind[0]
+        last = behind[-1]
+        step = point.step_from(last)
+        back = point.step_from(first)
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > MIN_LOOP_POINTS and 0 <= passed <= 1 and near

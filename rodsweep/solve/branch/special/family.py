@@ -180,7 +180,9 @@ class _SecantAcross:
         present = self._solved_here()
         enough = self.trusted
         if own := self._rates_since(present):
-            self.rates, self.trusted, enough = own, MAX_LINEAR_STEP, MAX_LINEAR_PRODUCT / own.span
+            self.rates = own
+            self.trusted = MAX_LINEAR_STEP
+            enough = MAX_LINEAR_PRODUCT / own.span
         rates = self.rates
         step = -present.test / rates.test if rates else FIRST_SECANT
         if not abs(step) <= LONGEST_SECANT_STEP:
@@ -192,12 +194,14 @@ class _SecantAcross:
             self.near.predict(present.vectors + step * change)
         if rates:
             self.orbit = self._moved(step, rates)
-        self.before, self.at = present, self.at + step
+        self.before = present
+        self.at += step
         return None
 
     def _solved_here(self) -> _CycleAcross:
         """The cycle at the present length across the curve; raises Unsolvable."""
-        family, rates = self.family, self.rates
+        family = self.family
+        rates = self.rates
         length = self.length + self.at * float(self.way[0])
         self.orbit = family.placed(self.orbit, self.place + self.at * float(self.way[1]))
         slope, enough = (
@@ -213,8 +217,10 @@ class _SecantAcross:
         before = self.before
         if before is None or abs(present.at - before.at) < MIN_SPAN or present.test == before.test:
             return None
-        name, span = self.family.scale.name, present.at - before.at
-        one, other = before.orbit, present.orbit
+        name = self.family.scale.name
+        span = present.at - before.at
+        one = before.orbit
+        other = present.orbit
         change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
         orbit = np.append(other.values - one.values, change) / span
         return Across(self.way, (present.test - before.test) / span, orbit, mesh_of(one), abs(span))
@@ -225,7 +231,8 @@ class _SecantAcross:
 
     def _point(self, step: float, rates: Across) -> OnCurve:
         """The point of the curve at a short step across from the last cycle."""
-        family, matrix = self.family, self.near.matrix
+        family = self.family
+        matrix = self.near.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         place = self.place + (self.at + step) * float(self.way[1])
         orbit = family.placed(self._moved(step, rates), place)

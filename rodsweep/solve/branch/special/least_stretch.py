@@ -27,7 +27,8 @@ def stretch_at(point: ArcPoint) -> float:
 
 def stretch_of(orbit: Orbit) -> float:
     """`stretch_at` for an orbit alone."""
-    rod, pull = orbit.form.nodal, orbit.form.layout.field(orbit.points, "n1")
+    rod = orbit.form.nodal
+    pull = orbit.form.layout.field(orbit.points, "n1")
     nodes = pull.shape[-1]
     rough = float((rod.rest[0, :nodes] + rod.compliance[0, :nodes] * pull).min())
     return rough if rough > SAFE_STRETCH else least_stretch(CyclePath(orbit), SAFE_AT_PLACES)
@@ -41,7 +42,8 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
     """
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
-    grid, c = path.orbit.form.mesh, path.strain_coefficients[:, 0]
+    grid = path.orbit.form.mesh
+    c = path.strain_coefficients[:, 0]
 
     def least(u: Array) -> Array:
         at = -np.ascontiguousarray(c @ grid.evaluation(u).T)

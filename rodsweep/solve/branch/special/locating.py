@@ -157,7 +157,8 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     Period and size also have the error of the last secant step in arc length.
     """
     place = SECANT_END_AT_FOLD if point.kind is SpecialKind.fold else SECANT_END
-    one, other = start.cycle.measures, end.cycle.measures
+    one = start.cycle.measures
+    other = end.cycle.measures
     period = LOCATION_ERROR_FACTOR * abs(point.period - last.period) + place * abs(one.period - other.period)
     size = LOCATION_ERROR_FACTOR * abs(point.tip_y_max - last.tip_y_max) + place * abs(
         one.tip_y_max - other.tip_y_max
@@ -171,7 +172,8 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
 
 
 def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
-    path, name = CyclePath(found.orbit), bordered(found).scale.name
+    path = CyclePath(found.orbit)
+    name = bordered(found).scale.name
     return SpecialPoint(
         kind=kind,
         at=getattr(found.orbit.form.rod, name),
@@ -230,7 +232,9 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
     slope: approximate, as on a coarser mesh. Raises Unsolvable.
     """
     enough = segment.length * (SECANT_END_AT_FOLD if kind == SpecialKind.fold else SECANT_END)
-    at, step, before = guess, ENCLOSURE_SHARE * segment.length, None
+    at = guess
+    step = ENCLOSURE_SHARE * segment.length
+    before = None
     for _ in range(MAX_SECANTS):
         found = segment.at(at, max(CYCLE_TOLERANCE, MATRIX_STEP_SHARE * abs(step)))
         f = test_function(kind, segment, found)
