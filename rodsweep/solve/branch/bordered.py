@@ -218,7 +218,7 @@ class Condition:
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
             if not change <= LONGEST_CORRECTION:
-                raise Unsolvable("there is no cycle near on the branch")
+                raise Unsolvable("no cycle of the branch is near the start of Newton's method")
             orbit, off = moved(orbit, self.scale.name, step), off + change
             rate = change / last if off > change else np.inf  # known from the second step with one matrix on
             settled = change * min(rate, 1.0) <= tolerance and rate <= SLOW_CONTRACTION
@@ -229,7 +229,7 @@ class Condition:
                 step, last = matrix.step(self.border, self.missed(orbit)), np.inf
             else:
                 step, last = matrix.correction(orbit, self.border, self.missed(orbit)), change
-        raise Unsolvable(f"Newton's method on the branch is at {change:.0e}")
+        raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
 
     def on(self, mesh: OrbitMesh, found: Converged, tolerance: float, distance: float = np.inf) -> Converged:
         """A known cycle solved on another mesh; raises Unsolvable. Other arguments as in `solved`."""
@@ -246,5 +246,5 @@ def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
     if not result.period > 0:
-        raise Unsolvable("Newton's method lost the cycle")
+        raise Unsolvable("Newton's method lost the cycle: its period is not positive")
     return result

@@ -90,7 +90,7 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
         if not planned.allowed:
             break
         point = on_mesh(point, planned, condition, accuracy)
-    raise Unsolvable("no mesh is fine enough")
+    raise Unsolvable("no allowed mesh reaches the accuracy")
 
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: float) -> ArcPoint:

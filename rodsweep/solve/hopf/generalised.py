@@ -122,7 +122,7 @@ class HopfCurve:
         """The Hopf point in the plane through a guess, (3,), with a normal, (3,); raises Unsolvable."""
         there = self.boundary.corrected(guess, normal)
         if there is None:
-            raise Unsolvable("no Hopf point is found between two of a curve")
+            raise Unsolvable("no Hopf point is found between two points of the curve")
         x, y, h = map(float, there.v)
         rod = self.boundary.plane.at(x, y)
         w = complex(0.0, math.exp(h))
@@ -135,7 +135,7 @@ class HopfCurve:
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The zero of Re c between two points of opposite sign; None if Brent's method does not find it."""
-        from scipy.optimize import brentq  # imported here: it costs a tenth of a second
+        from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         start = self.scaled[first]
         chord = self.scaled[last] - self.scaled[first]

@@ -93,7 +93,7 @@ class Search:
         """The last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether neither a mesh nor a count could decide which eigenvalue leads."""
-        self.why = "no mesh within the limit resolves the wanted modes"
+        self.why = "no mesh within the limit resolves the requested modes"
 
     def outcome(self) -> Spectrum:
         """Tries meshes until the result is good enough or improves no more."""

@@ -64,7 +64,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             )  # the finest mesh may have the largest rounding error
         before = found
     if best is None:
-        raise Unsolvable("no mesh within the limit has as many eigenvalues as are wanted")
+        raise Unsolvable("no mesh within the limit gives the requested number of eigenvalues")
     # If rounding dominates, the error of either mesh may exceed the difference of both.
     return replace(best, error_estimate=MESH_ERROR_FACTOR * best.error_estimate)
 

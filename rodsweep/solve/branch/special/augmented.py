@@ -110,14 +110,14 @@ class NearbyCycles:
                 self._eliminate(orbit)
                 off = 0.0
             last = off
-        raise Unsolvable(f"the corrections of a cycle are at {change:.0e}")
+        raise Unsolvable(f"the corrections of a cycle do not converge; last step {change:.0e}")
 
     def _corrected(self, orbit: Orbit, condition: Condition) -> tuple[Orbit, float]:
         """(orbit after one correction, relative change); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.missed(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
         if not change <= LONGEST_CORRECTION:
-            raise Unsolvable("there is no cycle near on the branch")
+            raise Unsolvable("no cycle of the branch is near the start of the corrections")
         self.distance += change
         return moved(orbit, self.scale.name, step), change
 

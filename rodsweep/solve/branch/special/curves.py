@@ -129,7 +129,7 @@ class CurveLimits:
 
     def _step_before_crushing(self, points: Sequence[OnCurve], step: float) -> float:
         """The step length, shortened if its prediction would lie beyond the crushing margin."""
-        from scipy.optimize import brentq  # a tenth of a second of every start
+        from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         known = points[-PREDICTED_BY:]
         lengths = lengths_of(known)

@@ -152,7 +152,7 @@ class CycleFamily:
                     last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
                 )
             last = fine
-        raise Unsolvable("no mesh is fine enough")
+        raise Unsolvable("no allowed mesh reaches the accuracy")
 
 
 class _SecantAcross:

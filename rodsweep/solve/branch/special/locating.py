@@ -144,7 +144,7 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
             if not mesh.allowed:
                 break
         if point is None or np.isnan(point.error):
-            raise Unsolvable("no mesh is fine enough")
+            raise Unsolvable("no allowed mesh reaches the accuracy")
     except Unsolvable as why:
         return _between(kind, start, end, f"the {kind.name} is not located: {why}")
     return point
@@ -242,7 +242,7 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
             slope = (f - before[1]) / (at - before[0])
         last, step = abs(step), -f / slope
         if not abs(step) < segment.length:
-            raise Unsolvable("the secant method leaves the step")
+            raise Unsolvable("the secant method leaves the step between the two cycles")
         if abs(step) <= enough or last / 2 < abs(step) <= STALLED_SECANT * segment.length:
             return at, found, slope
         before = at, f

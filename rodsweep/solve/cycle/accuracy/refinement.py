@@ -205,7 +205,7 @@ def calibrated_cycle(
             break
         found = _on(finer, found, accuracy, parameter)
     if best is None:
-        raise Unsolvable("no mesh was fine enough")
+        raise Unsolvable("no allowed mesh reaches the accuracy")
     return best
 
 

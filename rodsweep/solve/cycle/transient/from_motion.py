@@ -23,7 +23,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
     turns: returns of the tip per period. The beam may be a rod near the limit in which the rod of `form` is.
     """
-    from scipy.interpolate import CubicSpline  # a tenth of a second of every start
+    from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period

@@ -43,7 +43,7 @@ class TipTrace:
 
     def at_equal_times(self, count: int) -> Array:
         """Time in tau2 and x, y, theta of the tip, (4, count), from the start to the end of the last run."""
-        from scipy.interpolate import CubicHermiteSpline  # a tenth of a second of every start
+        from scipy.interpolate import CubicHermiteSpline  # slow import: 0.1 s, for few runs
 
         times = np.linspace(0.0, self.times[-1][-1], count)
         starts = np.array([run[0] for run in self.times])
