@@ -116,7 +116,7 @@ def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine
     straight, back = (Stepped(None, 0.0, cosine) for cosine in (above, -above))
     assert STEPS.accepted(straight) is straight
     assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.growth
-    with pytest.raises(Unsolvable, match="bends"):
+    with pytest.raises(Unsolvable, match="too large an angle"):
         STEPS.accepted(back)
 
 
