@@ -122,7 +122,7 @@ def _crossings(problem: PathProblem, low: float, high: float, certify: bool) -> 
 
 
 def _covered(path: Path, low: float, high: float) -> Found:
-    """The crossings by the covering."""
+    """Crossings, open intervals and number of evaluations, from the covering."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies")

@@ -50,7 +50,7 @@ class BoundarySearch(Generic[Curve]):
     """The curves through numbered points, as far as known.
 
     agree: distance within which a point lies on a curve. distances: of each point from the nearest curve.
-    needed: units of work whose results the search lacks. left: points on no curve so far.
+    needed: units of work whose results the search lacks. left: other points on no curve so far.
     """
 
     agree: float

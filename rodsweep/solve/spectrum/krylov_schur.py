@@ -20,7 +20,7 @@ megabytes."""
 
 @compiled
 def _fill(A: NDArray, coefficients: NDArray, pieces: NDArray, shift: NDArray) -> None:
-    """A = sum_i coefficients[i] pieces[i] - diag(shift), in the memory of A; the pieces are transposed."""
+    """A = sum_i coefficients[i] pieces[i] - diag(shift), written into the transpose of PETSc's array of A."""
     flat = A.reshape(-1)
     flat[:] = 0.0
     for i in range(len(coefficients)):
@@ -61,10 +61,11 @@ class EigenSolver(ShiftInvertSolver):
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(rod, pace): the rod whose eigenvalues in units of 1/pace^2 are those of `rod`, y in units of pace.
+    """(equivalent rod, pace): its eigenvalues are those of `rod` times pace^2, its y are those of `rod` over
+    pace.
 
-    A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, slower by nu^2; close
-    to being crushed its own matrices are too badly scaled.
+    A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
+    nu^2. Near crushing the matrices of the beam itself are too badly scaled.
     """
     if rod.c2 == 0 and rod.rotational_drag == 0 and rod.nu != 1:
         return Rod(F=rod.F * rod.nu, k1=math.inf, k2=math.inf, gamma3=0.0), rod.nu
