@@ -30,18 +30,19 @@ from .special.point import SpecialKind, SpecialPoint
 FIRST_CHANGES = (0.03, 0.01, 0.1)
 """Relative change from the symmetric cycle to the first asymmetric cycle; tried in this order."""
 SMALL_ASYMMETRY = 0.2
-"""Asymmetry, in units of the largest moment, from which a branch may step across the symmetric cycle where it
-ends."""
+"""Largest asymmetry, in units of the largest moment, from which a branch may step across the symmetric cycle
+at its end."""
 MIN_ASYMMETRY = 0.02
-"""Asymmetry, in units of the largest moment, below which shorter steps cannot identify that cycle better."""
+"""Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
+better."""
 LOST_ASYMMETRY = 0.1
 """A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
 BREAKING_WITHIN = 0.3
 """Tolerance for the extrapolated place of a symmetry breaking, in units of the last cycle's distance."""
 CLOSE_PLACE = 1e-6
-"""Relative tolerance for the extrapolated parameter that is always granted, as the accuracy is."""
+"""Smallest relative tolerance for the extrapolated parameter; the accuracy counts if larger."""
 CLOSE_PERIOD = 1e-3
-"""Relative tolerance for the extrapolated period that is always granted, as the accuracy is."""
+"""Smallest relative tolerance for the extrapolated period; the accuracy counts if larger."""
 ASYMMETRY_RATIOS = 0.5, 2.0
 """Allowed range of the asymmetry found, in units of the predicted asymmetry."""
 

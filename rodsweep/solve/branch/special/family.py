@@ -45,8 +45,7 @@ MAX_LINEAR_STEP = 1e-6
 MAX_CARRIED_STEP = 1e-7
 """The limit of the last step with derivatives from the previous point, which are known to a tenth."""
 MIN_COSINE = 0.9
-"""Derivatives across the curve are reused if the cosine of the angle between both directions is at least
-this."""
+"""Smallest cosine of the angle between two directions across the curve for which derivatives are reused."""
 MIN_SPAN = 1e-6
 """Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
 1e-8."""
