@@ -42,9 +42,9 @@ def refuse_words(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
     if arm.drag not in DRAGS:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
-    for name, word in (("law", arm.law), ("section", arm.section)):
+    texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))
+    for name, word, allowed in texts:
         if not isinstance(word, str):
-            allowed = "linear or neo_hookean" if name == "law" else "fixed or swelling"
             raise InputError(f"{name} = {word!r:.60} is not a text; write {allowed}")
     try:
         law_of(arm.law, arm.section)

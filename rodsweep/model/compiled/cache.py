@@ -32,7 +32,7 @@ from .digest import Part, digest, kernel_of, type_text
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions that are part of the digest, because compiled code is valid for one combination only."""
-CHECKSUM_BYTES = 32
+DIGEST_BYTES = 32
 """Length of the SHA-256 checksum at the start of a file; it reveals a truncated file."""
 _first_parts: dict[FunctionType, Part] = {}
 """Description of each function at first use: the state of the code that numba compiled."""
@@ -112,8 +112,8 @@ def _read(path: Path) -> bytes | None:
         held = path.read_bytes()
     except OSError:
         return None
-    checksum = held[:CHECKSUM_BYTES]
-    content = held[CHECKSUM_BYTES:]
+    checksum = held[:DIGEST_BYTES]
+    content = held[DIGEST_BYTES:]
     return content if sha256(content).digest() == checksum else None
 
 
