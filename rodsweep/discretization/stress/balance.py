@@ -154,11 +154,11 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Writes the derivatives along a change of the rod at a state x, (unknowns,), into out, (3, d, nodes + 1).
+    """Writes the derivatives along a change of the rod into out, (3, d, nodes + 1).
 
-    V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect to a parameter. out[0]:
-    derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G. Unknown components of V are
-    fixed.
+    x: state, (unknowns,). V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect to
+    a parameter. out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G. Unknown
+    components of V are fixed.
     """
     size = len(m.weights)
     E, S, dS = np.empty((g.dimension, size)), np.empty((g.dimension, size)), np.zeros((g.dimension, size))
