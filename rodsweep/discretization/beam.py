@@ -16,7 +16,7 @@ from ..model.balance import Values
 from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
-IMAGINARY_STEP = 1e-30
+TINY = 1e-30
 """Imaginary step of the complex-step derivative in `tip_velocity`, in tau2."""
 
 
@@ -71,7 +71,7 @@ class Beam(RodOnMesh):
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3, ...)."""
-        velocity: Array = np.divide(self.tip(z + 1j * IMAGINARY_STEP * direction).imag, IMAGINARY_STEP)
+        velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
         return velocity
 
     def _along(self, field: Values) -> Array:
