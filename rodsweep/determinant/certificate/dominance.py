@@ -8,7 +8,7 @@ With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 Over a disc |dw| <= rho with |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is arg A + arg(1 + e). The
 term arg(1 + e) stays within a right angle and is needed only at both ends of a chain of such discs. All
 bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`. Far
-from the eigenvalues, which lie near the negative real axis, a disc may be half of |w| wide.
+from the eigenvalues, which lie near the negative real axis, the radius may be a quarter of |w|.
 """
 
 import cmath
