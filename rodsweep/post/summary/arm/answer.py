@@ -173,7 +173,7 @@ def _share(some: np.ndarray, rods: np.ndarray) -> str:
 
 
 def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> list[str]:
-    """Lines about loads at flutter, ends of the search, and frequencies at flutter, (n,) each."""
+    """Lines about flutter of n arms. hopf: loads; end: ends of the search; frequency: in Hz; (n,) each."""
     flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
