@@ -151,7 +151,7 @@ def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
 
 
 class JudgedCase(NamedTuple):
-    """A case with its name; judge: function from an outcome to the error and further fields of Measurement."""
+    """A case with its name; judge: function from an outcome to error and other fields of Measurement."""
 
     name: str
     case: Any
