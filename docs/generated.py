@@ -25,7 +25,7 @@ number.
 """
 COMMANDS = """# Commands
 
-Every command of `rodsweep` with its options, as its help prints them. The [guide](guide.md) explains when to
+All commands of `rodsweep` with options, as printed by `--help`. The [guide](guide.md) explains when to
 use which.
 """
 
@@ -61,7 +61,7 @@ def command_line() -> str:
 
 
 def section(name: str, command: click.Command) -> str:
-    """One command: what it does, its usage, a table of its options."""
+    """Section on one command: purpose, usage, table of options."""
     options = [each for each in command.params if isinstance(each, click.Option)]
     arguments = [each for each in command.params if isinstance(each, click.Argument)]
     usage = " ".join([f"rodsweep {name}", *(["[OPTIONS]"] if options else []), *map(typed, arguments)])
@@ -71,7 +71,7 @@ def section(name: str, command: click.Command) -> str:
 
 
 def typed(argument: click.Argument) -> str:
-    """An argument as it is typed. Written here, because click's own text differs between its releases."""
+    """Usage text of an argument; click's own text differs between releases."""
     kind = argument.type
     text = "|".join(kind.choices) if isinstance(kind, click.Choice) else str(argument.name).upper()
     text += "..." if argument.nargs < 0 else ""
@@ -79,7 +79,7 @@ def typed(argument: click.Argument) -> str:
 
 
 def words(option: click.Option) -> str:
-    """An option as it is typed, with the name of its value."""
+    """Names of an option, with a name for its value."""
     kind = option.type
     text = "|".join(kind.choices) if isinstance(kind, click.Choice) else kind.name.upper()
     value = "" if option.is_flag else f" {option.metavar or text}"
@@ -88,7 +88,7 @@ def words(option: click.Option) -> str:
 
 
 def described(option: click.Option) -> str:
-    """Meaning of an option, with its default where there is one."""
+    """Meaning of an option, with the default if the help shows one."""
     shown = f" Default: {option.default}." if option.show_default else ""
     return f"{option.help or ''}{shown}".replace("|", r"\|")
 

@@ -153,8 +153,8 @@ transverse drag gamma2 are 1.
 
 ## The config
 
-YAML 1.2, at most 100 kB, without anchors, tags and directives. Unknown keys are refused with the nearest
-known one, and so are options of another task.
+YAML 1.2, at most 100 kB, without anchors, tags and directives. An unknown key, or an option of a different
+task, is refused in a sentence that names the nearest known key.
 """
 RANGES = """
 An axis is
@@ -163,10 +163,10 @@ An axis is
 - a list in increasing order, each number once: `k1: [200, 1.0e4, inf]`;
 - a range: `{start: 10, stop: 1.0e6, num: 31, spacing: log}`; `spacing` is `linear` (the default) or `log`.
 
-F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A phase diagram needs
-exactly two parameters with more than one value. A spectrum takes gamma1 with `spectrum.longitudinal: true`
-only, and as one number; a phase diagram with `phase_diagram.criticality: true` or
-`cycles: true` only, as one number, by default 1 or that of the arm. The header of a
+F must be below every k1; only a phase diagram may contain crushed rods, F >= k1. A phase diagram needs
+exactly two parameters with several values. A spectrum takes gamma1, a single number, only with
+`spectrum.longitudinal: true`. A phase diagram takes gamma1, a single number, only with
+`phase_diagram.criticality: true` or `cycles: true`; the default is 1, or gamma1 of the arm. The header of a
 CSV file names the parameters of the task, in any order.
 """
 FILE = """
@@ -179,24 +179,26 @@ are stored as numbers, with the attributes `flag_values` and `flag_meanings`.
 ### The seal
 
 The attribute `seal` is JSON: a digest (16 digits of SHA-256) of every variable, with its type, shape,
-dimensions and attributes, and of every attribute of the file. Whoever opens a result (`show`, `plot`,
-`export`, `run`, `merge`, `snapshot`, `rs.open`) compares it first, and refuses in one sentence what is
-not as rodsweep wrote it: a changed number, axis, unit or config; links of any kind, and variables whose
-numbers lie in another file; what rodsweep did not write. Names of variables and attributes that begin
-with `user_` are yours: they are left alone, kept when a run goes on, and read by `rs.open` only. Take the
-change back, and the file is whole again.
+dimensions and attributes, and of every attribute of the file. All readers (`show`, `plot`, `export`, `run`,
+`merge`, `snapshot`, `rs.open`) check the seal before reading, and refuse every change in one sentence: a
+changed number, axis, unit or config; links of any kind; variables stored in a different file; variables and
+attributes that rodsweep did not write. Variables and attributes whose names begin with `user_` are free for
+your use: rodsweep keeps these when a run continues, and only `rs.open` reads them. After undoing a change the
+file is valid again.
 
-Behind HDF5's own end lies a checksum of HDF5's structures, which other programs do not see: they are compared
-before HDF5 reads them. A program that opens the file for writing takes this checksum off, which is no fault.
+A checksum of HDF5's structures follows the end of the HDF5 data, where HDF5 ignores it; rodsweep checks the
+structures before HDF5 reads the file. A program that opens the file for writing removes this checksum, and
+the file stays valid.
 """
 VERSIONS = """
 ### Which version reads what
 
 The attribute `format` is a whole number, now 6, that grows when a variable is added or changes its meaning.
 
-- A file of a higher format is refused in one sentence that names the version which wrote it.
+- A file of a higher format is refused in one sentence that names the version of the program that wrote the
+  file.
 - A file of a lower format, or without the attribute, is refused in one sentence that names the version and
-  the commit which wrote it: that version reads it.
+  the commit of the program that wrote the file, and that can read the file.
 
 HDF5, netCDF and xarray read files of every format.
 """
@@ -272,7 +274,7 @@ def material_keys() -> str:
 
 
 def task_keys(task: str) -> str:
-    """Keys of one task: its options, and its accuracy if the default differs."""
+    """Keys of one task: options, and the accuracy if the task has a different default."""
     config = CONFIGS[task]
     rows = []
     if config.model_fields["accuracy"].default != CONFIGS["spectrum"].model_fields["accuracy"].default:
@@ -316,24 +318,24 @@ def dimensions() -> str:
 ARM = """
 ### File of an arm
 
-Where only the load or Poisson's ratio of `parameters.arm` have several values, the points are a grid of
-parameters: `pressure` or `force` stands along F, `poisson` along k2; of a phase diagram `drag` and tau2 along
-gamma3. Where another quantity has several, or the load is relative to flutter, the points are a grid over the
-arm's own quantities and the parameters beside it: every one with several values is a dimension, in SI with
-the unit that was typed as `typed_unit`, and F, k1, k2, gamma3, gamma1 and the units below are coordinates on
-that grid. What has one value is a number.
+If only the load or Poisson's ratio of `parameters.arm` have several values, the points are a grid of
+parameters: `pressure` or `force` is a coordinate along F, `poisson` along k2; in a phase diagram `drag` and
+tau2 are coordinates along gamma3. If a different quantity has several values, or if the load is relative to
+flutter, the points are a grid over the arm's quantities and the parameters beside the arm. Every quantity or
+parameter with several values is a dimension, in SI, with the user's unit as attribute `typed_unit`; F, k1,
+k2, gamma3, gamma1 and the units below are coordinates on the grid. A quantity with one value is a number.
 
-What has the units tau2, rad/tau2, 1/tau2, L, k3/L or k3/(L tau2), and forces, stand in SI beside:
-`period_si` in s, `frequency_hz` in cycles per second, `growth_rate_si` in 1/s; a force F as the load,
-`pressure_hopf` of `F_hopf` in Pa, `force_hopf` in N where the arm has a force; and `frequency_hopf_hz` of
-`hopf_frequency`. Tables over more than modes, crossings and branches are not stored twice, nor are the
-curves, crossings and cycles of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI,
-times `tau2` a time.
+Variables with the units tau2, rad/tau2, 1/tau2, L, k3/L or k3/(L tau2), and forces, are also stored in SI:
+`period_si` in s, `frequency_hz` in cycles per second, `growth_rate_si` in 1/s; a force F as the load, such as
+`pressure_hopf` in Pa for `F_hopf`, or `force_hopf` in N for an arm with a force; and `frequency_hopf_hz` for
+`hopf_frequency`. Larger tables than those of modes, crossings and branches, and the curves, crossings and
+cycles of a phase diagram, are stored without SI variables: multiply a force by `pressure_scale` or
+`force_scale`, and a time by `tau2`.
 
 """
 UNCOVERED = """
-A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is
-computed:
+A point of a grid may be an arm outside the model. Nothing is computed, and `status` is
+
 
 """
 
@@ -384,9 +386,9 @@ def task_variables(task: str) -> str:
 
 
 CURVES = """
-With `phase_diagram.curves: true` the file has these too, once all rows are done. A row is a line along the
-first of the two parameters with more than one value, in the order F, k1, k2, gamma3. The tables here are
-those of a diagram over F and k1; in others the two parameters take the places of `F` and `k1`.
+With `phase_diagram.curves: true` the file also has the following variables, once all rows are finished. A row
+is a line along the first parameter with several values, in the order F, k1, k2, gamma3. The tables below are
+for a diagram over F and k1; in a diagram over different parameters their names replace `F` and `k1`.
 
 """
 

@@ -22,7 +22,7 @@ from .axes import plain
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 DEFAULT_WORDS = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
-"""Keys of an arm that a config leaves out where they have these values."""
+"""Default values of an arm's keys, which a config omits."""
 Tree = dict[str, Any]
 """Keys and values as YAML would read them."""
 

@@ -150,8 +150,8 @@ def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
         return error
 
 
-class Entry(NamedTuple):
-    """A case with its name; judge: error and other fields of the Measurement of an outcome."""
+class JudgedCase(NamedTuple):
+    """A case with its name; judge: function from an outcome to error and other fields of Measurement."""
 
     name: str
     case: Any
@@ -162,10 +162,12 @@ def contest(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
     """Measurements of all contenders on one case."""
-    return tournament([Entry(name, case, judge)], contenders, rounds)
+    return tournament([JudgedCase(name, case, judge)], contenders, rounds)
 
 
-def tournament(entries: Sequence[Entry], contenders: Sequence[Contender], rounds: int) -> list[Measurement]:
+def tournament(
+    entries: Sequence[JudgedCase], contenders: Sequence[Contender], rounds: int
+) -> list[Measurement]:
     """Measurements of all contenders on all cases, timed in turn."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(failsafe, contender.run, entry.case) for entry, contender in pairs]

@@ -16,7 +16,7 @@ from ..tasks.protocol import Task
 
 @dataclass(slots=True)
 class _SharedWork:
-    """Work that the ranks divide, until a stop signal comes to one of them."""
+    """Work divided among the ranks, which ends early when a rank receives a stop signal."""
 
     team: Team
     stop: StopRequest

@@ -102,9 +102,8 @@ class LimitCycleConfig(Config):
             )
         if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.alone:
             raise ValueError(
-                f"limit_cycle.start: neighbour needs several values of a quantity that changes one parameter "
-                f"only, along which neighbours follow each other, and parameters.arm has axes over "
-                f"{' and '.join(self.parameters.over)}; give several of "
+                f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
+                f"of parameters.arm are {' and '.join(self.parameters.over)}; give several values of "
                 f"{words((*AXIS_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
         return self

@@ -179,8 +179,8 @@ class PhaseDiagramConfig(LinearConfig):
             return self
         asked = "phase_diagram.criticality" if options.criticality else "phase_diagram.cycles"
         raise ValueError(
-            f"{asked} is true, but a phase diagram has Hopf points with their criticality and cycles of "
-            "uniform arms of linear material only; remove it and use the task criticality or branch"
+            f"{asked} is true, but a phase diagram computes criticality and cycles for uniform arms of "
+            "linear material only; remove it and use the task criticality or branch"
         )
 
     @model_validator(mode="after")

@@ -1,5 +1,6 @@
-"""D(w), and everything that needs D alone: no mesh and no PETSc.
+"""The determinant D(w) and all computations that need D alone: no mesh and no PETSc.
 
-Its value without cancellation, the a-priori box, Newton's method, proved counts, the covering that finds
-all points of a path where the spectrum changes, and the curves of such points in a plane.
+Value of D without cancellation, the a-priori box of eigenvalues, Newton's method, proved counts of
+eigenvalues, the covering that finds all changes of the spectrum along a path, and curves of changes in a
+plane.
 """

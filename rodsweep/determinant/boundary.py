@@ -1,8 +1,8 @@
-"""Boundaries in a plane of rods: where a pair crosses the imaginary axis, or two real eigenvalues meet.
+"""Stability boundaries in a plane of rods: curves of Hopf points and of double real eigenvalues.
 
-With h = log eta Hopf points are D(i eta; x, y) = 0, and with h = log |w| double real eigenvalues are
-D(w; x, y) = D_w = 0, where w keeps its sign because D(0) = 1. Both are two real equations for v = (x, y, h),
-solved by Newton's method together with a third one.
+Hopf points satisfy D(i eta; x, y) = 0, with h = log eta. Double real eigenvalues satisfy D(w; x, y) = 0 and
+D_w = 0, with h = log |w|; the sign of w is constant on a curve because D(0) = 1. Both are two real equations
+for v = (x, y, h). Newton's method solves them together with the equation of a plane.
 """
 
 import math
@@ -15,11 +15,16 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from .parameter_plane import SMALL_STEP, STENCIL, Plane
 
-MOST_CORRECTIONS = 12
+MAX_BOUNDARY_STEPS = 12
+"""Maximum Newton steps of a correction; beyond, the correction has failed."""
+LARGEST_CORRECTION = 0.5
+"""Largest Newton step, in units of the axes' lengths and of h, before the correction counts as failed."""
+CONVERGED_STEP = 1e-10
+"""A Newton step below this that did not halve is rounding error: the correction has converged."""
 
 
 class OnBoundary(NamedTuple):
-    """A point v of a boundary, the 2 x 3 Jacobian of its equations, and the error of v."""
+    """A point v = (x, y, h) of a boundary, the 2 x 3 Jacobian of its equations, and the error of v."""
 
     v: Array
     jacobian: Array
@@ -34,18 +39,18 @@ class OnBoundary(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """All Hopf points of a plane (sign 0) or all double real eigenvalues of a sign (-1 or 1)."""
+    """All Hopf points of a plane (sign 0), or all double real eigenvalues with the given sign (-1 or 1)."""
 
     plane: Plane
     sign: float
 
     def eigenvalue(self, h: float) -> tuple[float, float]:
-        """(growth rate, frequency) of the eigenvalue of that h."""
+        """(growth rate, frequency) of the eigenvalue with the coordinate h."""
         size = math.exp(h)
         return (self.sign * size, 0.0) if self.sign else (0.0, size)
 
     def equations(self, v: Array) -> tuple[Array, Array, float]:
-        """(residual, Jacobian, rounding error of the residual), shapes (2,), (2, 3)."""
+        """(residual, Jacobian, rounding error of the residual) at v, shapes (2,), (2, 3), a number."""
         return self._double_equations(v) if self.sign else self._hopf_equations(v)
 
     def tangent(self, v: Array) -> Array:
@@ -54,9 +59,13 @@ class Boundary:
         return OnBoundary(v, jacobian, error).tangent
 
     def corrected(self, guess: Array, normal: NDArray[np.floating]) -> OnBoundary | None:
-        """The point of the boundary in the plane through `guess` with that normal, both (3,), or None."""
-        v, last = guess.copy(), math.inf
-        for _ in range(MOST_CORRECTIONS):
+        """The point of the boundary in the plane through `guess` with normal `normal`, both (3,).
+
+        None if Newton's method fails.
+        """
+        v = guess.copy()
+        last = math.inf
+        for _ in range(MAX_BOUNDARY_STEPS):
             try:
                 residual, jacobian, blur = self.equations(v)
             except (ValueError, ArithmeticError):
@@ -70,15 +79,15 @@ class Boundary:
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
             size = float(np.abs(step).max())
             v = v + step
-            if size <= 4 * error or (size < 1e-10 and size > last / 2):
+            if size <= 4 * error or (size < CONVERGED_STEP and size > last / 2):
                 return OnBoundary(v, jacobian, max(error, size))
-            if size > 0.5 or not np.isfinite(v).all():
+            if size > LARGEST_CORRECTION or not np.isfinite(v).all():
                 return None
             last = size
         return None
 
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
-        """`equations` of D(i exp(h); x, y)."""
+        """`equations` of Hopf points: D(i exp(h); x, y) = 0."""
         w = complex(0.0, math.exp(v[2]))
         D, D_w, D_x, D_y, _, blur = self.plane.determinant(w, v[0], v[1])
         rows = np.array([D_x, D_y, D_w * w])
@@ -87,7 +96,7 @@ class Boundary:
         return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
 
     def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
-        """`equations` of (D, w D_w) at w = sign exp(h), where D is real."""
+        """`equations` of double eigenvalues: D = w D_w = 0 at w = sign exp(h), where D is real."""
         w = self._real(v)
         here = self.plane.determinant(w, v[0], v[1])
         slope = (w * here.D_w).real  # w D_w = dD/dh
@@ -96,17 +105,17 @@ class Boundary:
         for i in range(3):
             stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (STENCIL, SMALL_STEP)
             jacobian[1, i] = 0.0
-            for places, weight in stencil:
+            for offset, weight in stencil:
                 step = np.zeros(3)
-                step[i] = places * h
-                beside = v + step
-                w = self._real(beside)
-                there = self.plane.value(w, beside[0], beside[1])
-                jacobian[1, i] += weight * (w * there.D_w).real * math.exp(there.S - here.S) / h
+                step[i] = offset * h
+                shifted = v + step
+                w = self._real(shifted)
+                neighbour = self.plane.value(w, shifted[0], shifted[1])
+                jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
         return residual, jacobian / scale[:, None], float(here.blur / scale.min())
 
     def _real(self, v: Array) -> complex:
-        """w = sign exp(h)."""
+        """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""
         return complex(self.sign * math.exp(v[2]), 0.0)

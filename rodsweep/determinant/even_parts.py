@@ -1,13 +1,14 @@
-"""What D(w) is made of, free of the branch point P = 0: functions even in P.
+"""The functions even in P that D(w) consists of, which are regular at the branch point P = 0.
 
-With the names of `rodsweep.determinant.value`, D = 1 + (w/2) [z+' E(z+) + z-' E(z-)], where z+-' is
-infinite at P = 0 and the sum is not:
+In the notation of `rodsweep.determinant.value`, D = 1 + (w/2) [z+' E(z+) + z-' E(z-)]. At P = 0 each z+-' is
+infinite, but the sum is finite:
 
     z+' E(z+) + z-' E(z-) = T s + 4 N d,   s = E(z+) + E(z-),   d = (E(z+) - E(z-))/(z+ - z-),
 
-N = g nu + 2 X w. Both s and d are entire in M and P^2. With s' = ds/dM, d' = dd/dM and d* = (dd/dP^2)/4 every
-derivative of D is at hand, because ds/dP^2 = 4 d'. There are three ways to them: a series where z+ and z- are
-small, closed forms in the roots q where neither is, and z+ and z- themselves where only one is.
+N = g nu + 2 X w. Both s and d are entire in M and P^2. All derivatives of D follow from s, d, s' = ds/dM,
+d' = dd/dM and d* = (dd/dP^2)/4, because ds/dP^2 = 4 d'. Three methods evaluate these functions: a series for
+small z+ and z-, closed forms in the roots q if neither z+ nor z- is small, and closed forms in z+ and z- if
+one of the two is small.
 """
 
 import cmath
@@ -19,12 +20,13 @@ from ..model.rod import Coefficients
 from .exponents import Hyperbolic, entire_cosh, exponents, hyperbolic, modulus
 
 UNIT = 4.440892098500626e-16
-"""Unit of the noise of what D is made of, two roundings."""
+"""Unit of the noise of s, d and D: two relative rounding errors."""
 SERIES_BELOW = 1.5
-"""abs(M) + 2 abs(P) below which all is summed as a series in z+ and z-."""
-MOST_TERMS = 13
+"""abs(M) + 2 abs(P) below which `by_series` is used."""
+MAX_SERIES_TERMS = 13
+"""Number of terms of the series; the next term is below rounding error."""
 SQUARES_BELOW = 0.1
-"""abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which each of them is taken alone."""
+"""abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which `by_squares` is used."""
 
 
 class EvenFunctions(NamedTuple):
@@ -39,7 +41,7 @@ class EvenFunctions(NamedTuple):
 
 
 EvenSum = tuple[EvenFunctions, complex, float]
-"""(the functions, the sum of z' E(z) times exp(-S), noise)."""
+"""(the functions, the sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error of that sum or of D)."""
 
 
 @compiled
@@ -51,16 +53,22 @@ def _noise_by_roots(
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """What rounding does to s and d of `by_roots`, to first order: blurs = (exp(-S), of M, of P^2)."""
+    """Rounding errors of s and d in `by_roots`, to first order.
+
+    squares: (M, P^2, u, v). apart: u - v. of_u, of_v: functions of the roots. results: (s, d). blurs:
+    exp(-S), rounding errors of M and P^2. Errors are in units of a relative rounding error.
+    """
     M, square, u, v = modulus(squares[0]), modulus(squares[1]), modulus(squares[2]), modulus(squares[3])
-    s, d = modulus(results[0]), modulus(results[1])
+    s = modulus(results[0])
+    d = modulus(results[1])
     one, blur_M, blur_square = blurs
     c1, f1, g1 = modulus(of_u.cosh), modulus(of_u.sinhc), modulus(of_u.slope)
     c2, f2, g2 = modulus(of_v.cosh), modulus(of_v.sinhc), modulus(of_v.slope)
     per_root = 1 / modulus(apart)
     blur_u = (u * blur_M + blur_square) * per_root + u
     blur_v = (v * blur_M + blur_square) * per_root + v
-    C, H = c1 * c2 + one, f1 * f2
+    C = c1 * c2 + one
+    H = f1 * f2
     blur_C = (f1 * c2 * blur_u + c1 * f2 * blur_v) / 2 + C
     blur_H = (g1 * f2 * blur_u + f1 * g2 * blur_v) / 2 + H
     blur_R = 2 * M * (blur_M + M) + 4 * (blur_square + square)
@@ -73,7 +81,7 @@ def _noise_by_roots(
 def by_roots(
     M: complex, square: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
-    """(the functions, noise of s, of d) by the roots q themselves, where neither z+ nor z- is small.
+    """(the functions, noise of s, noise of d) from the roots q, if neither z+ nor z- is small.
 
     square = P^2; u = q1^2 and v = q2^2 solve t^2 - M t + P^2 = 0; with C = cosh q1 cosh q2 - 1,
     H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 = (u - v)^2,
@@ -86,10 +94,12 @@ def by_roots(
         apart = -apart
     u = (M + apart) / 2
     v = square / u
-    q1, q2 = cmath.sqrt(u), cmath.sqrt(v)
+    q1 = cmath.sqrt(u)
+    q2 = cmath.sqrt(v)
     S = q1.real + q2.real
     one = math.exp(-S)
-    of_u, of_v = hyperbolic(u, q1), hyperbolic(v, q2)
+    of_u = hyperbolic(u, q1)
+    of_v = hyperbolic(v, q2)
     cosh1, first1, second1 = of_u
     cosh2, first2, second2 = of_v
     C = cosh1 * cosh2 - one
@@ -105,7 +115,8 @@ def by_roots(
     s1 = 2 * (C + M * (C_M - s) - 2 * square * H_M) * per_R
     d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
-    squares, blurs = (M, square, u, v), (one, blur_M, blur_square)
+    squares = (M, square, u, v)
+    blurs = (one, blur_M, blur_square)
     noise_s, noise_d = _noise_by_roots(squares, apart, of_u, of_v, (s, d), blurs)
     return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
 
@@ -118,26 +129,35 @@ def _noise_by_squares(
     slopes: tuple[complex, complex],
     blurs: tuple[float, float],
 ) -> float:
-    """What rounding does to the sum of z' E(z) in `by_squares`; sizes: |w|, |P|, roots: sqrt z, slopes: z'.
+    """Rounding error of the sum z+' E(z+) + z-' E(z-) in `by_squares`, in units of a relative rounding error.
 
-    An error of z in units of the terms that cancel in it, half of that and a quarter of |q| in each exponent.
+    sizes: |w| and |P|. roots: sqrt z+ and sqrt z-. slopes: z+' and z-'. blurs: rounding errors of M and P^2.
+    The error of z follows from the terms that cancel in z; an exponent has half of this error over |q|, and
+    a quarter of |q|.
     """
     F, nu, c2, gamma3 = coefficients
-    g, T, X = nu + F * c2, c2 + gamma3, c2 * gamma3
+    g = nu + F * c2
+    T = c2 + gamma3
+    X = c2 * gamma3
     size, size_P = sizes
     blur_M, blur_square = blurs
     S = max(roots[0].real, roots[1].real)
-    soft, unlike = abs(g) + abs(F) * c2 / 2, abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
-    large, blur_P = max(modulus(roots[0]), modulus(roots[1])) ** 2, blur_square / size_P
+    soft = abs(g) + abs(F) * c2 / 2
+    unlike = abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
+    large = max(modulus(roots[0]), modulus(roots[1])) ** 2
+    blur_P = blur_square / size_P
     blur_large = blur_M + 2 * blur_P
     blur_product = unlike * size * size + 2 * soft * size * (T * abs(F) + 2 * nu) + (F * soft) ** 2
     steepest = T + (nu * soft + 2 * X * size) / size_P * (1 + blur_P / size_P / 2)
     noise = 0.0
     for i in range(2):
-        root, slope = roots[i], slopes[i]
+        root = roots[i]
+        slope = slopes[i]
         q = modulus(root)
         z = q * q
-        blur, steep, blur_slope = blur_large, modulus(slope), steepest
+        blur = blur_large
+        steep = modulus(slope)
+        blur_slope = steepest
         if z < large / 2:
             blur = (blur_product + z * blur_large) / large
             blur_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
@@ -149,29 +169,37 @@ def _noise_by_squares(
 
 @compiled
 def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
-    """The functions and their sum from z+ and z-, of which one is the smaller by far; noise of the sum.
+    """The functions, their sum and its noise from z+ and z-, if one of the two is much smaller.
 
-    The slope of that one comes from the product z+ z-, too: where w is large its two terms all but cancel.
+    The slope of the smaller one follows from the product z+ z-: T +- turn would cancel for large w.
     """
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = exponents(w, coefficients)
-    g, T, X = nu + F * c2, c2 + gamma3, c2 * gamma3
+    g = nu + F * c2
+    T = c2 + gamma3
+    X = c2 * gamma3
     turn = (g * nu + 2 * X * w) / P
-    slope_plus, slope_minus = T + turn, T - turn
+    slope_plus = T + turn
+    slope_minus = T - turn
     product_slope = 2 * (c2 - gamma3) ** 2 * w - 2 * g * (T * F + 2 * nu)
     if modulus(plus) < modulus(minus):
         slope_plus = (product_slope - plus * slope_minus) / minus
     else:
         slope_minus = (product_slope - minus * slope_plus) / plus
-    root_plus, root_minus = cmath.sqrt(plus), cmath.sqrt(minus)
+    root_plus = cmath.sqrt(plus)
+    root_minus = cmath.sqrt(minus)
     S = max(root_plus.real, root_minus.real)
     E_plus, E1_plus = entire_cosh(plus, root_plus, S)
     E_minus, E1_minus = entire_cosh(minus, root_minus, S)
     difference = 1 / (4 * P)
-    s, s1 = E_plus + E_minus, E1_plus + E1_minus
-    d, d1 = (E_plus - E_minus) * difference, (E1_plus - E1_minus) * difference
+    s = E_plus + E_minus
+    s1 = E1_plus + E1_minus
+    d = (E_plus - E_minus) * difference
+    d1 = (E1_plus - E1_minus) * difference
     dd = (s1 - 2 * d) * difference * difference
-    sizes, roots, slopes = (modulus(w), modulus(P)), (root_plus, root_minus), (slope_plus, slope_minus)
+    sizes = (modulus(w), modulus(P))
+    roots = (root_plus, root_minus)
+    slopes = (slope_plus, slope_minus)
     noise = _noise_by_squares(sizes, coefficients, roots, slopes, (blur_M, blur_square))
     return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, noise
 
@@ -180,16 +208,25 @@ def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_squar
 def by_series(
     M: complex, P: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
-    """(the functions, noise of s, of d) by series where z+ and z- are small: E = sum z^n/(2n + 2)!."""
-    plus, minus = M + 2 * P, M - 2 * P
+    """(the functions, noise of s, noise of d) by series for small z+ and z-: E = sum z^n/(2n + 2)!."""
+    plus = M + 2 * P
+    minus = M - 2 * P
     S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)
     size = math.exp(-S)
-    s, s1, d, d1, dd = complex(size), 0j, 0j, 0j, 0j
-    power_plus, power_minus = 1 + 0j, 1 + 0j
-    # Complete homogeneous sums: of z+ and z-, the one before, with z+ twice, with both twice.
-    pair, last, three, four = 1 + 0j, 0j, 0j, 0j
+    s = complex(size)
+    s1 = 0j
+    d = 0j
+    d1 = 0j
+    dd = 0j
+    power_plus = 1 + 0j
+    power_minus = 1 + 0j
+    # Complete homogeneous symmetric polynomials, without factorials.
+    pair = 1 + 0j  # of (z+, z-), degree n - 1
+    last = 0j  # of (z+, z-), degree n - 2
+    three = 0j  # of (z+, z+, z-)
+    four = 0j  # of (z+, z+, z-, z-)
     factor = size / 2
-    for n in range(1, MOST_TERMS):
+    for n in range(1, MAX_SERIES_TERMS):
         factor /= (2 * n + 1) * (2 * n + 2)
         s1 += n * factor * (power_plus + power_minus)
         d += factor * pair
@@ -208,22 +245,26 @@ def by_series(
 
 @compiled
 def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
-    """The functions and their sum at w != 0; the noise is that of D.
+    """The functions, their sum, and the rounding error of D, at w != 0.
 
-    It adds up, to first order and through moduli that do not all vanish where D does, what rounding does to
-    M, to P^2 and to each step from there.
+    The rounding error is a first-order sum over the rounding errors of M, of P^2 and of every later step. The
+    sum contains moduli that do not vanish where D does.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
-    T, X, G = c2 + gamma3, c2 * gamma3, g * nu
+    T = c2 + gamma3
+    X = c2 * gamma3
+    G = g * nu
     M = T * w - F * g
     square = w * (G + X * w)
     N = G + 2 * X * w
     size = modulus(w)
-    soft = abs(g) + abs(F) * c2 / 2  # c2 is rounded, and so is F c2, which nu may all but cancel
+    soft = abs(g) + abs(F) * c2 / 2  # includes the rounding errors of c2 and F c2, since nu may cancel F c2
     stiffness = nu * soft + X * size
-    blur_M, blur_square = T * size + abs(F) * soft, size * stiffness
-    size_M, size_square = modulus(M), modulus(square)
+    blur_M = T * size + abs(F) * soft
+    blur_square = size * stiffness
+    size_M = modulus(M)
+    size_square = modulus(square)
     small = size_M + 2 * math.sqrt(size_square) < SERIES_BELOW
     if small or modulus(M * M - 4 * square) > SQUARES_BELOW * (size_M * size_M + 4 * size_square):
         if small:

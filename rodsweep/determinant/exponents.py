@@ -1,6 +1,6 @@
-"""The exponents in D(w), and the entire functions of them that D is made of.
+"""The exponents in D(w), and the entire functions of the exponents in D.
 
-With the names of `rodsweep.determinant.value`; series replace closed forms where these would cancel.
+The notation is that of `rodsweep.determinant.value`. Series replace closed forms that would cancel.
 """
 
 import cmath
@@ -11,13 +11,13 @@ from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 
 E_SERIES_BELOW = 0.1
-"""abs(z) below which E is summed as a series: the closed form of dE/dz would cancel there."""
+"""abs(z) below which E is a series, because the closed form of dE/dz would cancel."""
 FEW_TERMS_BELOW = 0.25
-"""abs(v) below which sinh(q)/q, v = q^2, is summed as a series."""
+"""abs(v) below which sinh(q)/q, v = q^2, is a series, because the closed form of its slope would cancel."""
 
 
 class Hyperbolic(NamedTuple):
-    """cosh q, sinh(q)/q and d(sinh(q)/q)/dq/q, all entire in q^2, times exp(-Re q)."""
+    """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, all entire in q^2, times exp(-Re q)."""
 
     cosh: complex
     sinhc: complex
@@ -26,13 +26,13 @@ class Hyperbolic(NamedTuple):
 
 @compiled
 def modulus(z: complex) -> float:
-    """|z|, faster than abs, where z^2 neither overflows nor matters when it underflows."""
+    """|z|, faster than abs, for z whose square does not overflow and may underflow to 0."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @compiled
 def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
-    """(P, z+, z-) at w != 0; the smaller z comes from the product, which does not cancel."""
+    """(P, z+, z-) at w != 0; the smaller z follows from the product z+ z-, without cancellation."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))
@@ -44,7 +44,7 @@ def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex,
         if plus != 0:
             minus = product / plus
     else:
-        plus = product / minus  # not zero, being the larger
+        plus = product / minus  # minus is the larger, hence not zero
     return P, plus, minus
 
 
@@ -64,7 +64,7 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
 
 @compiled
 def hyperbolic(v: complex, root: complex) -> Hyperbolic:
-    """The functions of q = root, from v = q^2, too."""
+    """The hyperbolic functions of q = `root`; v = q^2."""
     if modulus(v) < FEW_TERMS_BELOW:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
@@ -72,8 +72,10 @@ def hyperbolic(v: complex, root: complex) -> Hyperbolic:
         size = math.exp(-root.real)
         return Hyperbolic(size * (first + v * second), size * first, size * second)
     decay = math.exp(-2 * root.real)
-    even, odd = (1 + decay) / 2, (1 - decay) / 2
-    cosine, sine = math.cos(root.imag), math.sin(root.imag)
+    even = (1 + decay) / 2
+    odd = (1 - decay) / 2
+    cosine = math.cos(root.imag)
+    sine = math.sin(root.imag)
     cosh = complex(even * cosine, odd * sine)
     first = complex(odd * cosine, even * sine) / root
     return Hyperbolic(cosh, first, (cosh - first) / v)

@@ -1,8 +1,8 @@
-"""Newton's method for eigenvalues, and for the points of a path where the spectrum changes its character.
+"""Newton's method for eigenvalues, and for crossings and double eigenvalues along a path of rods.
 
-A crossing of the imaginary axis is D(i eta; p) = 0 in (eta, p); a double real eigenvalue, where two real
-ones become a pair, is D = D_w = 0 in (x, p): there the eigenvalues themselves lose half of the digits,
-and p does not.
+A crossing of the imaginary axis satisfies D(i eta; p) = 0, two real equations for (eta, p). A double real
+eigenvalue, at which two real eigenvalues become a complex pair, satisfies D = D_w = 0 in (x, p). Near a
+double eigenvalue the simple eigenvalues lose half of their digits, but p does not.
 """
 
 import math
@@ -13,19 +13,22 @@ from ..model.rod import Coefficients
 from .parameter_path import coefficients_at, determinant_along
 from .value import ROUND_OFF, scaled_determinant
 
-MOST_NEWTON_STEPS, MOST_REFINEMENTS = 15, 12
+MAX_NEWTON_STEPS = 15
+"""Maximum Newton steps to a crossing; a double eigenvalue may need twice as many."""
+MAX_REFINEMENTS = 12
+"""Maximum Newton steps to an eigenvalue."""
 LARGEST_NEWTON_STEP = 20.0
-"""A step in units of the given scale beyond which Newton's method has failed."""
+"""Largest Newton step, in units of the given scale, before the iteration counts as failed."""
 LAST_NEWTON_STEP = 4.0
-"""A last step in units of the rounding error that ends the iteration."""
+"""Step, in units of the rounding error, at which the iteration has converged."""
 JACOBIAN_STEP = 1e-5
 """Relative step of the differences in the Jacobian, which need not be accurate."""
 REAL_BELOW = 1e-14
-"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
+"""Relative imaginary part below which an eigenvalue is real: the size of rounding errors."""
 
 
 class Zero(NamedTuple):
-    """A crossing (w = i eta) or a double root (w = x) with its errors; nan where the method failed."""
+    """A crossing (w = i eta) or a double eigenvalue (w = x) with error estimates; nan after a failure."""
 
     eta_or_x: float
     p: float
@@ -40,9 +43,12 @@ FAILED = Zero(math.nan, math.nan, math.nan, math.nan)
 def crossing_newton(
     eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
 ) -> Zero:
-    """The zero of D(i eta; p) near (eta, p), with an error estimate from rounding and the last step."""
+    """The zero of D(i eta; p) near (eta, p), with error estimates from rounding and the last step.
+
+    scale: expected sizes of eta and p. FAILED for a step beyond `LARGEST_NEWTON_STEP` or without convergence.
+    """
     last = math.inf
-    for _ in range(MOST_NEWTON_STEPS):
+    for _ in range(MAX_NEWTON_STEPS):
         coefficients = coefficients_at(p, origin, direction)
         D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
         a = 1j * D_w
@@ -51,9 +57,10 @@ def crossing_newton(
             return FAILED
         in_eta = -(D * D_p.conjugate()).imag / cross
         in_p = (D * a.conjugate()).imag / cross
-        # p itself is a rounded number: D cannot tell p from its neighbours.
+        # The rounding errors of p and eta add to the rounding error of D.
         blur = noise + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
-        e_eta, e_p = blur * abs(D_p) / abs(cross), blur * abs(a) / abs(cross)
+        e_eta = blur * abs(D_p) / abs(cross)
+        e_p = blur * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
         if not step < LARGEST_NEWTON_STEP or not eta + in_eta > 0:
             return FAILED
@@ -69,11 +76,17 @@ def crossing_newton(
 
 @compiled
 def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float) -> Zero:
-    """The double real eigenvalue near (x, p): D = D_w = 0, p at most `reach` away."""
-    start, first, last = x, p, math.inf
-    for _ in range(2 * MOST_NEWTON_STEPS):
+    """The double real eigenvalue D = D_w = 0 near (x, p).
+
+    FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+    """
+    start = x
+    first = p
+    last = math.inf
+    for _ in range(2 * MAX_NEWTON_STEPS):
         D, D_w, D_p, S, noise = _real(x, p, origin, direction)
-        h, k = JACOBIAN_STEP * abs(x), JACOBIAN_STEP * reach
+        h = JACOBIAN_STEP * abs(x)
+        k = JACOBIAN_STEP * reach
         _, right, _, S_right, _ = _real(x + h, p, origin, direction)
         _, left, _, S_left, _ = _real(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real(x, p + k, origin, direction)
@@ -104,7 +117,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
 def _real(
     x: float, p: float, origin: Coefficients, direction: Coefficients
 ) -> tuple[float, float, float, float, float]:
-    """`determinant_along` at real w = x, where D is real."""
+    """`determinant_along` at real w = x and p, where D and its derivatives are real."""
     coefficients = coefficients_at(p, origin, direction)
     D, D_w, D_p, S, noise = determinant_along(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, noise
@@ -112,13 +125,13 @@ def _real(
 
 @compiled
 def refined(w: complex, coefficients: Coefficients) -> complex:
-    """The eigenvalue near w by Newton's method, until rounding keeps the steps from getting smaller.
+    """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess stays real.
+    A real guess gives a real eigenvalue.
     """
     real = w.imag == 0
     last = math.inf
-    for _ in range(MOST_REFINEMENTS):
+    for _ in range(MAX_REFINEMENTS):
         value = scaled_determinant(w, coefficients)
         if value.D_w == 0:
             break
@@ -138,7 +151,7 @@ def refined(w: complex, coefficients: Coefficients) -> complex:
 def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
-    """(w, dw/dp, error of w): a simple eigenvalue from a close guess, as `refined`."""
+    """(w, dw/dp, error of w) of the simple eigenvalue near the guess w, by `refined`."""
     w = refined(w, coefficients)
     value = determinant_along(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

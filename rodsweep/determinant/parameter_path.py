@@ -1,7 +1,7 @@
-"""Straight paths through the coefficients (F, nu, c2, gamma3), and how D changes along them.
+"""Straight paths through the coefficients (F, nu, c2, gamma3), and derivatives of D along a path.
 
-One parameter varies and the others stay. The path variable p is the parameter's coordinate, in which the
-coefficients are affine: F, c1 = 1/k1, c2 = 1/k2 or gamma3.
+One parameter varies and all others are constant. The path variable p is the parameter's coordinate, in which
+the coefficients are affine: F, c1 = 1/k1, c2 = 1/k2 or gamma3.
 """
 
 from dataclasses import dataclass
@@ -15,9 +15,10 @@ from .value import Branches, from_parts
 
 
 class Changes(NamedTuple):
-    """First and second derivatives along a path of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3.
+    """Derivatives with respect to p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3.
 
-    D depends on w and on these four alone.
+    T1 is the first derivative of T, N1 and N2 are the first and second of N, and so on. D depends only on w
+    and T, N, G, X.
     """
 
     T1: float
@@ -30,7 +31,7 @@ class Changes(NamedTuple):
 
 
 class ValueAlong(NamedTuple):
-    """D, dD/dw and dD/dp times exp(-S), and the order of the rounding error of D."""
+    """D, dD/dw and dD/dp times exp(-S), and the magnitude `noise` of the rounding error of D."""
 
     D: complex
     D_w: complex
@@ -41,14 +42,14 @@ class ValueAlong(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """All rods that differ from `rod` in the parameter `name` only."""
+    """The path of all rods that differ from `rod` only in the parameter `name`."""
 
     rod: Rod
     name: str
 
     @property
     def parameter(self) -> Parameter:
-        """The entry of the table for the parameter that varies."""
+        """Table entry of the varying parameter."""
         return PARAMETERS[self.name]
 
     @property
@@ -58,30 +59,30 @@ class Path:
 
     @property
     def direction(self) -> Coefficients:
-        """d(F, nu, c2, gamma3)/dp, the same everywhere on the path."""
+        """d(F, nu, c2, gamma3)/dp, constant along the path."""
         return self.rod.direction(self.name)
 
     @property
     def origin(self) -> Coefficients:
-        """(F, nu, c2, gamma3) at p = 0, where the model may have no rod."""
+        """(F, nu, c2, gamma3) at p = 0, which need not be a valid rod."""
         return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
 
     def variable(self, value: float) -> float:
-        """The path variable p at a value of the parameter."""
+        """The path variable p for a value of the parameter."""
         return self.parameter.coordinate(value)
 
     def value(self, p: float, error: float) -> tuple[float, float]:
-        """(value of the parameter, its error) from the path variable's."""
+        """(value of the parameter, error of the value) for p and the error of p."""
         return self.parameter.value(p), error / p**2 if self.inverse else error
 
     def at(self, p: float) -> Rod:
-        """The rod at p; ValueError where the model has none."""
+        """The rod at p; ValueError if the rod is invalid, for example crushed."""
         return self.rod.with_coordinate(self.name, p)
 
 
 @compiled
 def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> Coefficients:
-    """The coefficients at p."""
+    """The coefficients at p, origin + p * direction."""
     return Coefficients(
         origin.F + p * direction.F,
         origin.nu + p * direction.nu,
@@ -92,7 +93,7 @@ def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> 
 
 @compiled
 def changes(coefficients: Coefficients, direction: Coefficients) -> Changes:
-    """The changes along the path; of F and c2 only one may vary."""
+    """Derivatives of T, N, G, X along the path at a rod; F and c2 must not both vary."""
     F, nu, c2, gamma3 = coefficients
     F1, nu1, c21, gamma31 = direction
     g = nu + F * c2
@@ -110,7 +111,7 @@ def changes(coefficients: Coefficients, direction: Coefficients) -> Changes:
 
 @compiled
 def root_changes(w: complex, at: Branches, change: Changes) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w."""
+    """(dz+/dp, dz-/dp) at w, for the branches `at` of w."""
     P_p = 0j
     if at.P != 0:
         P_p = w * (change.G1 + change.X1 * w) / (2 * at.P)
@@ -119,14 +120,16 @@ def root_changes(w: complex, at: Branches, change: Changes) -> tuple[complex, co
 
 @compiled
 def determinant_along(w: complex, coefficients: Coefficients, direction: Coefficients) -> ValueAlong:
-    """D at w != 0 and its derivatives."""
+    """D and its derivatives with respect to w and p, at w != 0."""
     F, nu, c2, gamma3 = coefficients
     parts = even_parts(w, coefficients)
     D, D_w, S, noise = from_parts(w, coefficients, parts)
     even = parts[0]
     T1, N1, _, G1, _, X1, _ = changes(coefficients, direction)
-    T, N = c2 + gamma3, (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
-    M1, square1 = T1 * w - N1, w * (G1 + X1 * w)
+    T = c2 + gamma3
+    N = (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
+    M1 = T1 * w - N1
+    square1 = w * (G1 + X1 * w)
     along = T1 * even.s + 4 * (G1 + 2 * X1 * w) * even.d
     along += M1 * (T * even.s_M + 4 * N * even.d_M) + 4 * square1 * (T * even.d_M + 4 * N * even.d_P)
     return ValueAlong(D, D_w, w / 2 * along, S, noise)

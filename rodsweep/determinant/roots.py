@@ -1,9 +1,9 @@
-"""From the eigenvalues of a mesh to roots of D: a coarse mesh finds them, Newton's method on D refines them.
+"""Refinement of a mesh's eigenvalues to roots of D by Newton's method.
 
-A mesh has to be only as fine as Newton's method needs, so that the accuracy of an eigenvalue is that of D
-and costs some evaluations of it. Two eigenvalues that a mesh leaves closer to each other than its errors
-are refined together first, by the quadratic that D is about their middle: it knows whether they are real
-or a pair, which Newton's method from the wrong kind would never find out.
+The mesh has to be only as fine as Newton's method needs. The accuracy of an eigenvalue is then the accuracy
+of D, at the cost of a few evaluations of D. Two eigenvalues closer than the errors of the mesh are first
+moved to the roots of the Taylor polynomial of D of second order about their middle. The polynomial decides
+whether the two are real or a complex pair; Newton's method from the wrong kind would not converge.
 """
 
 import cmath
@@ -21,26 +21,27 @@ from .newton import REAL_BELOW, refined
 from .value import TYPICAL_NOISE, distance_to_next, newton_correction, scaled_determinant, second_derivative
 
 A_ROOT = 1e-2
-"""Newton correction, in units of the length over which D changes, that still stands for a root of D."""
+"""Largest Newton correction of an eigenvalue that approximates a root, in units of the length over which D
+changes. Eigenvalues with larger corrections are artefacts of the mesh."""
 CLOSE_ROOTS = 0.1
-"""Newton correction, in the same unit, for eigenvalues that are refined in pairs."""
+"""Largest Newton correction, in the same unit, of an eigenvalue that may be refined in a pair."""
 REFINED_TOGETHER = 4.0
-"""Distance of two eigenvalues, in units of their corrections, within which they are refined together."""
+"""Distance of two eigenvalues, over the sum of their corrections, below which both are refined in a pair."""
 ON_THE_AXIS = 1e-13
-"""Relative real part below which an eigenvalue is on the imaginary axis whatever its error estimate."""
+"""Relative real part below which an eigenvalue counts as imaginary, whatever its error estimate."""
 BLURRED = 1e-11
-"""Relative Newton correction beyond which a double root may be the reason."""
+"""Relative Newton correction above which a double root is checked for."""
 SAME_ROOT = 4.0
-"""Distance of two roots, in units of their errors, below which both may be one root."""
+"""Distance of two roots, over the sum of their errors, below which the two may be equal."""
 
 
 class Roots(NamedTuple):
     """Eigenvalues of a mesh refined to roots of D, sorted by descending real part, then frequency.
 
-    chosen: index of each in what the mesh gave; w: complex; error: how far the root may lie; displacement:
-    how far off the mesh was, in units of |w| or of the length over which D changes, whichever is larger;
-    wave: largest |q|; on_the_axis: whether it lies on the imaginary axis within its error; all of shape (k,).
-    ahead: eigenvalues of the mesh right of all these that stand for no root, though they lie where one may.
+    chosen: index of each root in the list of the mesh. w: complex roots. error: error estimates.
+    displacement: error of the mesh, in units of |w| or of the length over which D changes, whichever is
+    larger. wave: largest |q|. on_the_axis: whether the root is imaginary within its error. All are (k,).
+    ahead: number of eigenvalues of the mesh inside the box, right of all roots, that approximate no root.
     """
 
     chosen: NDArray[np.int64]
@@ -54,16 +55,17 @@ class Roots(NamedTuple):
 
 @compiled
 def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(how far a root of D lies, length, wave number) at w: `newton_correction`, also next to a double root.
+    """(distance to the nearest root of D, length, wave number): `newton_correction` for double roots too.
 
-    With e the larger of |D| and its rounding, Newton's e/|D'| holds while |D'|^2 is large against e |D''|.
-    Nearer to a double root the two cannot be told apart within sqrt(2 e/|D''|) of their middle, which is
-    |D'/D''| away.
+    With the larger e of |D| and its rounding error, the Newton correction e/|D'| is valid if |D'|^2 is large
+    against e |D''|. Closer to a double root, at the distance |D'/D''| from the middle of both roots, the
+    roots cannot be separated within sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction(w, coefficients)
     if error > BLURRED * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
-        e, second = max(abs(D), TYPICAL_NOISE * noise), abs(second_derivative(w, S, coefficients))
+        e = max(abs(D), TYPICAL_NOISE * noise)
+        second = abs(second_derivative(w, S, coefficients))
         if abs(D1) ** 2 < 16 * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
@@ -72,10 +74,14 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
 
 @compiled
 def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """The two roots near `middle` by the quadratic that D is about it; near a real one two real or a pair."""
+    """The two roots of the Taylor polynomial of D of second order about `middle`.
+
+    For a real `middle` both roots are real or complex conjugates.
+    """
     D, D1, S, _ = scaled_determinant(middle, coefficients)
     if middle.imag == 0:
-        D, D1 = complex(D.real, 0.0), complex(D1.real, 0.0)
+        D = complex(D.real, 0.0)
+        D1 = complex(D1.real, 0.0)
     D2 = second_derivative(middle, S, coefficients)
     if D2 == 0:
         return middle, middle
@@ -85,15 +91,20 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 
 @compiled
 def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
-    """Moves pairs closer than their errors to the two roots near them; returns a mask of moved roots."""
+    """Moves pairs of eigenvalues closer than their errors to two roots, in place; returns a mask, (n,).
+
+    w: eigenvalues, (n,). error: (n,).
+    """
     moved = np.zeros(len(w), dtype=np.bool_)
     for i in range(len(w)):
         if moved[i]:
             continue
-        partner, least = -1, math.inf
+        partner = -1
+        least = math.inf
         for j in range(len(w)):
             if j != i and not moved[j] and abs(w[j] - w[i]) < least:
-                partner, least = j, abs(w[j] - w[i])
+                partner = j
+                least = abs(w[j] - w[i])
         if partner >= 0 and least <= REFINED_TOGETHER * (error[i] + error[partner]):
             middle = (w[i] + w[partner]) / 2
             if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
@@ -105,7 +116,7 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
 
 @compiled
 def _descending(w: Complex) -> NDArray:
-    """Indices that sort by descending real part, then descending frequency."""
+    """Indices that sort w, (n,), by descending real part, then descending frequency."""
     order = np.arange(len(w))
     sort_descending(w, order)
     return order
@@ -113,9 +124,13 @@ def _descending(w: Complex) -> NDArray:
 
 @compiled
 def sort_descending(w: Complex, order: NDArray) -> None:
-    """Sorts indices, shape (n,), by descending real part, then frequency; sorted ones cost least."""
+    """Sorts the indices `order` of w, shape (n,), in place, by descending real part, then frequency.
+
+    Insertion sort: fast for lists that are almost sorted.
+    """
     for m in range(1, len(order)):
-        i, at = order[m], m
+        i = order[m]
+        at = m
         while at > 0:
             j = order[at - 1]
             if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
@@ -127,17 +142,18 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 @compiled
 def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
-    """Eigenvalues of a mesh that approximate roots of D, refined to these roots.
+    """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
 
-    raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
-    `rodsweep.determinant.certificate.box.squared_amplification`; most_waves: |q| that the mesh can stand for.
-    Rounding makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root
-    near.
+    raw: eigenvalues of a mesh, complex, shape (n,). amplification: square root of
+    `rodsweep.determinant.certificate.box.squared_amplification`. most_waves: largest |q| that the mesh
+    resolves. Rounding makes infinite eigenvalues finite; these lie outside the box, beyond the mesh or far
+    from every root.
     """
     error: Array = np.empty(len(raw))
     length: Array = np.empty(len(raw))
     wave: Array = np.empty(len(raw))
-    near, inside = np.zeros(len(raw), dtype=np.bool_), np.zeros(len(raw), dtype=np.bool_)
+    near = np.zeros(len(raw), dtype=np.bool_)
+    inside = np.zeros(len(raw), dtype=np.bool_)
     first = raw.copy()
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
@@ -149,13 +165,19 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
         near[i] = inside[i] and wave[i] <= most_waves and error[i] <= CLOSE_ROOTS * length[i]
     chosen = np.flatnonzero(near)
-    first, error, length, wave = first[chosen], error[chosen], length[chosen], wave[chosen]
+    first = first[chosen]
+    error = error[chosen]
+    length = length[chosen]
+    wave = wave[chosen]
     w, stands = _refined_all(first, error, wave, error <= A_ROOT * length, coefficients)
     order = np.flatnonzero(stands)
     order = order[_descending(w[order])]
     displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
-    chosen, w, error, wave = chosen[order], w[order], error[order], wave[order]
-    _tell_apart(w, error, coefficients)
+    chosen = chosen[order]
+    w = w[order]
+    error = error[order]
+    wave = wave[order]
+    _raise_errors_of_equal_roots(w, error, coefficients)
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen, w, error, displacement, wave, axis, ahead)
@@ -165,7 +187,11 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
 def _refined_all(
     first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
-    """(roots near the first guesses, mask of true roots); sets error and wave at the roots."""
+    """(w, mask): eigenvalues after refinement, and which of them are roots; both (k,).
+
+    first: eigenvalues of the mesh, (k,). near: which of these approximate a root. error, wave, both (k,), are
+    updated in place.
+    """
     w = first.copy()
     moved = _separate(w, error, coefficients)
     stands = moved | near
@@ -174,7 +200,9 @@ def _refined_all(
             continue
         single = i > 0 and w[i].imag != 0 and not moved[i - 1] and not moved[i]
         if single and w[i] == first[i - 1].conjugate():
-            w[i], error[i], wave[i] = w[i - 1].conjugate(), error[i - 1], wave[i - 1]
+            w[i] = w[i - 1].conjugate()
+            error[i] = error[i - 1]
+            wave[i] = wave[i - 1]
         else:
             w[i] = refined(w[i], coefficients)
             error[i], _, wave[i] = root_error(w[i], coefficients)
@@ -182,8 +210,11 @@ def _refined_all(
 
 
 @compiled
-def _tell_apart(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Raises the errors of two that are the same root to the distance of the next one, 2 |D'/D''|."""
+def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
+    """Raises the errors of two eigenvalues at the same root to the distance of the next root, 2 |D'/D''|.
+
+    w, error: (n,).
+    """
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])

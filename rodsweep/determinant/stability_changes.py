@@ -1,9 +1,10 @@
-"""Changes of a rod's stability between two forces, from the leading eigenvalues at both.
+"""Changes of a rod's stability between two forces, from the leading eigenvalues at both forces.
 
-Where the leading growth rate changes its sign a pair crosses the imaginary axis: D(0) = 1, so no eigenvalue
-passes through 0. The eigenvalues on both sides are starts for Newton's method on D(i eta; F) = 0. Where the
-two leading real eigenvalues are a pair at the next force, a double eigenvalue D = D_w = 0 lies between.
-What opens and closes between two forces is not seen; the task thresholds proves that nothing is missing.
+If the leading growth rate changes its sign, a pair crosses the imaginary axis: D(0) = 1, so no eigenvalue
+passes through 0. The eigenvalues at both forces are starting points of Newton's method on D(i eta; F) = 0. If
+the two leading eigenvalues are real at the first force and a pair at the next, a double eigenvalue
+D = D_w = 0 lies between. Two changes between the same two forces may cancel and stay unnoticed; the task
+`thresholds` proves completeness.
 """
 
 from typing import NamedTuple
@@ -16,14 +17,16 @@ from ..model.rod import Coefficients
 from .newton import crossing_newton, double_newton
 
 SAME_CROSSING = 1e-8
-"""Relative distance within which two zeros are one: Newton's method repeats itself to rounding."""
+"""Relative distance below which two zeros are equal, since Newton's method reaches rounding error."""
+MAX_ZEROS_PER_MODE = 6
+"""Newton starts per eigenvalue: three forces for each of two lists."""
 
 
 class ForceChange(NamedTuple):
-    """A change of the rod between two forces, in the words of `rodsweep.results.layouts.thresholds`.
+    """A change of stability. `kind` is a word of `rodsweep.results.layouts.thresholds`.
 
-    F with the estimate of its absolute error, in k3/L^2; growth rate and frequency of the modes that change,
-    in 1/tau2.
+    F, error: force of the change and its absolute error estimate, in k3/L^2. growth_rate, frequency: of the
+    eigenvalues that change, in 1/tau2.
     """
 
     kind: str
@@ -34,19 +37,24 @@ class ForceChange(NamedTuple):
 
 
 RodsOverForce = tuple[Coefficients, Coefficients]
-"""Rods along F: their coefficients at F = 0, and what these change by as F grows by 1."""
+"""Rods along F: coefficients at F = 0, and their derivative with respect to F."""
 
 
 def onset_between(
     rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex
 ) -> ForceChange | None:
-    """The double eigenvalue between two forces: two real leading ones before, (modes,), a pair behind.
+    """The double eigenvalue between two forces; None if Newton's method finds none.
 
-    Their squared half difference passes through 0 about linearly. None where no double one lies there.
+    ends: both forces. before, after: leading eigenvalues at both, (modes,); the two leading eigenvalues are
+    real before and a pair after. The squared half difference of the two is almost linear in F and gives the
+    starting point.
     """
     low, high = ends
-    first, second, pair = before[0].item(), before[1].item(), after[0].item()  # Python's numbers, for speed
-    gap, rise = ((first.real - second.real) / 2) ** 2, pair.imag**2
+    first = before[0].item()  # Python's numbers, for speed
+    second = before[1].item()
+    pair = after[0].item()
+    gap = ((first.real - second.real) / 2) ** 2
+    rise = pair.imag**2
     guess = low + (high - low) * gap / (gap + rise)
     centre = ((first.real + second.real) / 2 + pair.real) / 2
     zero = double_newton(centre, guess, *rods, high - low)
@@ -58,10 +66,10 @@ def onset_between(
 def stability_change_between(
     rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
 ) -> ForceChange | None:
-    """The change between two forces, with the leading eigenvalues at each, (modes,).
+    """The loss or return of stability between two forces.
 
-    unstable: how many modes grow on the unstable side. None where the zeros of D found are not exactly as
-    many as these ask for.
+    ends: both forces. before, after: leading eigenvalues at both, (modes,). unstable: number of growing modes
+    on the unstable side. None unless the number of crossings found, each a pair, explains `unstable`.
     """
     zeros = sorted(crossings_between(*ends, before, after, *rods).tolist())
     if not zeros or 2 * len(zeros) != unstable:
@@ -75,14 +83,16 @@ def stability_change_between(
 def crossings_between(
     low: float, high: float, before: Complex, after: Complex, origin: Coefficients, direction: Coefficients
 ) -> Array:
-    """(F, frequency, error of F) of the zeros of D(i eta; F) that Newton's method reaches, each once, (n, 3).
+    """(F, frequency, error of F) of the distinct zeros of D(i eta; F) that Newton's method finds, (n, 3).
 
-    It starts from the frequencies of all eigenvalues, (modes,), at both forces and at that where the chord of
-    the leading growth rate crosses 0.
+    before, after: eigenvalues at the forces low and high, (modes,). Starting points combine the frequencies
+    of all eigenvalues with three forces: both ends, and the zero of the chord of the leading growth rate.
     """
-    a, b = before[0].real, after[0].real
+    a = before[0].real
+    b = after[0].real
     chord = low + (high - low) * a / (a - b)
-    found, n = np.empty((6 * len(before), 3)), 0
+    found = np.empty((MAX_ZEROS_PER_MODE * len(before), 3))
+    n = 0
     for F in (chord, low, high):
         for eigenvalues in (before, after):
             for w in eigenvalues:

@@ -4,19 +4,19 @@ With the state (y, theta, s, m = theta') the eigenproblem of Sec. VI reads
 
     y' = nu theta + c2 s,   theta' = m,   s' = w y + F m,   m' = gamma3 w theta - g s,
 
-and D(w) is the determinant of the (s, m) x (s, m) block of its propagator over [0, 1]: entire in w,
-real on the real axis, D(0) = 1, with the transverse eigenvalues as its zeros. The squares z of the
+and D(w) is the determinant of the (s, m) x (s, m) block of the propagator over [0, 1]. D is entire in w and
+real on the real axis, D(0) = 1, and the zeros of D are the transverse eigenvalues. The squares z+- of the
 sum and the difference of the two roots q of the dispersion relation (Sec. VI) are
 
     z+- = M +- 2 P,   M = T w - F g,   P^2 = w (g nu + X w),   T = c2 + gamma3,   X = c2 gamma3,
 
-and, worked out from the determinant, all of Appendix C collapses to
+and the determinant, Appendix C, simplifies to
 
     D(w) = 1 + (w/2) [ z+' E(z+) + z-' E(z-) ],   E(z) = (cosh sqrt(z) - 1)/z,   ' = d/dw.
 
-E is entire and the sum is even in P, so nothing is singular where roots q coincide, and every limit
-(k1, k2 = inf, gamma3 = 0) is a regular value of the same formula; `rodsweep.determinant.even_parts` evaluates
-it. D is returned times exp(-S), with S = max Re sqrt(z+-), because it spans hundreds of decades.
+E is entire and the sum is even in P, so the formula is regular where roots q coincide, and in every limit
+(k1, k2 = inf, gamma3 = 0). `rodsweep.determinant.even_parts` evaluates the sum. Functions return D exp(-S),
+with S = max Re sqrt(z+-), because D spans hundreds of decades.
 """
 
 import math
@@ -28,14 +28,15 @@ from .even_parts import EvenSum, even_parts
 from .exponents import exponents
 
 ROUND_OFF = 2.220446049250313e-16
+"""Spacing of doubles at 1."""
 TYPICAL_NOISE = 0.1
-"""Rounding error of D in units of `noise`: three of four are below, the median is 0.05, the worst 0.7."""
+"""Typical rounding error of D in units of `noise`: the upper quartile; median 0.05, maximum 0.7."""
 SECOND_STEP = 1e-4
-"""Step of the difference that gives D'', in units of w."""
+"""Step of the difference for D'', in units of |w|."""
 
 
 class Value(NamedTuple):
-    """D and D' = dD/dw times exp(-S), and the order of the rounding error of the former."""
+    """D and D' = dD/dw times exp(-S); noise: magnitude of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -55,12 +56,12 @@ class Branches(NamedTuple):
 
 @compiled
 def branches(w: complex, coefficients: Coefficients) -> Branches:
-    """P and what follows from it at w != 0."""
+    """P, its derivatives, and z+- at w != 0."""
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = exponents(w, coefficients)
     P1 = 0j
     P2 = 0j
-    if P != 0:  # it is zero for every w where g = gamma3 = 0: then z+ = z- has no branch point
+    if P != 0:  # P is zero for every w if g = gamma3 = 0; then z+ = z- has no branch point
         P1 = ((nu + F * c2) * nu + 2 * c2 * gamma3 * w) / (2 * P)
         P2 = (c2 * gamma3 - P1 * P1) / P
     return Branches(P, P1, P2, plus, minus)
@@ -68,7 +69,7 @@ def branches(w: complex, coefficients: Coefficients) -> Branches:
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> Value:
-    """D at w and its derivative."""
+    """D and D' at w; w = 0 is replaced by 1e-200, where D is 1 too."""
     if w == 0:
         w = complex(1e-200, 0.0)
     return from_parts(w, coefficients, even_parts(w, coefficients))
@@ -76,10 +77,11 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> Value:
 
 @compiled
 def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
-    """D and its derivative from the even parts at w."""
+    """D and D' from the even parts at w."""
     even, total, noise = parts
     F, nu, c2, gamma3 = coefficients
-    T, X = c2 + gamma3, c2 * gamma3
+    T = c2 + gamma3
+    X = c2 * gamma3
     N = (nu + F * c2) * nu + 2 * X * w
     slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P
     return Value(math.exp(-even.S) + w / 2 * total, (total + w * slope) / 2, even.S, noise)
@@ -87,7 +89,7 @@ def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
 
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
-    """D'' exp(-S) at w by a difference of D'; real where w is."""
+    """D'' exp(-S) at w, by a central difference of D'; real for real w."""
     h = SECOND_STEP * abs(w)
     after = scaled_determinant(w + h, coefficients)
     before = scaled_determinant(w - h, coefficients)
@@ -97,26 +99,27 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 
 @compiled
 def distance_to_next(w: complex, coefficients: Coefficients) -> float:
-    """About how far the eigenvalue next to the eigenvalue w is, 2 |D'/D''|: sharp where that is close."""
+    """Estimated distance 2 |D'/D''| from an eigenvalue w to the next; accurate for close eigenvalues."""
     here = scaled_determinant(w, coefficients)
     return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), 1e-300)
 
 
 @compiled
 def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(|D/D'|, length, wave number) at w: how far, to first order, an eigenvalue of the rod lies.
+    """(|D/D'|, length, wave number) at w.
 
-    The correction, in 1/tau2, does not know how w was computed, which makes it an independent error
-    estimate. Where D is smaller than its rounding error, that error takes its place. It means something
-    only well below `length`, over which an exponent of D changes by one. The wave number, in 1/L,
+    |D/D'|, in 1/tau2, is the distance to an eigenvalue to first order: an error estimate that does not depend
+    on how w was computed. The rounding error of D replaces a smaller |D|. The estimate is valid only well
+    below `length`, the change of w over which an exponent of D changes by one. The wave number, in 1/L,
     bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
     error = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), 1e-300)
     P, P1, _, plus, minus = branches(w, coefficients)
-    root_plus, root_minus = math.sqrt(abs(plus)), math.sqrt(abs(minus))
+    root_plus = math.sqrt(abs(plus))
+    root_minus = math.sqrt(abs(minus))
     drag = coefficients.c2 + coefficients.gamma3
-    # Where z+ and z- are close, D depends on P^2, which has no branch point, and not on P.
+    # D is even in P: for z+ close to z- the branch point of P does not affect D, and P' is limited.
     P1 *= min(1.0, abs(P) / max(1.0, root_plus, root_minus))
     fast = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
     return error, 2 / max(fast, 1e-300), (root_plus + root_minus) / 2

@@ -1,4 +1,4 @@
-"""Spectral elements on [0, 1]: quadrature, basis, the constant matrix pieces, and how fine is enough.
+"""Spectral elements on [0, 1]: quadrature, basis, constant pieces of matrices, and choice of the resolution.
 
 Plain NumPy arrays; no PETSc and no MPI.
 """

@@ -1,8 +1,8 @@
-"""Compliances, drags and rest of an arm at the nodes of a mesh, and their derivatives by a parameter.
+"""Compliances, drags and straight state of an arm at the nodes of a mesh, and their parameter derivatives.
 
-At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
-contain the mean of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if elements
-end at the jumps, for a linear law; with another law s(S) differs on the two sides, and jumps are refused.
+A coefficient may jump at a node between two elements. The mass is lumped, so the equations of the node
+contain the mean of both sides, weighted by the quadrature. For a linear law this keeps the accuracy of the
+mesh if elements end at the jumps. For another law s(S) differs on both sides, and jumps are refused.
 """
 
 from functools import lru_cache
@@ -20,13 +20,13 @@ from .elements.quadrature import gauss_lobatto
 
 
 def material_on(rod: Rod, grid: Mesh) -> Material:
-    """The material of a rod on a mesh; an arm has arrays over the nodes, (3, nodes + 1).
+    """The material of a rod on a mesh: (3,) arrays for a standard rod, (3, nodes + 1) for other arms.
 
-    The elements of an arm must end at the breaks of its profile. ValueError for a law that is not linear and
-    a profile that jumps.
+    The elements must end at the breaks of the profile. Raises ValueError for a jump combined with a law that
+    is not linear.
     """
     if not (rod.build.continuous or rod.build.constitutive_law is LINEAR):
-        raise ValueError("the nonlinear motion of an arm with jumps is known for the linear law only")
+        raise ValueError("the nonlinear motion of an arm whose profile jumps needs law = linear")
     if rod.standard:
         return rod.material
     compliance, drag, rest = _at_nodes(rod.sections(grid.points_inside.ravel()), grid)
@@ -34,7 +34,7 @@ def material_on(rod: Rod, grid: Mesh) -> Material:
 
 
 def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
-    """The derivative of `material_on` by the coordinate of a parameter."""
+    """The derivative of `material_on` with respect to the coordinate of a parameter."""
     if rod.standard and name != "taper":
         return rod.material_change(name)
     compliance, drag, rest = _at_nodes(rod.section_changes(name, grid.points_inside.ravel()), grid)
@@ -42,11 +42,11 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
 
 
 def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
-    """Compliance, drag and rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
-    place, weights = _places_of(grid)
+    """Compliance, drag and strain at rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
+    node, weights = _node_weights(grid)
 
     def mean(values: Array) -> Array:
-        return np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
+        return np.array([np.bincount(node, weights * row) for row in values]) / grid.quadrature
 
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
@@ -54,8 +54,8 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def _places_of(grid: Mesh) -> tuple[NDArray[np.int64], Array]:
-    """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
+def _node_weights(grid: Mesh) -> tuple[NDArray[np.int64], Array]:
+    """(node, quadrature weight) of each of the mesh's `points_inside`, (elements (order + 1),) each."""
     nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
     return nodes.ravel(), weights.ravel()

@@ -1,9 +1,9 @@
-"""One nonlinear rod on one mesh as a time stepper sees it: dz/dt = f(z), f compiled, with its exact Jacobian.
+"""One nonlinear rod on one mesh as an explicit system for time stepping: dz/dt = f(z) and its exact Jacobian.
 
-The unknown is z = C^(1/2) S, the stresses S of a linear rod beyond those of the straight rod in units of
-energy, at all nodes but the tip, where they vanish: z1 at every node, then z2, then z3. |z|^2/2 is an energy
-of the linear rod, the mass matrix is the identity, and no digits are lost for large k1 or k2. It asks for
-c1, c2, gamma3 > 0; `StressForm` has every limit.
+The unknown is z = C^(1/2) S, in units of the square root of an energy density: S is the stress of a linear
+rod minus the stress of the straight rod, at all nodes except the tip, where S = 0. z1 at every node comes
+first, then z2, then z3. |z|^2/2 is an energy density of the linear rod, the mass matrix is the identity, and
+large k1 or k2 cost no digits. The form needs c1, c2, gamma3 > 0; `StressForm` includes the limits.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
 TINY = 1e-30
-"""Imaginary step of the complex-step derivative in `tip_velocity`, in units of time, tau2."""
+"""Imaginary step of the complex-step derivative in `tip_velocity`, in tau2."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +33,12 @@ class Beam(RodOnMesh):
 
     @cached_property
     def roots(self) -> Array:
-        """Square roots of C, (3, nodes + 1): z = roots S, and the strains beyond rest are roots z."""
+        """Square roots of C, (3, nodes + 1): z = roots S, and E - E0 = roots z."""
         return np.sqrt(self.nodal.compliance)
 
     @cached_property
     def crushed(self) -> Array:
-        """z1 at which h1 = 0, at all nodes but the tip, (nodes,)."""
+        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,)."""
         return np.ascontiguousarray(-self.nodal.rest[0, :-1] / self.roots[0, :-1])
 
     def stresses(self, z: Values) -> Values:
@@ -46,25 +46,26 @@ class Beam(RodOnMesh):
         return scaled / self._along(scaled)
 
     def scaled(self, S: Array) -> Array:
-        """z of stresses beyond the straight rod's at all nodes, (3, ..., nodes + 1)."""
+        """The state z of stresses S at all nodes, (3, ..., nodes + 1)."""
         return self.layout.state(S * self._along(S), S)
 
     def unknown(self, strains: Array) -> Array:
-        """z of (h1, h2, Pi) at all nodes, shape (3, nodes + 1); the tip's values are not free."""
+        """The state z of strains (h1, h2, Pi) at all nodes, (3, nodes + 1); values at the tip are ignored."""
         return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
 
     def rate(self, z: Array) -> Array:
-        """dz/dt in 1/tau2 of one state or of many, shape (..., unknowns) as that of z."""
+        """dz/dt in 1/tau2 for states z, both (..., unknowns)."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
         rates(*flat, self.roots, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
-        """d(dz/dt)/dz of one state or of many, shape (..., unknowns, unknowns) for z (..., unknowns)."""
+        """d(dz/dt)/dz, (..., unknowns, unknowns), for states z, (..., unknowns)."""
         size = self.unknowns
         out = np.empty((*z.shape, size))
-        states, matrices = z.reshape(-1, size), out.reshape(-1, size, size)
+        states = z.reshape(-1, size)
+        matrices = out.reshape(-1, size, size)
         rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 

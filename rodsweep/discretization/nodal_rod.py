@@ -1,4 +1,4 @@
-"""One rod at the nodes of a mesh: compliances and drags as arrays over these, for compiled functions."""
+"""One rod at the nodes of a mesh: compliances and drags as arrays over the nodes, for compiled functions."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -14,11 +14,12 @@ Integers = NDArray[np.int64]
 
 
 class NodalRod(NamedTuple):
-    """A rod at all nodes of a mesh, the tip included, as the compiled functions take it; of d components.
+    """A rod with d components at all nodes of a mesh, tip included: the argument of compiled functions.
 
-    tip_stress: Sigma(1), (d,). rest: E0, with compliance and drag (d, nodes + 1); mobility: 1/drag, but 0
-    where V is unknown. second: -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: which components of V are
-    unknowns. law: number of the constitutive law, see `rodsweep.model.material.response`.
+    tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod; rest, compliance and drag have the
+    shape (d, nodes + 1). mobility: 1/drag, but 0 for components of V that are unknowns. second:
+    -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: indices of the components of V that are unknowns. law:
+    number of the constitutive law, see `rodsweep.model.material.response`.
     """
 
     tip_stress: Array
@@ -32,7 +33,7 @@ class NodalRod(NamedTuple):
 
 
 class NodalChange(NamedTuple):
-    """The derivative of a `NodalRod` along a parameter, of what the equations have of it."""
+    """The derivative of the fields of a `NodalRod` with respect to a parameter; same shapes."""
 
     tip_stress: Array
     rest: Array
@@ -41,15 +42,16 @@ class NodalChange(NamedTuple):
 
 
 def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0) -> NodalRod:
-    """A material on a mesh, of which these components of V are unknowns."""
+    """The `NodalRod` of a material on a mesh; kept: indices of the components of V that are unknowns."""
     size = grid.nodes + 1
-    rest, compliance = _at_nodes(material.rest, size), _at_nodes(material.compliance, size)
+    rest = _at_nodes(material.rest, size)
+    compliance = _at_nodes(material.compliance, size)
     resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, kept)
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law)
 
 
 def nodal_change(change: Material, grid: Mesh) -> NodalChange:
-    """A change of a material on a mesh."""
+    """The `NodalChange` of the derivative of a material on a mesh."""
     fields = change.rest, change.compliance, change.drag
     return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields))
 
@@ -58,7 +60,7 @@ def nodal_change(change: Material, grid: Mesh) -> NodalChange:
 def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Integers]:
-    """`_resistance` of a drag as bytes: rods of a chain over F share it."""
+    """`_resistance`, cached by the bytes of the drag, because rods of a chain over F have equal drags."""
     values = np.frombuffer(drag).reshape(shape)
     return _resistance(values if len(shape) > 1 else values[:, None], grid, kept)
 
@@ -66,14 +68,15 @@ def _resistance_of(
 def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, Array, Array, Integers]:
     """drag, mobility, second and kept of a `NodalRod`."""
     drag = _at_nodes(drag, grid.nodes + 1)
-    mobility, eliminated = np.zeros(drag.shape), [a for a in range(len(drag)) if a not in kept]
+    mobility = np.zeros(drag.shape)
+    eliminated = [a for a in range(len(drag)) if a not in kept]
     mobility[eliminated] = 1 / drag[eliminated]
     second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
     return drag, mobility, second, np.array(kept, np.int64)
 
 
 def _at_nodes(field: Array, size: int) -> Array:
-    """A constant of each component, or one at each node, at all nodes, (d, size)."""
+    """A constant of each component, (d,), or a field, (d, size), as a field (d, size)."""
     out = np.empty((len(field), size))
     out[:] = field.reshape(len(field), -1)
     return out

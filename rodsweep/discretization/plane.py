@@ -1,4 +1,4 @@
-"""The compiled equations of the rod in the plane: those of every algebra, for se(2)."""
+"""The compiled equations of the rod in the plane: the equations of `stress` for the algebra se(2)."""
 
 from ..model.algebra import SE2
 from .stress import balance as stress_balance

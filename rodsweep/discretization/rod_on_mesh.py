@@ -1,7 +1,7 @@
-"""One nonlinear rod on one mesh, whatever the unit of its unknowns: what follows from its stresses.
+"""One nonlinear rod on one mesh: strains, shape and energy from stresses.
 
-Strains, shape, energy. `StressForm` has the stresses themselves for unknowns, `Beam` the same in units of
-energy.
+This is the common part of two forms: `StressForm`, whose unknowns are stresses, and `Beam`, whose unknowns
+are stresses in units of energy.
 """
 
 from abc import ABC, abstractmethod
@@ -34,13 +34,13 @@ class RodOnMesh(ABC):
 
     @abstractmethod
     def stresses(self, x: Values) -> Values:
-        """S at all nodes, the tip included, shape (3, ..., nodes + 1): the strains beyond rest are C S.
+        """S at all nodes, tip included, shape (3, ..., nodes + 1), with the strain E = E0 + C S.
 
         In a linear rod S is (n1 + F, n2, m3).
         """
 
     def with_coordinate(self, name: str, coordinate: float) -> Self:
-        """The rod elsewhere along a parameter, on the same mesh; ValueError where the model has none."""
+        """The rod with another coordinate of a parameter, on the same mesh; ValueError for an invalid rod."""
         return replace(self, rod=self.rod.with_coordinate(name, coordinate))
 
     @cached_property
@@ -54,16 +54,16 @@ class RodOnMesh(ABC):
 
     @cached_property
     def nodal(self) -> NodalRod:
-        """The rod as the compiled functions take it."""
+        """The rod as argument of compiled functions."""
         return nodal_rod(material_on(self.rod, self.mesh), self.mesh, self.kept, self.rod.build.law_number)
 
     def strains(self, x: Values) -> Values:
-        """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
-        S, c = self.stresses(x), self.nodal
-        return _along(c.rest, S) + _along(c.compliance, S) * S
+        """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1)."""
+        S = self.stresses(x)
+        return _along(self.nodal.rest, S) + _along(self.nodal.compliance, S) * S
 
     def shape(self, x: Values) -> Values:
-        """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
+        """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
         return configuration(self.mesh, self.strains(x), np.zeros(3))
 
     def tip(self, x: Values) -> Values:
@@ -71,11 +71,12 @@ class RodOnMesh(ABC):
         return self.shape(x)[..., -1]
 
     def energy(self, x: Array) -> Array:
-        """U, the integral of the law's energy along the rod, in k3/L, shape (...).
+        """Elastic energy U of states x, in k3/L, shape (...).
 
-        Of a linear rod: 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 for k3 = 1 all along.
+        For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
-        S, law = self.stresses(x), self.rod.build.constitutive_law
+        S = self.stresses(x)
+        law = self.rod.build.constitutive_law
         compliance = _along(self.nodal.compliance, S)
         h1 = _along(self.nodal.rest, S)[0] + compliance[0] * S[0]
         push = S[0] - _along(self._shortening[None], S)[0]  # (h1 - 1)/c1
@@ -86,18 +87,19 @@ class RodOnMesh(ABC):
 
     @cached_property
     def _shortening(self) -> Array:
-        """1 - nu of the straight rod in units of c1, (nodes + 1,), in the limit where c1 = 0."""
-        F, law = self.rod.F, self.rod.build.constitutive_law
+        """(1 - nu)/c1 of the straight rod, (nodes + 1,); the limit F for c1 = 0."""
+        F = self.rod.F
+        law = self.rod.build.constitutive_law
         load = F * self.nodal.compliance[0]
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         shortening: Array = F * ratio
         return shortening
 
     def least_stretch(self, x: Array) -> float:
-        """min h1 over the nodes of all states; the model holds while it is positive."""
+        """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive."""
         return float(self.strains(x)[0].min())
 
 
 def _along(constant: Array, field: Values) -> Array:
-    """Numbers of the components, (3, nodes + 1) or (3, 1), beside a field (3, ..., nodes + 1)."""
+    """A constant (3, nodes + 1) or (3, 1), reshaped to broadcast against a field (3, ..., nodes + 1)."""
     return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)

@@ -1,8 +1,7 @@
-"""Positions of the fields in a flat state: stresses at all nodes but the tip, then unknown velocities.
+"""Positions of the fields in a flat state: stresses at all nodes except the tip, then unknown velocities.
 
-No other module computes indices into a state. Python code asks a `StateLayout`. Compiled code asks
-`stress_place` and `velocity_place` for indices, because an array view costs as much there as a sum over the
-nodes.
+No other module computes indices into a state. Python code uses a `StateLayout`. Compiled code uses
+`stress_place` and `velocity_place`, because an array view costs as much as a sum over the nodes.
 """
 
 from dataclasses import dataclass
@@ -23,8 +22,8 @@ COMPONENTS, BENDING = 3, 2
 class StateLayout:
     """Order of the unknowns in states of shape (..., unknowns).
 
-    components: number of stress components; nodes: number of nodes without the tip; kept: indices of the
-    unknown components of V. Velocities are unknown at the tip, too; stresses vanish there.
+    components: number of stress components. nodes: number of nodes without the tip. kept: indices of the
+    unknown components of V. At the tip velocities are unknown too, but stresses are 0.
     """
 
     components: int
@@ -36,21 +35,21 @@ class StateLayout:
         return self.components * self.nodes + len(self.kept) * (self.nodes + 1)
 
     def field(self, x: Values, name: str) -> Values:
-        """One stress of states x at the nodes but the tip, a view of the shape (..., nodes)."""
+        """The stress `name` of states x at all nodes except the tip, a view of the shape (..., nodes)."""
         first = self.place(name)
         return x[..., first : first + self.nodes]
 
     def place(self, name: str, node: int = 0) -> int:
-        """Index of the named stress at a node among the unknowns; node 0 is the clamp."""
+        """Index of the stress `name` at a node in a state; node 0 is the clamp."""
         return FIELDS[self.components].index(name) * self.nodes + node
 
     def at(self, x: Values, name: str, node: int = 0) -> Values:
-        """One stress of states x at one node, shape (...)."""
+        """The stress `name` of states x at one node, shape (...)."""
         at: Values = x[..., self.place(name, node)]
         return at
 
     def transverse(self, x: Values) -> Values:
-        """All unknowns of plane states x but n1, a view; they vanish while the rod is straight."""
+        """All unknowns of plane states x except n1, a view; all are 0 for a straight rod."""
         return x[..., self.nodes :]
 
     def stresses(self, x: Values) -> Values:
@@ -66,21 +65,21 @@ class StateLayout:
         return np.moveaxis(known.reshape(*x.shape[:-1], len(self.kept), self.nodes + 1), -2, 0)
 
     def state(self, S: Values, V: Values) -> Values:
-        """States (..., unknowns) of stresses and of all of V at all nodes, (components, ..., nodes + 1) each.
+        """States (..., unknowns) from stresses S and velocities V, (components, ..., nodes + 1) each.
 
         Stresses at the tip and the components of V outside `kept` are ignored.
         """
         return np.concatenate([*S[..., :-1], *(V[a] for a in self.kept)], axis=-1)
 
     def carried(self, x: Array, E: Array) -> Array:
-        """States x on another mesh; E: matrix of `mesh.transfer`, (nodes there + 1, nodes + 1)."""
+        """States x interpolated to another mesh; E: `mesh.transfer`, (target nodes + 1, nodes + 1)."""
         split = self.components * self.nodes
-        places = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
-        parts = [x[..., here] @ E[:-1, :-1].T for here in places]
+        slices = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
+        parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
         return np.concatenate([*parts, *(self.velocities(x) @ E.T if self.kept else ())], axis=-1)
 
     def row(self, values: dict[str, Array]) -> Array:
-        """Row (unknowns,) with the given numbers, (nodes,), at each named stress and 0 elsewhere."""
+        """A row (unknowns,) with the values, (nodes,), of each named stress; all other entries are 0."""
         row = np.zeros(self.unknowns)
         for name, numbers in values.items():
             self.field(row, name)[:] = numbers
@@ -88,17 +87,17 @@ class StateLayout:
 
 
 def plane_layout(nodes: int, kept: tuple[int, ...] = ()) -> StateLayout:
-    """Layout of a rod in the plane; `nodes` without the tip, `kept` the unknown components of V."""
+    """Layout of a rod in the plane; nodes: without the tip, kept: indices of unknown components of V."""
     return StateLayout(COMPONENTS, nodes, kept)
 
 
 @compiled_for_vectors
 def stress_place(a: int, node: int, nodes: int) -> int:
-    """Index of stress component a at a node among the unknowns."""
+    """Index in a state of stress component a at a node; nodes: without the tip."""
     return a * nodes + node
 
 
 @compiled_for_vectors
 def velocity_place(k: int, node: int, components: int, nodes: int) -> int:
-    """Index of the k-th unknown velocity at a node among the unknowns."""
+    """Index in a state of the k-th unknown velocity at a node; nodes: without the tip."""
     return components * nodes + k * (nodes + 1) + node

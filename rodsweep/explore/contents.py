@@ -1,4 +1,4 @@
-"""Everything on a page: its controls, pictures, numbers and texts, and which answer fills which."""
+"""Contents of a page: controls, pictures, numbers and texts, and the pictures that each answer fills."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -22,7 +22,10 @@ from .state import PageState
 
 
 class PageContents:
-    """All models of a page. changed: called by the controls. loaded: called with the text of a config."""
+    """All Bokeh models of a page.
+
+    changed: callback of the controls. loaded: callback for a config that the user loads, with its text.
+    """
 
     def __init__(self, changed: Changed, loaded: Callable[[str], None]):
         widgets, texts = sheet("widgets.css"), sheet("text.css")
@@ -45,19 +48,19 @@ class PageContents:
 
     @property
     def cards(self) -> list[Card]:
-        """All pictures."""
+        """The cards of all pictures."""
         pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
         return [picture.card for picture in pictures]
 
     def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
-        """Puts everything into a document. react: what to do on a click, by button or picture."""
+        """Adds all models to a document. react: callbacks for clicks, by button or picture."""
         for kind, button in self.buttons.items():
             button.on_click(react[kind])
         for event in (Tap, Pan):
             self.diagram.card.figure.on_event(event, react["diagram_point"])
         for picture in (self.growth, self.branches):
             picture.card.figure.on_event(Tap, react["load"])
-        # A document subscribes to the events that its models already listen to.
+        # Add models last: a document subscribes only to events that its models already handle.
         for root in (
             self.working, self.controls.root, self.numbers.root, self.sharing.root, *self.buttons.values(),
             *(card.root for card in self.cards),
@@ -70,7 +73,7 @@ class PageContents:
         document.template_variables["page_css"] = read("page.css")
 
     def show_point(self, state: PageState, F: float) -> None:
-        """Shows where the point is, and how it is written elsewhere."""
+        """Marks the point of the state in all pictures, and updates address, config and Python lines."""
         at = F * load_axis(state).factor
         self.growth.move_point(at)
         self.branches.move_point(at)
@@ -81,7 +84,7 @@ class PageContents:
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
-        """Fills the pictures that an answer belongs to."""
+        """Fills the pictures of a kind of question with its answer `found`."""
         self.numbers.show(kind, found)
         if kind == "spectrum":
             self.spectrum.show(found)
@@ -99,7 +102,7 @@ class PageContents:
             self.diagram.show(found, scales[state.load], scales[state.second])
 
     def say(self, kind: str, sentence: str) -> None:
-        """Shows a sentence in place of the pictures of a question."""
+        """Shows a sentence instead of the pictures of a kind of question."""
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.stop()

@@ -1,4 +1,4 @@
-"""Sliders and fields of the page; every change is told as text by name."""
+"""Sliders and fields of the page, which report every change as name and text."""
 
 from collections.abc import Callable
 from functools import partial
@@ -11,12 +11,12 @@ from .scales import SCALES, ControlScale
 from .state import ACROSS, LAW_NAMES, TABS, PageState
 
 STEPS = 400
-"""Steps of a slider from end to end."""
+"""Number of steps of a slider from end to end."""
 Changed = Callable[..., None]
 
 
 class Field:
-    """A number with its slider. A change of either is told to `changed(name, text)`."""
+    """A text field with a slider. A change of either calls `changed(name, text)`."""
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale, self.changed = scale, changed
@@ -32,11 +32,11 @@ class Field:
         self.slider.on_change("value", self._slid)
         self.root = Column(self.text, self.slider, sizing_mode="stretch_width", spacing=0)
         self._is_shown = False
-        """Whether a change comes from the page, not from the user."""
+        """True while the page itself changes the widgets, so that their callbacks must not react."""
         self._sliding = False
 
     def show(self, text: str) -> None:
-        """Shows a text, and moves the slider unless it is the source of the text."""
+        """Shows a text, and moves the slider unless the user is sliding."""
         self._is_shown = True
         try:
             self.text.value = text
@@ -61,7 +61,7 @@ class Field:
 
 
 class Controls:
-    """All controls. changed: called with keywords of `PageState`; `values` are texts of the tab by name."""
+    """All controls. changed: callback with fields of `PageState`, or `values`, texts of the tab by name."""
 
     def __init__(self, changed: Changed, sheet: InlineStyleSheet):
         self._changed = changed
@@ -93,7 +93,7 @@ class Controls:
         )
 
     def show(self, state: PageState) -> None:
-        """Shows a state."""
+        """Sets all controls to a state."""
         self._is_shown = True
         try:
             self.tabs.active = list(TABS).index(state.tab)

@@ -1,4 +1,4 @@
-"""Template and style sheets of the page, light and dark as the browser asks for."""
+"""Template and style sheets of the page, light or dark according to the browser's preference."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,10 +15,10 @@ def read(name: str) -> str:
 
 
 def sheet(name: str) -> InlineStyleSheet:
-    """A style sheet for widgets, which do not see those of the page but its colours."""
+    """A style sheet for widgets, which inherit colours, but not style sheets, from the page."""
     return InlineStyleSheet(css=read(name))
 
 
 def colours(figures: Sequence[figure]) -> CustomJS:
-    """What the browser runs once: colours of the figures, and again when its colour scheme changes."""
+    """Code of the browser that colours the figures, now and whenever the colour scheme changes."""
     return CustomJS(args={"figures": list(figures)}, code=read("colours.js"))

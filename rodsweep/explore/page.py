@@ -1,4 +1,4 @@
-"""One page, as one browser tab has it: its state, what is being solved, and its pictures."""
+"""One page, in one browser tab: state, questions being solved, and pictures."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,13 +17,13 @@ from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 
 AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
-"""Questions that follow every change."""
+"""Kinds of questions that are asked after every change."""
 WHEN_IDLE = ("branch", "diagram")
-"""Questions that wait until the page has rested for `IDLE`, because they take seconds."""
+"""Kinds of questions that take seconds, and are asked after a pause of `IDLE`."""
 IDLE = 900
-"""Milliseconds."""
+"""Milliseconds without a change after which the slow questions are asked."""
 NAMES = {"thresholds": "thresholds", "growth": "growth rates", "branch": "branches"}
-"""Names of questions in the sign, where the name of the kind is none."""
+"""Names of kinds in the sign "solving ..."; a missing kind is its own name."""
 
 
 class Page:
@@ -40,7 +40,7 @@ class Page:
         self.is_open = True
         self.solving: set[str] = set()
         self.asked: dict[str, PageState] = {}
-        """What each kind of question depends on, when it was asked last."""
+        """The part of the state, `needs`, that the latest question of each kind depends on."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
@@ -49,7 +49,7 @@ class Page:
             self.contents.show("diagram", stored, state)
 
     def open(self, query: str) -> None:
-        """Shows the state of an address."""
+        """Shows the state of an address; query: the address after "?"."""
         try:
             self._change_to(from_address(query, self.state))
         except InputError as error:
@@ -57,24 +57,24 @@ class Page:
             self._refuse(str(error))
 
     def load(self, text: str) -> None:
-        """Shows the rod or arm of a config."""
+        """Shows the rod or arm of a config; text: the config in YAML."""
         try:
             self._change_to(state_of_text(text))
         except InputError as error:
             self._refuse(str(error))
 
     def close(self) -> None:
-        """Ends what is being solved for this page."""
+        """Cancels all questions of this page."""
         self.is_open = False
         self.solvers.forget(self.session)
 
     def change(self, values: dict[str, str] | None = None, **changed: Any) -> None:
-        """A change of the controls: texts by name of the tab, or fields of the state."""
+        """Applies a change of the controls. values: texts by name. changed: other fields of the state."""
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 
     def solve(self, kind: str) -> None:
-        """Solves a kind of question now, though it was solved before."""
+        """Asks a question now, even if its answer is already shown."""
         self.asked.pop(kind, None)
         self._ask(kind)
 
@@ -104,7 +104,7 @@ class Page:
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
-        """Shows a sentence in place of all pictures but a diagram that is drawn, and drops all questions."""
+        """Shows a sentence instead of all pictures except a drawn diagram, and cancels all questions."""
         for kind in (*AT_ONCE, *WHEN_IDLE):
             if kind != "diagram" or kind in self.solving:
                 self.asked.pop(kind, None)
@@ -116,7 +116,7 @@ class Page:
         self._show_solving()
 
     def _rest(self) -> None:
-        """Asks what takes seconds once the page has rested."""
+        """Schedules the slow questions after the pause `IDLE`; a further change restarts the pause."""
         if self._idle is not None:
             self.document.remove_timeout_callback(self._idle)
         self._idle = self.document.add_timeout_callback(self._rested, IDLE)
@@ -143,14 +143,14 @@ class Page:
         self.solvers.ask(self.session, question, lambda reply: self._receive(question, reply))
 
     def _receive(self, question: Question, reply: Reply) -> None:
-        """Hands a reply to the document, which belongs to its own lock."""
+        """Passes a reply to the document's event loop, because only code there may change the document."""
         if self.is_open:
             self.document.add_next_tick_callback(lambda: self._answered(question, reply))
 
     def _answered(self, question: Question, reply: Reply) -> None:
         kind = question.kind
         newest = self.asked.get(kind)
-        if newest is None:  # the values are bad by now
+        if newest is None:  # the user has entered invalid values meanwhile
             return
         if newest == needs(kind, question.state):
             self.solving.discard(kind)
@@ -172,13 +172,13 @@ class Page:
         self.change({load: scales[load].text(event.x), second: scales[second].text(event.y)})
 
     def _move_load(self, event: Tap) -> None:
-        """Moves the load to that of a click."""
+        """Moves the load to the x of a click."""
         if event.x is not None:
             self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(event.x)})
 
 
 def needs(kind: str, state: PageState) -> PageState:
-    """The state without what the answer to a question does not depend on."""
+    """The state with blanks for all fields that the answer to a kind of question does not depend on."""
     if kind in ("spectrum", "cycle"):
         return replace(state, across="", F_max="")
     blank = {state.load: ""}

@@ -1,4 +1,4 @@
-"""How each control writes its number: unit, range, linear or logarithmic."""
+"""Scale of each control: unit, range, linear or logarithmic."""
 
 from dataclasses import dataclass
 from math import inf, isfinite, isnan, log10
@@ -13,11 +13,11 @@ from .state import PageState, number, rod_of
 
 @dataclass(frozen=True, kw_only=True)
 class ControlScale:
-    """ControlScale of one parameter or quantity.
+    """Scale of the control of one parameter or quantity.
 
-    label: with its unit. low, high: ends of the slider, in this unit. logarithmic: whether the slider is.
-    unit: text behind the number of a quantity, empty for a rod's parameter. factor: this unit's numbers for 1
-    in SI units. has_inf: whether the upper end of the slider is inf.
+    label: text above the control, with the unit. low, high: ends of the slider, in the unit of the control.
+    logarithmic: whether the slider is logarithmic. unit: unit of a quantity, empty for a rod's parameter.
+    factor: from SI units to the unit. has_inf: whether the upper end of the slider means inf.
     """
 
     name: str
@@ -30,12 +30,12 @@ class ControlScale:
     has_inf: bool = False
 
     def text(self, value: float) -> str:
-        """Text of a number in this unit, as a control shows it."""
+        """Text that the control shows for a value in its unit."""
         written = f"{value:.5g}"
         return f"{written} {self.unit}" if self.unit else written
 
     def value(self, text: str) -> float | None:
-        """Number in this unit of a text; None if it is none."""
+        """Value in the control's unit of a text like "10 cm"; None for an invalid text."""
         try:
             if self.unit:
                 quantity = QUANTITIES[self.name]
@@ -51,7 +51,7 @@ class ControlScale:
         return (log10(self.low), log10(self.high)) if self.logarithmic else (self.low, self.high)
 
     def position(self, text: str) -> float | None:
-        """Place of the slider for a text, at an end for what lies beyond; None if it has none."""
+        """Position of the slider for a text, clipped to the ends; None for an invalid text or NaN."""
         value = self.value(text)
         start, end = self.ends
         if value is None or isnan(value):
@@ -63,7 +63,7 @@ class ControlScale:
         return min(max(value, start), end)
 
     def at(self, position: float) -> str:
-        """Text for a place of the slider."""
+        """Text for a position of the slider."""
         if self.has_inf and position >= self.ends[1]:
             return "inf"
         value = 10**position if self.logarithmic else position
@@ -72,14 +72,14 @@ class ControlScale:
 
 
 class PictureAxis(NamedTuple):
-    """An axis of a picture. label: with its unit. factor: numbers of this unit for 1 in units of the rod."""
+    """An axis of a picture. label: text with the unit. factor: from dimensionless values to the unit."""
 
     label: str
     factor: float
 
 
 def load_axis(state: PageState) -> PictureAxis:
-    """PictureAxis of the load: F of a rod, the pressure of an arm in kPa."""
+    """Axis of the load: F of a rod, pressure of an arm in kPa."""
     if state.tab == "rod":
         return PictureAxis("force F (k3/L^2)", 1.0)
     subject = state.with_values(pressure="1 kPa").subject()
@@ -87,7 +87,7 @@ def load_axis(state: PageState) -> PictureAxis:
 
 
 def length_axis(state: PageState) -> PictureAxis:
-    """PictureAxis of lengths: L of a rod, cm of an arm."""
+    """Axis of lengths: in L for a rod, in cm for an arm."""
     scale = SCALES["arm"]["length"]
     length = scale.value(state.arm["length"]) if state.tab == "arm" else None
     return PictureAxis("L", 1.0) if length is None else PictureAxis(scale.unit, length)

@@ -1,4 +1,4 @@
-"""The server of the page: on this machine only, and for its own page only."""
+"""The server of the page, for browsers on this machine only."""
 
 import asyncio
 import signal
@@ -24,8 +24,8 @@ from .state import PageState
 ADDRESS = "127.0.0.1"
 HOSTS = (ADDRESS, "localhost")
 """Names under which a browser on this machine may open the page."""
-UNUSED = 5000
-"""Milliseconds after which a page that was closed ends its session."""
+UNUSED_SESSION = 5000
+"""Milliseconds after which the session of a closed page ends."""
 
 
 class UndelayedServer(HTTPServer):
@@ -52,8 +52,8 @@ class ExploreServer:
         tornado = BokehTornado(
             {"/": application},
             extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
-            unused_session_lifetime_milliseconds=UNUSED,
-            check_unused_sessions_milliseconds=UNUSED,
+            unused_session_lifetime_milliseconds=UNUSED_SESSION,
+            check_unused_sessions_milliseconds=UNUSED_SESSION,
         )
         self.http = UndelayedServer(tornado)
         self.http.add_sockets(sockets)
@@ -65,7 +65,7 @@ class ExploreServer:
         return f"http://{ADDRESS}:{self.port}/"
 
     def start(self) -> None:
-        """Starts the solvers, and answers browsers as soon as the loop runs."""
+        """Starts the solvers; the server answers browsers once the event loop runs."""
         self.server.start()
         self.solvers.warm_up()
 
@@ -84,7 +84,7 @@ class ExploreServer:
 
 
 def _query(arguments: dict[str, list[bytes]]) -> str:
-    """The query of an address from its decoded arguments."""
+    """The query of an address from the arguments of a request, without arguments of bokeh."""
     from urllib.parse import urlencode
 
     own = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}
@@ -99,7 +99,7 @@ def _bound(port: int) -> list[socket.socket]:
 
 
 async def serve(state: PageState, stored: dict[str, Any] | None, port: int, is_opened: bool) -> None:
-    """Serves the page until Ctrl-C."""
+    """Serves the page until Ctrl-C; is_opened: whether to open a browser."""
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stopped.set)

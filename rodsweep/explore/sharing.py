@@ -1,4 +1,4 @@
-"""What the page gives away and takes in: its address, a config, Python lines, pictures."""
+"""Export and import of a page: address, config, Python lines, pictures."""
 
 from base64 import b64decode
 from collections.abc import Callable, Sequence
@@ -16,11 +16,11 @@ from .state import PageState
 from .stored import state_of
 
 SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
-"""The browser's address is the state."""
+"""Code of the browser that writes the state into the address."""
 SAVE = 'download(new Blob([yaml.tags[0]], {type: "application/yaml"}), "explore.yaml")'
 COPY = "navigator.clipboard.writeText(source.tags[0])"
 TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
-"""Tasks of the config that is shown; the first is the default."""
+"""Tasks to choose from for the config; the first is the default."""
 FILM = """# the film of the arm:
 # rodsweep run explore.yaml --set limit_cycle.shapes=48
 # rodsweep plot explore.h5 --what animation -o explore.gif
@@ -28,7 +28,7 @@ FILM = """# the film of the arm:
 
 
 class Sharing:
-    """Texts and buttons. loaded: called with the text of a config that the user loads."""
+    """Texts and buttons for sharing. loaded: callback for a config that the user loads, with its text."""
 
     def __init__(self, cards: Sequence[Card], loaded: Callable[[str], None]):
         self._loaded = loaded
@@ -79,7 +79,7 @@ class Sharing:
 
 
 def _picture_buttons(cards: Sequence[Card]) -> list[Select | Row]:
-    """A choice of picture, and a button for each kind of file."""
+    """A menu of pictures, and a button for each file format."""
     widgets = sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
@@ -94,9 +94,9 @@ def _picture_buttons(cards: Sequence[Card]) -> list[Select | Row]:
 
 
 def state_of_text(text: str) -> PageState:
-    """State of the text of a config; InputError, with the command line's sentence, for a bad one."""
+    """The page state for the text of a config; InputError, as on the command line, for an invalid config."""
     where = "the loaded file"
     tree = parse(text, where)
     if not isinstance(tree, dict):
-        raise InputError(f"{where} is no mapping of keys to values; give task and parameters")
+        raise InputError(f"{where} does not consist of keys and values; give task and parameters")
     return state_of(validated(tree), Path(where))

@@ -8,12 +8,13 @@ from .state import PageState
 
 
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
-    """Serves the page until Ctrl-C; source: a result file or a config whose rod is shown first.
+    """Serves the page until Ctrl-C.
 
-    Raises InputError if bokeh is missing, the source is neither, or the port is in use.
+    source: a result file or a config with the first rod to show. is_opened: whether to open a browser. Raises
+    InputError if bokeh is missing, the source is invalid, or the port is in use.
     """
     try:
-        import bokeh  # noqa: F401 - whether it is there
+        import bokeh  # noqa: F401 - only to check that bokeh is installed
     except ImportError:
         raise InputError(
             "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"

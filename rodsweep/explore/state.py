@@ -1,4 +1,4 @@
-"""What the page shows, as text: it can be saved, loaded, and sent as an address."""
+"""The state of the page, as texts of its controls, which can be saved, loaded, and sent as an address."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -26,9 +26,9 @@ LAW_NAMES = {
     "swelling": "neo-Hookean, swelling section",
 }
 ROD = {"F": "50", "k1": "1e4", "k2": "100", "gamma3": "0.01", "gamma1": "1", "taper": "1"}
-"""The rod that is shown first: that of the paper's Fig. 5, which flutters."""
+"""The first rod to show: the rod of the paper's Fig. 5, which flutters."""
 ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "12 Pa s", "pressure": "4 kPa"}
-"""The arm that is shown first: silicone in silicone oil."""
+"""The first arm to show: silicone in silicone oil."""
 TABS = {"rod": ROD, "arm": ARM}
 ACROSS = {"rod": ("k2", "k1", "gamma3", "taper"), "arm": ("length", "radius", "young", "viscosity")}
 """Second parameter of the diagram, beside the load; the first is the default."""
@@ -37,9 +37,9 @@ DEFAULT_F_MAX = "200"
 
 @dataclass(frozen=True, kw_only=True)
 class PageState:
-    """Values of the controls, as the user wrote them.
+    """Values of the controls, in the user's notation.
 
-    tab: "rod" or "arm", which of the two is solved. rod, arm: text by name. law: a key of `LAWS`. across:
+    tab: "rod" or "arm", the tab to solve. rod, arm: texts of each tab by name. law: a key of `LAWS`. across:
     second parameter of the diagram. F_max: largest force of thresholds, branches and diagram.
     """
 
@@ -52,7 +52,7 @@ class PageState:
 
     @property
     def values(self) -> Mapping[str, str]:
-        """Text by name of the tab that is solved."""
+        """Texts of the current tab by name."""
         return self.rod if self.tab == "rod" else self.arm
 
     @property
@@ -62,28 +62,28 @@ class PageState:
 
     @property
     def load(self) -> str:
-        """Name of the load on this tab."""
+        """Name of the load on the current tab."""
         return "F" if self.tab == "rod" else "pressure"
 
     def with_values(self, **changed: str) -> "PageState":
-        """A copy with other values on its tab."""
+        """A copy with changed texts on the current tab."""
         values = {**self.values, **changed}
         return replace(self, rod=values) if self.tab == "rod" else replace(self, arm=values)
 
     def subject(self) -> SoftRod | Arm:
-        """The rod or the arm; InputError, with the command line's sentence, for bad values."""
+        """The rod or the arm; InputError, as on the command line, for invalid values."""
         material: dict[str, Any] = dict(LAWS[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         return SoftRod(**self.parameters(), **material)
 
     def parameters(self) -> dict[str, Any]:
-        """Numbers of the rod's tab by name, without a taper of 1; text that is no number stays text."""
+        """Parameters of the rod's tab by name, without a taper of 1; an invalid number stays a text."""
         found = {name: number(text) for name, text in self.rod.items()}
         return {name: value for name, value in found.items() if name != "taper" or value != 1}
 
     def largest_force(self) -> float:
-        """The number `F_max`; InputError if it is no number above 0."""
+        """`F_max` as a number; InputError unless it is finite and above 0."""
         value = number(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
@@ -92,7 +92,7 @@ class PageState:
         return value
 
     def address(self) -> str:
-        """The query of the page's address, from which `from_address` makes the same state."""
+        """The query of the page's address, which `from_address` reads."""
         keys = {"tab": self.tab, **self.values, "law": self.law, "across": self.second, "F_max": self.F_max}
         return urlencode(keys)
 
@@ -120,7 +120,7 @@ def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
 
 
 def number(text: str) -> Any:
-    """A text as a number, or the text itself, which the refusal then quotes."""
+    """A text as a number, or the text itself for a later error message."""
     try:
         return text if overflows(text.strip()) else float(text)
     except ValueError:
@@ -144,7 +144,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
 
 
 def _choice(key: str, given: str, known: Any) -> str:
-    """One of the known words; InputError otherwise."""
+    """Checks that a word is a known one; InputError otherwise."""
     if given not in known:
         raise InputError(f"{key} = {short(given)} is not allowed; it must be {' or '.join(known)}")
     return given

@@ -1,4 +1,4 @@
-"""The page of a result file or a config: its first rod, and the diagram that a file holds."""
+"""The page for a result file or a config: its first rod, and the diagram stored in a result file."""
 
 import json
 from pathlib import Path
@@ -15,9 +15,9 @@ from .solving.diagrams import Dataset, of_grid, of_phases, of_rows
 from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
 
 RESULTS = (".h5", ".hdf5", ".nc")
-"""Endings of names of result files; all other files are configs."""
+"""Suffixes of result files; all other files are configs."""
 NOT_SHOWN = ("density_difference", "fluid_density", "law", "section")
-"""Quantities of an arm that change no number on the page, or have a control of their own."""
+"""Quantities of an arm that do not affect the page, or that have a control outside the arm's tab."""
 
 
 def opened(path: Path) -> tuple[PageState, dict[str, Any] | None]:
@@ -36,13 +36,16 @@ def opened(path: Path) -> tuple[PageState, dict[str, Any] | None]:
 
 
 def state_of(config: Config, path: Path) -> PageState:
-    """State of a config: each axis at its middle value, and the axis with most values across the load."""
+    """The page state for a config.
+
+    Each axis has its middle value; the axis with most values, except the load, is the diagram's second.
+    """
     if config.parameters.arm is not None:
         return _state_of_arm(config, path)
     material = _law(config, path)
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
-        raise InputError(f"{path}: the points of a list are no single rod; the page needs axes of parameters")
+        raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
     rod = {name: _text(axes[name]) if name in axes else text for name, text in ROD.items()}
     several = [name for name in ACROSS["rod"] if name in axes and len(axes[name]) > 1]
     across = max(several, key=lambda name: len(axes[name]), default="")
@@ -58,7 +61,7 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     left_out = [name for name in given if name not in (*ARM, *NOT_SHOWN)]
     if left_out:
         raise InputError(
-            f"{path}: an arm with {left_out[0]} has no place on the page; it shows {', '.join(ARM)}"
+            f"{path}: the page cannot show an arm with {left_out[0]}; its controls are {', '.join(ARM)}"
         )
     texts = dict(ARM)
     for name in ARM.keys() & given.keys():
@@ -74,9 +77,7 @@ def _law(config: Config, path: Path) -> str:
         return "linear"
     given = material.model_dump(exclude_none=True)
     if "profile" in given:
-        raise InputError(
-            f"{path}: an arm with a profile has no place on the page; it shows uniform arms and cones"
-        )
+        raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
     words = {"law": "neo_hookean", "section": given.get("section", "fixed")}
     return "linear" if given.get("law") != "neo_hookean" else next(k for k, v in LAWS.items() if v == words)
 
@@ -86,7 +87,7 @@ def _text(values: np.ndarray) -> str:
 
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
-    """The diagram over the load and the state's second parameter of a file; None if it holds none."""
+    """The stored diagram of a file over the load and the state's second parameter; None without a diagram."""
     second = state.second
     dims = set(data["status"].dims)
     if state.tab != "rod" or second not in dims or data.sizes[second] < 2:

@@ -1,25 +1,27 @@
 """The Lie algebras of the rigid motions of the plane, se(2), and of space, se(3), as structure constants.
 
-With the components (v1, v2; Omega3) in the plane and (v; Omega), three each, in space
+Components are (v1, v2; Omega3) in the plane and (v; Omega), three each, in space, and
 
-    (ad_E V)_a = sum over (b, c) of s_abc E_b V_c,    (ad*_E Sigma)_c = -sum over (a, b) of s_abc E_b Sigma_a,
+    (ad_E V)_a = sum over (b, c) of s_abc E_b V_c,    (ad*_E Sigma)_c = -sum over (a, b) of s_abc E_b Sigma_a.
 
-of which 4 and 18 terms are not 0, each +1 or -1. All that is nonlinear in the rod is a loop over them; none
-of them leads from a component to itself.
+se(2) has 4 nonzero constants s_abc and se(3) has 18, each +1 or -1, none with a = c. Every nonlinear term of
+the rod is a loop over the nonzero constants.
 """
 
 from typing import NamedTuple
 
 Term = tuple[int, int, int, float]
-"""(a, b, c) and s_abc."""
+"""A nonzero structure constant: (a, b, c, s_abc)."""
 Pattern = tuple[tuple[bool, ...], ...]
+"""A sparsity pattern: [row][column] is True where the entry may be nonzero."""
 
 
 class Algebra(NamedTuple):
-    """Structure constants, of as many components as `components` has.
+    """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
-    forward: whether component c of V occurs in component a of ad_E V, at [a][c]; backward: whether component
-    b of Sigma, by itself or by way of E, does in component c of ad*_E Sigma, at [c][b].
+    components: indices of the components. terms: nonzero structure constants. forward: [a][c] is True if
+    (ad_E V)_a contains V_c. backward: [c][b] is True if (ad*_E Sigma)_c contains Sigma_b or E_b, and
+    therefore depends on Sigma_b.
     """
 
     components: range
@@ -33,12 +35,12 @@ class Algebra(NamedTuple):
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
-        """Two components that are not the same."""
+        """All ordered pairs (a, b) of two different components."""
         return [(a, b) for a in self.components for b in self.components if a != b]
 
 
 def algebra(size: int, terms: list[Term]) -> Algebra:
-    """The algebra with these structure constants."""
+    """The algebra of `size` components whose nonzero structure constants are `terms`."""
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
     forward, backward = (
@@ -48,7 +50,11 @@ def algebra(size: int, terms: list[Term]) -> Algebra:
 
 
 def _cross(out: int, left: int, right: int) -> list[Term]:
-    """The terms of a cross product of the triples of components that begin at `left` and `right`."""
+    """Structure constants of a cross product.
+
+    The factors are the triples of components that begin at `left` (of E) and `right` (of V); the product is
+    added to the triple that begins at `out`.
+    """
     cyclic = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
     positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic]
     return positive + [(out + a, left + c, right + b, -1.0) for a, b, c in cyclic]

@@ -1,11 +1,11 @@
-"""The dispersion relation of Sec. VI: the wave that an endless rod would amplify most.
+"""The dispersion relation of Sec. VI: the most amplified wave of an infinitely long rod.
 
 A wave exp(i kappa u) with K = kappa^2 grows at the root w(K) of
 
     gamma3 c2 w^2 + [(c2 + gamma3) K + g nu] w + K^2 - F g K = 0.
 
-No eigenvalue of the finite rod is claimed to be near; its largest growth rate and the wave number
-tell where to look for eigenvalues and how fine a mesh will be needed.
+The largest growth rate suggests where to search for eigenvalues of the finite rod; the wave number suggests
+the mesh. Neither claims that an eigenvalue of the finite rod is near.
 """
 
 from typing import Any
@@ -16,16 +16,17 @@ from ..arrays import Array
 from .rod import Rod
 
 SAMPLES = 64
+"""Number of samples of K, at equal ratios: 13 % apart, enough for an estimate."""
 LOWEST = 1e-4
-"""K is sampled from LOWEST F g to F g in equal ratios; the answer need not be sharper."""
+"""Smallest sample of K in units of F g, the K above which every wave decays."""
 FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
 """The samples of K in units of F g, (SAMPLES,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
-    """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all decay.
+    """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves decay.
 
-    Not compiled: `check` needs it, and would load numba for nothing else.
+    Not compiled, so that `check` need not load numba.
     """
     F, nu, c2, gamma3 = rod.coefficients
     top = F * rod.g
@@ -37,7 +38,10 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 def local_growth(rod: Rod, u: Array) -> tuple[Array, Array]:
-    """`most_amplified_wave` at points of an arm, both (n,), as if the arm were uniform there."""
+    """Growth rates and wave numbers of the most amplified waves at points u of an arm, both (n,).
+
+    Each point is treated as a uniform rod with the local coefficients.
+    """
     nu, c2, c3, gamma2, gamma3, g = rod.local(u)
     top = np.maximum(rod.F * c3 * g, 0.0)
     K, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
@@ -47,9 +51,9 @@ def local_growth(rod: Rod, u: Array) -> tuple[Array, Array]:
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """(K, growth rates) of the sampled waves of rods with k3 = gamma2 = 1, both (..., SAMPLES); 0 for decay.
+    """(K, growth rates) of the sampled waves, both (..., SAMPLES), for k3 = gamma2 = 1; 0 for decaying waves.
 
-    top: F g, and relaxation: g nu, numbers of one rod, or arrays (n, 1) like the compliance and the drag.
+    top: F g. relaxation: g nu. All arguments are numbers, or arrays (n, 1) for n rods.
     """
     square = c2 * gamma3
     K = top * FRACTIONS

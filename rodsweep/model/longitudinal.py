@@ -1,4 +1,4 @@
-"""The longitudinal modes, decoupled and in closed form (Sec. VI); no mesh is needed for them."""
+"""Longitudinal eigenvalues in closed form; longitudinal and transverse modes are decoupled (Sec. VI)."""
 
 import numpy as np
 

@@ -1,7 +1,7 @@
-"""The table of parameters: all that is known of each, stated once.
+"""The table of parameters: name, unit, range, symbol and meaning of each, stated once.
 
-Axes of a config, headers of point lists, ranges and refusals, dimensions and units in result files, labels of
-figures are made of this table. `rodsweep.config` reads it too, and nothing else of the model.
+Axes of a config, headers of point lists, range checks, dimensions and units in result files, and labels of
+figures come from this table.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -9,50 +9,50 @@ from dataclasses import dataclass, field
 from math import inf, isfinite
 
 STIFFNESSES = ("k1", "k2")
-"""The parameters of which the equations contain the inverse, a compliance."""
+"""Parameters that the equations contain as a compliance, 1/value."""
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """What a value may be, for the program and, as a phrase, for the user; NaN lies in none."""
+    """Allowed values of a parameter, as a predicate and as a phrase for messages. No range contains NaN."""
 
     contains: Callable[[float], bool]
     phrase: str
     bound: Mapping[str, float] = field(default_factory=dict)
-    """The least value, in the words of JSON schemas; none where every finite number may be."""
+    """Bounds by JSON schema keyword, like {"minimum": 0}; empty if every finite number is allowed."""
 
     def first_outside(self, values: Iterable[float]) -> float | None:
-        """The first of the values that may not be; None where all may."""
+        """The first value outside the range; None if the range contains all values."""
         return next((value for value in map(float, values) if not self.contains(value)), None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One parameter of the rod; the nonlinear rod has all of them."""
+    """One parameter of the rod."""
 
     name: str
     symbol: str
-    """As the paper writes it, in TeX."""
+    """Symbol of the paper, in TeX."""
     unit: str
     meaning: str
     remark: str = ""
-    """What follows the meaning in the result file."""
+    """Text that result files add to the meaning."""
     allowed: Range
     linear: bool = True
-    """Whether the transverse linear problem contains it."""
+    """Whether the transverse linear problem contains the parameter."""
     rigid: str = ""
-    """What a rod is called whose value is inf; empty where inf is not allowed."""
+    """Adjective for a rod with the value inf, like "inextensible"; empty if inf is not allowed."""
     optional: bool = False
-    """Whether a sweep has the parameter only where its config names it, and stores it only then."""
+    """Whether sweeps have and store the parameter only if the config names it."""
     default: float | None = None
     """Value for grids that do not name the parameter; None for a parameter that every grid must name."""
     scales: tuple[str, ...] = ()
-    """Stiffnesses or drags that the value multiplies; empty where the parameter is itself a load, a stiffness
-    or a drag. One parameter scales either stiffnesses or drags, so that the equations are affine in its
-    coordinate: the covering of a path needs this."""
+    """Stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A parameter
+    scales either stiffnesses or drags, so that the equations are affine in its coordinate, as the covering of
+    a path requires."""
 
     def __post_init__(self) -> None:
-        """ValueError where the parameter scales stiffnesses and drags."""
+        """Raises ValueError if the parameter scales both stiffnesses and drags."""
         if len({name in STIFFNESSES for name in self.scales}) > 1:
             raise ValueError(
                 f"{self.name} scales {' and '.join(self.scales)}: no coordinate is affine in both"
@@ -60,41 +60,41 @@ class Parameter:
 
     @property
     def by_compliance(self) -> bool:
-        """Whether the equations are affine in 1/value, which may be 0, instead of the value."""
+        """Whether the coordinate is 1/value, which may be 0, instead of the value."""
         return bool(self.rigid or set(self.scales) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
-        """The number in which the equations are affine: 1/value of a stiffness, which is 0 at inf."""
+        """The coordinate of a value: the equations are affine in it. 1/value for a stiffness, 0 at inf."""
         return 1 / value if self.by_compliance else value
 
     def value(self, coordinate: float) -> float:
-        """The value at a coordinate; of a stiffness it is inf at 0."""
+        """The value at a coordinate; inf for the coordinate 0 of a stiffness."""
         if self.by_compliance:
             return 1 / coordinate if coordinate else inf
         return coordinate
 
     @property
     def neutral(self) -> float:
-        """The default, or else the value at the coordinate 0: with it a rod is one if it is with any."""
+        """The default; without a default, the value at coordinate 0, which is valid for every rod."""
         return self.value(0.0) if self.default is None else self.default
 
     @property
     def long_name(self) -> str:
-        """The meaning as the result file states it."""
+        """The meaning and remark, as the attribute `long_name` of result files."""
         return self.meaning + self.remark
 
     def require(self, value: float) -> None:
-        """ValueError where the value is not allowed; F < k1 is for `Rod` to check."""
+        """Raises ValueError for a value outside the range; `Rod` checks F < k1."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
 
 
 SMALLEST_TAPER, LARGEST_TAPER = 0.01, 100.0
-"""Range of the taper. A point, taper 0, has no stiffness at the tip where the force is."""
+"""Range of the taper. Taper 0 is excluded: a pointed tip has no stiffness against the force."""
 
 
 def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """A stiffness, which is inf for a rod that is called `rigid`; its compliance is a finite number."""
+    """A stiffness, which may be inf; `rigid` is the adjective for a rod with infinite stiffness."""
     return Parameter(
         name=name,
         symbol=symbol,
@@ -155,7 +155,7 @@ PARAMETERS = {
         ),
     )
 }
-"""All parameters by name, in the order used everywhere."""
+"""All parameters by name, in the order of configs, files and tables."""
 
 NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
 """Names of the parameters of the nonlinear rod, without optional ones."""
@@ -166,7 +166,7 @@ OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if pa
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
 """(parameter, multiplied stiffness or drag) for every parameter with `scales`."""
 CRUSHING = ("F", "k1")
-"""The parameters that crush the rod where the first reaches the second."""
+"""Force and stiffness: the rod is crushed if the first reaches the second."""
 
 
 def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
-"""The rod: all parameters of the table, and the numbers that the equations contain of them.
+"""The rod: all parameters of the table, and the resulting coefficients of the equations.
 
-`Rod` is the only description of a rod. Equations read its `coefficients` and its `material`, never a
-stiffness or a drag by the name of a parameter: other parameters may multiply it.
+`Rod` is the only description of a rod. Equations read `coefficients` and `material`, never a stiffness or a
+drag by the name of a parameter, because other parameters may multiply the stiffness or drag.
 """
 
 from collections.abc import Mapping
@@ -20,19 +20,19 @@ Decorated = TypeVar("Decorated")
 OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Names of all parameters that the transverse problem may contain."""
 ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
-"""The test of each parameter's range: rods are made often."""
+"""(name, range check) of each parameter, prepared once because sweeps create many rods."""
 
 
 class Crushed(ValueError):
-    """The refusal of a rod whose force is not below the force that crushes it."""
+    """The force is not below the force that crushes the rod."""
 
 
 class NotUniform(ValueError):
-    """The refusal to state constant coefficients of an arm that varies or whose law is not linear."""
+    """Constant coefficients were requested for an arm that varies or whose law is not linear."""
 
 
 class Coefficients(NamedTuple):
-    """All that the transverse operator contains, as compiled functions take it."""
+    """Coefficients of the transverse operator, the argument of compiled functions."""
 
     F: float
     nu: float
@@ -41,14 +41,14 @@ class Coefficients(NamedTuple):
 
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
-    """The coefficients of parameters by name: floats, or arrays for many rods, (n,). Checks no range."""
+    """The coefficients for parameter values by name: floats, or arrays (n,) for n rods. Checks no range."""
     own = scaled(values)
     F, k1 = own["F"], own["k1"]
     return Coefficients(F, _compression(F, k1), 1 / own["k2"], own["gamma3"])
 
 
 def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Loads, stiffnesses and drags by name: each parameter times the factors in the table that scale it."""
+    """Loads, stiffnesses and drags by name: each value times the parameters that scale it in the table."""
     if not SCALINGS:
         return values
     own = dict(values)
@@ -58,7 +58,7 @@ def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _compression(F: Any, k1: Any) -> Any:
-    """nu = 1 - F/k1 without cancellation where F is close to k1; floats or arrays."""
+    """nu = 1 - F/k1 without cancellation for F close to k1; floats or arrays."""
     if isinstance(k1, np.ndarray):
         with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
             return np.where(np.isinf(k1), 1.0, (k1 - F) / k1)
@@ -66,7 +66,7 @@ def _compression(F: Any, k1: Any) -> Any:
 
 
 def with_parameters(cls: type[Decorated]) -> type[Decorated]:
-    """Gives a class all parameters of the table as fields, in its order and with its defaults."""
+    """Class decorator: adds all parameters of the table as fields, in the table's order with its defaults."""
     own = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         n: a for n, a in own.items() if n not in PARAMETERS
@@ -82,9 +82,9 @@ def with_parameters(cls: type[Decorated]) -> type[Decorated]:
 class Rod:
     """A rod under its follower force: one point of parameter space, with every parameter of the table.
 
-    The annotations are those that code asks for by name; the others are fields too. build: constitutive law
-    and profile. Raises ValueError for a parameter outside the range that the table states, Crushed
-    for a force that is not below `crushing_force`.
+    Every parameter is a field; annotations exist only for parameters that code uses by name. build:
+    constitutive law and profile. Raises ValueError for a parameter outside its range, Crushed for a force
+    that is not below `crushing_force`.
     """
 
     F: float
@@ -114,9 +114,9 @@ class Rod:
 
     @property
     def coefficients(self) -> Coefficients:
-        """Coefficients of the transverse operator; NotUniform where they vary or the law is not linear."""
+        """Coefficients of the transverse operator; NotUniform for a varying arm or a nonlinear law."""
         if self._coefficients is None:
-            raise NotUniform(f"{self} is no uniform rod of linear material")
+            raise NotUniform(f"{self} is not a uniform rod of linear material")
         return self._coefficients
 
     def local(self, u: Array) -> LocalCoefficients:
@@ -125,12 +125,12 @@ class Rod:
 
     @property
     def crushing_force(self) -> float:
-        """The force that crushes the arm where it is weakest, in k3/L^2; inf where no force does."""
+        """The force that crushes the weakest section, in k3/L^2; inf if no force crushes it."""
         return self.build.crushing_share(self.taper) * self.stretch_stiffness
 
     @property
     def least_rotational_drag(self) -> float:
-        """The smallest drag on the angular velocity along the arm, in gamma2 L^2."""
+        """Smallest rotational drag along the arm, in gamma2 L^2."""
         if self.standard:
             return self.rotational_drag
         return self.build.least_drag_share(self.taper) * self.rotational_drag
@@ -147,10 +147,10 @@ class Rod:
 
     @property
     def equivalent(self) -> tuple["Rod", float]:
-        """(linear rod, rate): the eigenvalues of a uniform rod of any law are `rate` times those of that rod.
+        """(linear rod, rate): eigenvalues of this uniform rod are `rate` times the linear rod's eigenvalues.
 
-        With K = B(nu) the coefficients (F/K, nu, c2 K, gamma3) are those of a linear rod, whose time runs K
-        times as fast. NotUniform for an arm that varies.
+        With K = B(nu), the linear rod has the coefficients (F/K, nu, c2 K, gamma3), and rate = K. Raises
+        NotUniform for an arm that varies.
         """
         if not self.uniform:
             raise NotUniform(f"{self} is not uniform")
@@ -163,15 +163,15 @@ class Rod:
 
     @property
     def linear(self) -> "Rod":
-        """The rod with the same straight state: parameters that only cycles depend on have their defaults."""
+        """The rod with the same transverse linear problem; parameters of cycles alone have their defaults."""
         return Rod(**{name: self.values[name] for name in OF_TRANSVERSE_PROBLEM}, build=self.build)
 
     def coordinate(self, name: str) -> float:
-        """Coordinate of the rod along a parameter: 1/k of a stiffness k, or the value."""
+        """Coordinate of a parameter of the rod: 1/k for a stiffness k, otherwise the value."""
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
-        """The rod elsewhere along a parameter; ValueError where the model has none."""
+        """The rod with another coordinate of a parameter; ValueError for a coordinate outside the model."""
         return self.changed(**{name: PARAMETERS[name].value(coordinate)})
 
     def changed(self, **values: float) -> "Rod":
@@ -181,7 +181,7 @@ class Rod:
 
     @property
     def stretch_stiffness(self) -> float:
-        """The force in k3/L^2 that would crush the rod; inf for an inextensible one."""
+        """Stretch stiffness at the base, in k3/L^2; inf for an inextensible rod."""
         return float(scaled(self.values)["k1"])
 
     @property
@@ -206,24 +206,25 @@ class Rod:
 
     @property
     def rotational_drag(self) -> float:
-        """Drag on the angular velocity, in gamma2 L^2."""
+        """Rotational drag at the base, in gamma2 L^2."""
         return float(scaled(self.values)["gamma3"])
 
     @property
     def axial_drag(self) -> float:
-        """Drag on the axial velocity, in gamma2."""
+        """Axial drag at the base, in gamma2."""
         return float(scaled(self.values)["gamma1"])
 
     def direction(self, name: str) -> Coefficients:
-        """The derivative of the coefficients by the coordinate of a parameter, the same all along it."""
+        """Derivative of the coefficients, which are affine, with respect to a parameter's coordinate."""
         slopes = self._slopes(name)
-        F, c1 = slopes.get("F", 0.0), slopes.get("k1", 0.0)
+        F = slopes.get("F", 0.0)
+        c1 = slopes.get("k1", 0.0)
         nu = 0.0 - (F * self.c1 + self.F * c1) if F or c1 else 0.0
         return Coefficients(F, nu, slopes.get("k2", 0.0), slopes.get("gamma3", 0.0))
 
     @property
     def material(self) -> Material:
-        """Compliances, drags, force and straight state of the rod that moves in the plane."""
+        """Compliances, drags, force and straight state of the rod, for motion in the plane."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return Material(compliance, drag, self.F, first_component(self.nu, 3))
@@ -233,29 +234,32 @@ class Rod:
         return self.build.sections(self.F, scaled(self.values), u)
 
     def section_changes(self, name: str, u: Array) -> Sections:
-        """Derivatives of the cross-sections by the coordinate of a parameter, at points u, (points,)."""
+        """Derivatives of cross-sections at points u, (points,), with respect to a parameter's coordinate."""
         slopes = {"taper": 1.0} if name == "taper" else self._slopes(name)
         return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
-        """The material of the rod that moves in space; twist stiffness in k3, twist drag in gamma2 L^2."""
-        (c1, c2, bending), (axial, normal, rotational) = self.material.compliance, self.material.drag
+        """Material of the rod, for motion in space; twist stiffness in k3, twist drag in gamma2 L^2."""
+        c1, c2, bending = self.material.compliance
+        axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
         drag = np.array([axial, normal, normal, twist_drag, rotational, rotational])
         return Material(compliance, drag, self.F, first_component(self.nu, 6))
 
     def material_change(self, name: str) -> Material:
-        """The derivative of the material by the coordinate of a parameter."""
-        slopes, (F, nu, c2, gamma3) = self._slopes(name), self.direction(name)
+        """Derivative of the material with respect to a parameter's coordinate."""
+        slopes = self._slopes(name)
+        F, nu, c2, gamma3 = self.direction(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
         return Material(compliance, drag, F, first_component(nu, 3))
 
     def _slopes(self, name: str) -> dict[str, float]:
-        """The derivatives that are not 0 of the force, compliances and drags by a parameter's coordinate.
+        """Nonzero derivatives of force, compliances, drags with respect to a parameter's coordinate, by name.
 
-        Each is a product of coordinates, or of values, of which the parameter is one.
+        Force, compliances and drags are products of coordinates, so the derivative is the product of the
+        other factors.
         """
         others = scaled({**self.values, name: 1.0})
-        each = PARAMETERS[name].scales or (name,)
-        return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in each}
+        changing = PARAMETERS[name].scales or (name,)
+        return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

@@ -1,4 +1,4 @@
-"""Quantities as people write them, "10 cm" or "1.4 Pa s", to SI. The only importer of pint, late."""
+"""Conversion of quantities like "10 cm" or "1.4 Pa s" to SI. The only importer of pint, at first use."""
 
 import math
 import re
@@ -13,25 +13,27 @@ if TYPE_CHECKING:
     from pint import UnitRegistry
 
 Given = float | str
-"""A quantity as it is given: text with its unit, or a number in SI."""
+"""A quantity from the user: text with a unit, or a number in SI."""
 NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
+"""Matches a number and its unit, which may be empty."""
 OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
-"""What units are made of; pint evaluates whatever it is given, and may take for ever."""
+"""Matches a part of a valid unit. Other text must not reach pint, which evaluates it and may never return."""
 TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
+"""Matches the start of a power of a power, which pint would evaluate."""
 LONGEST_UNIT = 40
-"""Characters of a unit."""
+"""Largest number of characters of a unit."""
 COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
-"""Units that users often write with different blanks or capital letters."""
+"""Units to suggest for a text that differs in blanks or capital letters."""
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
-"""A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
+"""Matches a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
-"""The same as a distance, as "20 % above flutter"."""
-KINEMATIC = "is a kinematic viscosity, which is to be multiplied by the density of the fluid"
+"""Matches a load as a distance from the flutter threshold, "20 % above flutter"."""
+KINEMATIC = "is a kinematic viscosity; multiply it by the density of the fluid"
 
 
 @cache
 def registry() -> "UnitRegistry":
-    """The units, read once, at first use."""
+    """pint's table of units, loaded once; EnvironmentIncomplete without pint."""
     try:
         from pint import UnitRegistry
     except ModuleNotFoundError:
@@ -40,7 +42,7 @@ def registry() -> "UnitRegistry":
 
 
 def split(given: str) -> tuple[float, str]:
-    """(number, unit) of a text; (nan, "") where it is none."""
+    """(number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a number."""
     found = NUMBER_AND_UNIT.fullmatch(given)
     if not found:
         return math.nan, ""
@@ -48,7 +50,10 @@ def split(given: str) -> tuple[float, str]:
 
 
 def in_si(name: str, given: Given, unit: str, example: str) -> float:
-    """The quantity `name` in the SI unit `unit`; InputError, beginning with the name, where it is none."""
+    """Value of the quantity `name` in the SI unit `unit`.
+
+    example: a valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity.
+    """
     allowed = f"a number with a unit, as in '{example}'"
     if not isinstance(given, str):
         value = _number(name, given, unit, allowed)
@@ -65,7 +70,7 @@ def in_si(name: str, given: Given, unit: str, example: str) -> float:
 
 
 def _number(name: str, given: Any, unit: str, allowed: str) -> float:
-    """A number in SI, or a quantity of pint's, as the number in `unit`; InputError where it is neither."""
+    """A number in SI, or a pint quantity, as a number in `unit`; InputError for other objects."""
     if hasattr(given, "to_base_units"):
         return _number(name, given.magnitude, unit, allowed) * factor(
             f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
@@ -75,14 +80,18 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
             raise TypeError
         return float(given)
     except (TypeError, ValueError, OverflowError):
-        written = " ".join(str(given).split())
+        shown = " ".join(str(given).split())
         raise InputError(
-            f"{name} = {written:.60} is not one quantity; write {allowed}, or one number in {unit}"
+            f"{name} = {shown:.60} is not one quantity; write {allowed}, or one number in {unit}"
         ) from None
 
 
 def factor(subject: str, written: str, unit: str, allowed: str) -> float:
-    """How many `unit` one `written` is; InputError where they measure different things or it is unknown."""
+    """Conversion factor from the unit `written` to `unit`.
+
+    subject, allowed: quantity and remedy for messages. Raises InputError for an unknown unit or another
+    dimension.
+    """
     if written.startswith(","):
         raise InputError(f"{subject} has a decimal comma; write a point")
     if len(written) > LONGEST_UNIT or OF_A_UNIT.sub("", written) or TOWER.search(written):
@@ -107,7 +116,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
 
 
 def _meant(written: str, unit: str) -> str:
-    """What a unit that does not fit was probably meant to be, as the beginning of a clause; else empty."""
+    """A suggestion "did you mean 'kPa'? " for a misspelt common unit; empty without a suggestion."""
     squeezed = "".join(written.split()).casefold()
     for common in COMMON:
         if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
@@ -116,17 +125,17 @@ def _meant(written: str, unit: str) -> str:
 
 
 def unit_of(given: Given, default: str) -> str:
-    """The unit in which a quantity was written, for answers in the same."""
+    """The unit of a quantity in the user's notation; `default` for a number without a unit."""
     return (split(given)[1] or default) if isinstance(given, str) else default
 
 
 def written_in(value: float, unit: str, si: str) -> float:
-    """A value in the SI unit `si`, in another unit."""
+    """Converts a value from the SI unit `si` to `unit`."""
     return value / factor("", unit, si, "")
 
 
 def share_of_flutter(given: Given) -> float | None:
-    """Load divided by the flutter load, read from a text such as "1.2 of flutter"; None for other texts."""
+    """Load divided by the flutter load, from a text like "1.2 of flutter"; None for other quantities."""
     if not isinstance(given, str):
         return None
     if found := OF_FLUTTER.fullmatch(given):
@@ -137,8 +146,11 @@ def share_of_flutter(given: Given) -> float | None:
 
 
 def compact(value: float, unit: str) -> tuple[float, str]:
-    """(factor, unit): an SI unit with the prefix in which `value` of it is well read, and how many it is."""
+    """(factor, prefixed unit): `value` of the SI unit `unit` is factor * value of a readable prefixed unit.
+
+    compact(0.002, "m") is (1000.0, "mm").
+    """
     if not value or not math.isfinite(value):
         return 1.0, unit
-    compacted = registry().Quantity(value, unit).to_compact()
-    return float(compacted.magnitude) / value, f"{compacted.units:~}"
+    readable = registry().Quantity(value, unit).to_compact()
+    return float(readable.magnitude) / value, f"{readable.units:~}"

@@ -21,7 +21,7 @@ from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 STOPPED = ("no_cycle_found", "list_full")
 """Reasons for an end beyond which a branch goes on."""
-SAME_PLACE = 1e-9
+JOINED_RANGES = 1e-9
 """Largest relative distance between two ranges that are joined."""
 
 Range = tuple[float, float]
@@ -207,7 +207,7 @@ def union(ranges: Iterable[Range]) -> list[Range]:
     """Union of ranges, in increasing order; ranges that touch or overlap are joined."""
     found: list[Range] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
-        if found and low <= found[-1][1] * (1 + SAME_PLACE):
+        if found and low <= found[-1][1] * (1 + JOINED_RANGES):
             found[-1] = found[-1][0], max(high, found[-1][1])
         else:
             found.append((low, high))
@@ -217,4 +217,4 @@ def union(ranges: Iterable[Range]) -> list[Range]:
 def intersection(first: list[Range], second: list[Range]) -> list[Range]:
     """Intersection of two unions of ranges."""
     common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
-    return [(low, high) for low, high in common if high > low * (1 + SAME_PLACE)]
+    return [(low, high) for low, high in common if high > low * (1 + JOINED_RANGES)]

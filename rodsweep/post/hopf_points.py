@@ -17,7 +17,7 @@ from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.lines import ParameterLine
 
-SAME_PLACE = 1e-9
+ON_A_HOPF_POINT = 1e-9
 """Relative distance below which a point of a file lies on a Hopf point; the growth rate is then rounding
 error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
@@ -137,5 +137,5 @@ class StoredChanges:
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:
     """Whether a change lies between two values, or on a value within rounding."""
-    margin = max(point.error, SAME_PLACE * abs(point.position))
+    margin = max(point.error, ON_A_HOPF_POINT * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

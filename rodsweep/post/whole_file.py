@@ -1,4 +1,4 @@
-"""Text files that appear under their name only when they are complete."""
+"""Atomic writing of text files."""
 
 import os
 from collections.abc import Iterator
@@ -9,7 +9,10 @@ from typing import TextIO
 
 @contextmanager
 def written_whole(output: Path) -> Iterator[TextIO]:
-    """A text file to write, first under another name: a kill leaves no half file under the final name."""
+    """Opens a text file for writing under a temporary name, and renames the complete file to `output`.
+
+    A killed process therefore leaves no partial file named `output`.
+    """
     partial = output.with_name(f".{output.name}.partial")
     try:
         with partial.open("w", newline="", encoding="utf-8") as stream:

@@ -20,7 +20,7 @@ METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 """Markers of the methods of a single group."""
 WIDE_RATIO = 1e3
 """Ratio of the times above which only powers of ten have labels."""
-MIN_ERROR = 1e-17
+MIN_DRAWN_ERROR = 1e-17
 """Smallest drawn relative error; an error of exactly zero has no logarithm."""
 PANEL_SIZE = 3.6
 """Width and height of a panel, in inches."""
@@ -52,7 +52,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
                 axes.axhline(target, color="0.75", lw=0.8, zorder=0)
             for method, look in looks.items():
                 own = (cases == title) & (methods == method)
-                axes.plot(1e3 * seconds[own], np.maximum(errors[own], MIN_ERROR), **look)
+                axes.plot(1e3 * seconds[own], np.maximum(errors[own], MIN_DRAWN_ERROR), **look)
             axes.xaxis.set_major_locator(LogLocator(subs=(1,) if wide else (1, 2, 5)))
             axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.xaxis.set_minor_formatter(NullFormatter())

@@ -98,9 +98,7 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
 
 
 def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
-    """Meeting branches at symmetry breakings: {(branch, place of its special point): number of the second
-    branch}.
-    """
+    """Branches that meet at symmetry breakings: {(branch, index of special point): second branch}."""
     numbers = {}
     for number, curve in enumerate(curves, 1):
         ends = ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1))

@@ -44,7 +44,7 @@ class ProvedTask(Task):
 
     @property
     def varies(self) -> bool:
-        """Whether some rod is not uniform, so that its D has no closed form."""
+        """Whether any rod varies along its length, so that D has no closed form."""
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
@@ -84,7 +84,7 @@ class NonlinearTask(ProvedTask):
 
 
 def before_crushed(config: Config) -> str:
-    """Where a search over F ends before its largest force, in words; empty where no force crushes an arm."""
+    """Clause on the crushing force, at which a search over F ends; empty if no force crushes the arm."""
     if config.standard:
         return ", or to just below k1"
     crushed = np.isfinite(config.build.constitutive_law.largest_load)

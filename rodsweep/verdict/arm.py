@@ -16,8 +16,9 @@ from .table import NumberRow, number_rows
 from .validity import Assessment
 
 OVER_DRAG = "In brackets: the range over drag, which is known by factors only."
+"""Sentence below the table of numbers."""
 NUMBERS_BEGIN = 18
-"""Column at which the values begin, right of the names."""
+"""Column of the values, right of the names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +41,7 @@ class ArmReport:
     __repr__ = __str__
 
     def lines(self) -> Iterator[tuple[str, str]]:
-        """Pairs (line of at most 80 columns, style); the style is "warning", "headline" or ""."""
+        """(text wrapped at 80 columns, style); the style is "warning", "headline" or ""."""
         for check in self.warnings:
             yield folded(check.text), "warning"
         for number, sentence in enumerate(self.verdict):

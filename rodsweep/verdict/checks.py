@@ -1,4 +1,4 @@
-"""Checks of the neglected effects for one arm: plain sentences, some with a warning."""
+"""Checks of the effects that the model neglects for one arm: a sentence each, some with a warning."""
 
 from dataclasses import dataclass
 from math import isnan
@@ -25,16 +25,16 @@ USUAL_POISSON = (0.3, 0.5)
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Check of one neglected effect; validity: of the model with this effect."""
+    """Check of one neglected effect, or of an assumption; validity: of the model under this effect."""
 
     validity: Validity
     sentence: str
     of_verdict: bool = False
-    """Whether the effect matters for the verdict, not only for wide beating or the drag range's width."""
+    """Whether the effect can change the verdict, not only wide beating or the width of the range of drag."""
 
     @property
     def doubts_the_verdict(self) -> bool:
-        """Whether the check is printed above the verdict; beyond the limit the verdict itself states it."""
+        """Whether to print the check above the verdict. The verdict states effects beyond the limit."""
         return self.of_verdict and self.validity == Validity.doubtful
 
     @property
@@ -50,7 +50,8 @@ class Check:
 
 def checks_of(assessment: "Assessment") -> list[Check]:
     """All checks of an arm, in the order of the report."""
-    arm, effects = assessment.arm, {effect.name: effect for effect in assessment.at_flutter}
+    arm = assessment.arm
+    effects = {effect.name: effect for effect in assessment.at_flutter}
     return [
         slenderness(arm),
         compression(assessment, effects["compression"]),
@@ -78,7 +79,8 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     """Check of F/k1, the compressive strain of the straight arm where it is weakest."""
     if assessment.arm.law != LINEAR.law:
         return _compression_of_rubber(assessment)
-    says, effects = [], [at_flutter, *assessment.under_load]
+    says = []
+    effects = [at_flutter, *assessment.under_load]
     if assessment.under_load:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
         says.append(f"the load {verb} the arm by {_percent(assessment.under_load[0])}")
@@ -97,8 +99,9 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
 
 
 def _compression_of_rubber(assessment: "Assessment") -> Check:
-    """Compression by a law that covers it: nothing is neglected."""
-    arm, says = assessment.arm, []
+    """Check of the compression of rubber, which its law includes, so no effect is neglected."""
+    arm = assessment.arm
+    says = []
     flutter = assessment.force_at_flutter
     if arm.load is not None:
         says.append(f"the load shortens the arm by {100 * _shortening(arm, arm.F):.2g} %")
@@ -111,7 +114,7 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
 
 
 def _shortening(arm: SlenderArm, F: float) -> float:
-    """Fraction of its length that the weakest section loses under a force in k3/L^2."""
+    """Compressive strain of the weakest section under a force F, in k3/L^2."""
     smallest = min(each.young * each.section.area for each in arm.shape.stations)
     largest = arm.shape.base.young * arm.cross_section.area
     return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
@@ -178,7 +181,8 @@ def weight(effect: Effect | None, arm: SlenderArm) -> Check:
     if effect is None:
         says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
         return Check(Validity.applies, says)
-    share, validity = float(effect.value), _validity(effect)
+    share = float(effect.value)
+    validity = _validity(effect)
     sag = SAG_OF_BUCKLING * share
     level = f"a level arm sags by {sag:.2g} of its length" if sag < LARGEST_SAG else "a level arm hangs down"
     ending = (
@@ -187,7 +191,7 @@ def weight(effect: Effect | None, arm: SlenderArm) -> Check:
         "it bends the arm, which the model leaves out",
     )[validity]
     upright = f"weight less buoyancy is {share:.2g} of what buckles an upright arm"
-    sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is of uniform arms
+    sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
     return Check(validity, f"Weight: {upright}{sags}; {ending}.", of_verdict=True)
 
 

@@ -1,4 +1,4 @@
-"""Thresholds of an arm over its range of drag: flutter, beating frequency, return. Forces in k3/L^2."""
+"""Thresholds of an arm over the range of drag: flutter, frequency, restabilization. Forces in k3/L^2."""
 
 from dataclasses import dataclass, replace
 from math import inf, pi
@@ -14,10 +14,10 @@ from .relative import FARTHEST
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
 """Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
 ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
-"""Largest forces of the search for an arm that varies along its length, in k3/L^2 at its base, tried in turn:
-a search far beyond the first flutter, where many modes are unstable, takes up to half a minute a drag."""
+"""Ends of successive searches for an arm that varies along its length, in k3/L^2 of the base. A search far
+beyond the first flutter, where many modes are unstable, takes up to half a minute for each drag."""
 BEYOND_FLUTTER = 2.0
-"""Least ratio of the end of the search to the first flutter, and to the load, of an arm that varies."""
+"""Smallest ratio of the last search's end to the first flutter and to the load, for an arm that varies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,14 +43,14 @@ class FlutterForces:
         return None if found is None else found.at
 
     def unstable_at(self, F: float) -> bool:
-        """Whether the straight arm is unstable at a force; beyond the searched range, as at its end."""
+        """Whether the straight arm is unstable at F, or at the end of the search for larger F."""
         before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
         return bool(before) and before[-1] != 0
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Range of a quantity over the range of drag; always: whether every drag has a value."""
+    """Smallest and largest value of a quantity over the range of drag; always: whether every drag has one."""
 
     low: float
     high: float
@@ -65,7 +65,7 @@ class FlutterRange:
 
     @property
     def failures(self) -> list[str]:
-        """Messages of the searches that failed, without repetition."""
+        """Messages of failed searches, without repetition."""
         searches = [f.thresholds for f in self.forces]
         return sorted({t.message or t.status.sentence for t in searches if not t.status.succeeded})
 
@@ -94,7 +94,7 @@ def span_of(values: list[float | None]) -> Span | None:
 
 
 def flutter_forces(arm: SlenderArm, drag: Drag, end: float = FARTHEST) -> FlutterForces:
-    """All changes of an arm with one drag, up to the force `end`."""
+    """All changes of stability of an arm with one drag, up to the force `end`."""
     rod = Rod(
         F=0.0,
         k1=arm.k1,
@@ -109,14 +109,14 @@ def flutter_forces(arm: SlenderArm, drag: Drag, end: float = FARTHEST) -> Flutte
 
 @solving
 def flutter_range(arm: SlenderArm) -> FlutterRange:
-    """All changes of an arm over the range of its drag, up to a force that the likeliest drag decides."""
+    """All changes of stability of an arm for each drag; the search with the likeliest drag sets the end."""
     likeliest, *others = arm.drags
     end, first = _first_search(arm, likeliest)
     return FlutterRange((first, *(flutter_forces(arm, drag, end) for drag in others)))
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
-    """(end of the search, all changes up to it): far beyond the first flutter, and beyond the load."""
+    """(end of the search, changes of stability up to the end); the end is beyond first flutter and load."""
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in ENDS_OF_VARIED if arm.shape.varies else (FARTHEST,):
         found = flutter_forces(arm, drag, end)

@@ -1,4 +1,4 @@
-"""Texts in lines of a terminal."""
+"""Wrapping of texts for a terminal."""
 
 import textwrap
 

@@ -1,4 +1,4 @@
-"""The load of an arm in the unit in which the user gave it, and the format of numbers in sentences."""
+"""The load of an arm in the user's unit, and the format of numbers in sentences."""
 
 from math import floor, log10
 
@@ -8,11 +8,11 @@ from ..model.units import compact, split, unit_of, written_in
 from .flutter import Span
 
 FLUTTER_ABOUT = 36.0
-"""Typical F of flutter, in k3/L^2: chooses the prefix of a pressure if the user gave no load."""
+"""Typical F of flutter, in k3/L^2, for the choice of the pressure's prefix if the user gave no load."""
 ROUNDING = 1e-12
-"""Relative rounding error that must not cut a number of three digits to the next lower one."""
+"""Relative tolerance when rounding down, so that a rounding error does not change the third digit."""
 LONGEST_GIVEN = 6
-"""Longest number of a load, in characters, that is repeated as the user wrote it."""
+"""Longest number of a load, in characters, to repeat in the user's notation."""
 
 
 def digits(value: float) -> str:
@@ -44,23 +44,23 @@ class Load:
             unit_of(given, si) if given is not None else compact(FLUTTER_ABOUT * arm.load_scale, si)[1]
         )
         self.given = "" if given is None else _short(given, float(getattr(arm.si, self.name)), si)
-        """Load as the user wrote it; of four digits if longer than LONGEST_GIVEN; empty without load."""
+        """Load in the user's notation, rounded to four digits if longer than LONGEST_GIVEN; may be empty."""
         self.scale = written_in(arm.load_scale, self.unit, si)
         """Load at F = 1, in `unit`."""
 
     def of(self, forces: Span) -> str:
-        """Converts a range of forces, in k3/L^2, to this load's unit."""
+        """Text of a range of forces, given in k3/L^2, in the load's unit."""
         return f"{rounded(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
 
     def at_most(self, F: float) -> str:
-        """Converts a force, in k3/L^2, to this load's unit, rounded down to three digits."""
+        """Text of a force, given in k3/L^2, in the load's unit, rounded down to three digits."""
         value = F * self.scale
         unit = 10.0 ** (floor(log10(value)) - 2)
         return f"{digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
 
 
 def _short(given: object, value: float, si: str) -> str:
-    """A load as the user wrote it, or rounded to four digits if long; value: the load in SI units."""
+    """A load in the user's notation, rounded to four digits if long; value: the load in the SI unit `si`."""
     if not isinstance(given, str):
         return f"{value:.4g} {si}"
     number = given.split()[0]

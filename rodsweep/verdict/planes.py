@@ -17,13 +17,13 @@ A = TypeVar("A", bound=SlenderArm)
 
 @dataclass(frozen=True, slots=True)
 class PlaneOfMotion:
-    """An arm that moves in one plane, and its thresholds."""
+    """An arm moving in one plane, and the thresholds of this motion."""
 
     arm: SlenderArm
     """The arm, with its height in the plane of motion."""
     found: FlutterRange
     name: str = ""
-    """Name of the plane, as it follows the word "in"; empty if all planes are equivalent."""
+    """Name of the plane, to follow the word "in"; empty if all planes are equivalent."""
 
     @property
     def flutter_loads(self) -> list[float]:
@@ -34,14 +34,14 @@ class PlaneOfMotion:
 
 @dataclass(frozen=True, slots=True)
 class Planes:
-    """Planes of an arm. The arm flutters in `first` at the smaller load, with the likeliest drag."""
+    """Planes of motion of an arm. With the likeliest drag, flutter in `first` needs the smaller load."""
 
     first: PlaneOfMotion
     second: PlaneOfMotion | None = None
 
     @property
     def always(self) -> bool:
-        """Whether the arm flutters in `first` at the smaller load with every drag."""
+        """Whether flutter in `first` needs the smaller load with every drag."""
         if self.second is None:
             return True
         loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
@@ -61,19 +61,21 @@ def planes_of(arm: SlenderArm) -> Planes:
 
 
 def with_load(planes: Planes) -> Planes:
-    """The planes, with a load that is given relative to flutter converted to a quantity with a unit.
+    """The planes, after converting a load relative to flutter to a quantity with a unit.
 
     The reference is the first flutter in any plane with the likeliest drag. InputError without flutter.
     """
     first = planes.first
-    share, load = first.arm.share_of_flutter, first.arm.load
+    share = first.arm.share_of_flutter
+    load = first.arm.load
     if share is None or load is None:
         return planes
-    force, scale = first.found.forces[0].force(Kind.hopf), first.arm.load_scale
+    force = first.found.forces[0].force(Kind.hopf)
+    scale = first.arm.load_scale
     if force is None:
         end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
-            f"{load} = '{getattr(first.arm, load)}' is nothing: with the likeliest drag the arm does not "
+            f"{load} = '{getattr(first.arm, load)}' has no value: with the likeliest drag the arm does not "
             f"flutter up to {end}"
         )
     factor, unit = compact(share * force * scale, UNITS[load][0])
@@ -83,7 +85,7 @@ def with_load(planes: Planes) -> Planes:
 
 
 def with_known_load(arm: A) -> A:
-    """The arm with its load as a quantity; solves for flutter if the load is given relative to it."""
+    """The arm with its load as a quantity with a unit; solves for flutter if the load is relative."""
     load = arm.load
     if load is None or arm.share_of_flutter is None:
         return arm

@@ -1,6 +1,6 @@
-"""Reference flutter of a relative load: the smallest in any plane of the arm, with the likeliest drag.
+"""Reference of a load relative to flutter: the smallest flutter load over all planes, with likeliest drag.
 
-This module must not need PETSc: PETSc starts on all ranks together, but rank 0 alone makes the points.
+The module must not need PETSc: rank 0 alone makes the points, but PETSc has to start on all ranks together.
 """
 
 from dataclasses import replace
@@ -20,18 +20,19 @@ from ..solve.changes.unstable_modes import CRUSHING_MARGIN
 
 A = TypeVar("A", bound=SlenderArm)
 PlaneRod = tuple[float, float, float]
-"""(k1, k2, gamma3) of an arm that moves in one of its planes."""
+"""(k1, k2, gamma3) of an arm moving in one plane."""
 FARTHEST = 1000.0
-"""Largest force of the search, in k3/L^2, unless crushed before: 25 times flutter of a filament."""
+"""Largest force of the search, in k3/L^2, 25 times flutter of a filament; less for an arm crushed before."""
 NEAR = 200.0
-"""Largest force of a first search, in k3/L^2, which takes half of the time; few arms flutter beyond."""
-DIGITS = 10
-"""Digits of the reference threshold: more than the data of an arm have, and few enough for equal results on
-all machines. Hence a run resumed on a different machine has the same points."""
+"""Largest force of a first search, in k3/L^2, which takes half of the time. Few arms flutter at larger
+forces."""
+REFERENCE_DIGITS = 10
+"""Digits of the reference threshold: more than the data of an arm, and few enough for equal results on all
+machines. A run resumed on another machine therefore has the same points."""
 
 
 class FlutterUnknown(InputError):
-    """The search for the flutter that a load is relative to fails; says why."""
+    """The search for the reference flutter of a relative load failed; the message states the reason."""
 
 
 def turned(arm: A) -> A:
@@ -40,7 +41,10 @@ def turned(arm: A) -> A:
 
 
 def plane_rods(arm: SlenderArm) -> list[tuple[PlaneRod, float]]:
-    """(rod in a plane with the likeliest drag, its k3/L^2 in units of the arm's) for each plane of an arm."""
+    """(rod with the likeliest drag, unit of force) for each plane of an arm.
+
+    The unit of force is k3/L^2 in the plane, over k3/L^2 of the arm.
+    """
     planes = [(_in_its_plane(arm), 1.0)]
     if not arm.isotropic:
         other = turned(arm)
@@ -55,28 +59,30 @@ def _in_its_plane(arm: SlenderArm) -> PlaneRod:
 
 
 def first_flutter(arm: SlenderArm) -> float:
-    """Smallest flutter force over the planes of an arm, in its k3/L^2; inf without flutter.
+    """Smallest flutter force over the planes of an arm, in k3/L^2 of the arm; inf without flutter.
 
-    Raises FlutterUnknown.
+    Raises FlutterUnknown if the search fails.
     """
     return min(first_hopf_force(*rod) * scale for rod, scale in plane_rods(arm))
 
 
 @cache
 def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
-    """Smallest F at which a pair of modes becomes unstable, to DIGITS digits; inf if none up to FARTHEST.
+    """Smallest F at which a pair of modes becomes unstable, to REFERENCE_DIGITS digits.
 
-    FlutterUnknown if the covering cannot exclude a smaller F, or a number overflows.
+    inf without flutter up to FARTHEST. Raises FlutterUnknown if the covering cannot exclude a smaller F, or
+    for overflow.
     """
     path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
     try:
         for end in (NEAR, FARTHEST):
             first = _first_up_to(path, min(end, k1 * (1 - CRUSHING_MARGIN)))
             if first < inf:
-                return float(f"{first:.{DIGITS}g}")
+                return float(f"{first:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         why = str(error) or type(error).__name__
-        raise FlutterUnknown(f"the search for the flutter that a load is relative to fails: {why}") from error
+        sentence = f"the search for the flutter threshold of a relative load fails: {why}"
+        raise FlutterUnknown(sentence) from error
     return inf
 
 
@@ -84,11 +90,11 @@ def _first_up_to(path: Path, end: float) -> float:
     """Smallest F, at most `end`, at which a pair of modes becomes unstable; inf for none."""
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
-        raise FlutterUnknown("the flutter that a load is relative to has no bound, so it is not found")
+        raise FlutterUnknown("the flutter threshold of a relative load is not found: no bound applies")
     zeros, left, _ = cover(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
     if any(min(box.p_from, box.p_to) < first for box in left):
-        raise FlutterUnknown("the flutter that a load is relative to is not decided")
+        raise FlutterUnknown("the flutter threshold of a relative load is not decided")
     return first
 
 

@@ -1,4 +1,4 @@
-"""Sentences for arms outside the model: the violated limit, by how much, and the remedy."""
+"""Sentences for arms outside the model: violated limit, excess, and remedy."""
 
 from collections.abc import Iterable
 from math import isnan
@@ -11,11 +11,11 @@ from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
 LEAST_EXCESS = 1.1
-"""Ratio of value and limit below which two digits could read 1.0; four are printed."""
+"""Ratio of value to limit below which four digits are printed, because two digits could read 1.0."""
 
 
 def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
-    """Headline on the effect furthest beyond its limit, and a sentence on each further kind of effect."""
+    """Headline on the effect furthest beyond its limit, then a sentence on each further kind of effect."""
     first, *others = _one_of_a_kind(assessment.those(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
@@ -50,7 +50,7 @@ def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
-    """Change of arm, fluid or load that brings an effect to its limit, rounded to the safe side."""
+    """Clause with a change of arm, fluid or load that lowers an effect to its limit."""
     share = float(1 / effect.excess)
     if kind_of(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
@@ -66,9 +66,10 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
 
 
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
-    """Required increase of the viscosity, or required decrease of the thickness."""
+    """Clause with the required increase of viscosity, or the required decrease of thickness."""
     si = UNITS["viscosity"][0]
-    unit, factor = unit_of(arm.viscosity, si), viscosity_factor(assessment.at_flutter)
+    unit = unit_of(arm.viscosity, si)
+    factor = viscosity_factor(assessment.at_flutter)
     viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
     says = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
     thickness = thickness_factor(arm)

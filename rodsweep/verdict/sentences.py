@@ -1,7 +1,7 @@
-"""Verdict on an arm in plain sentences: flutter, frequency of beating, return to the straight state.
+"""Verdict on an arm in sentences: flutter, frequency of beating, return to the straight state.
 
-The first sentence is the headline. Where the model does not apply, the headline says so, and the further
-sentences are conditional: they hold if the neglected effects were absent.
+The first sentence is the headline. If the model does not apply, the headline says so, and further sentences
+are conditional on the absence of the neglected effects.
 """
 
 from ..model.arm.neglected import Validity
@@ -30,9 +30,12 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
-    """Sentences where the model applies or is doubtful."""
-    arm, found, load = plane.arm, plane.found, Load(plane.arm)
-    flutter, back = found.force(Kind.hopf), found.force(Kind.restabilization)
+    """Sentences for an arm inside the model, or in its doubtful range."""
+    arm = plane.arm
+    found = plane.found
+    load = Load(plane.arm)
+    flutter = found.force(Kind.hopf)
+    back = found.force(Kind.restabilization)
     if flutter is None:
         stays = f": it stays straight at {load.given}" if load.given else ""
         return [f"The arm does not flutter {_until(plane, load)}{stays}."]
@@ -60,7 +63,9 @@ def _where(plane: PlaneOfMotion, flutter: Span) -> str:
 
 def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
     """Sentence that compares the load with the range of the flutter load."""
-    F, found, where = plane.arm.F, plane.found, _where(plane, flutter)
+    F = plane.arm.F
+    found = plane.found
+    where = _where(plane, flutter)
     if F <= 0:
         return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
     if flutter.low > F:
@@ -86,8 +91,11 @@ def _above(F: float, flutter: Span) -> str:
 
 def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """Conditional sentences for an arm outside the model: flutter without the neglected effects."""
-    arm, found, load = plane.arm, plane.found, Load(plane.arm)
-    flutter, rate = found.force(Kind.hopf), found.frequency(Kind.hopf)
+    arm = plane.arm
+    found = plane.found
+    load = Load(plane.arm)
+    flutter = found.force(Kind.hopf)
+    rate = found.frequency(Kind.hopf)
     if flutter is None:
         return [f"Without {neglected} it would not flutter {_until(plane, load)}."]
     beats = "" if rate is None else f", where it would begin to beat at {rounded(rate.low, rate.high)} Hz"

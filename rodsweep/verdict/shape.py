@@ -1,4 +1,4 @@
-"""An arm that varies along its length or is of rubber, in words: shape, law, and what is not computed."""
+"""An arm that varies along its length or is of rubber, in words: shape, law, and missing results."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
@@ -8,18 +8,18 @@ from ..model.units import compact
 
 
 def shape_words(arm: SlenderArm) -> str:
-    """A cone, segments or a uniform arm, and its material: "a cone of rubber"."""
+    """Shape and material of an arm, like "a cone of rubber"."""
     shape = "an arm" if not arm.shape.varies else "a cone" if arm.taper != 1 else "an arm of segments"
     return shape if arm.law == LINEAR.law else f"{shape} of rubber"
 
 
 def no_cycles(arm: SlenderArm) -> list[str]:
-    """Sentence on what no task computes; empty where cycles are known."""
+    """A sentence if no task can compute cycles of the arm; otherwise empty."""
     if arm.law == LINEAR.law or arm.build.continuous:
         return []
     return [
-        f"How far and how fast {shape_words(arm)} beats beyond flutter is not computed: cycles of segments "
-        "are known for linear material only."
+        f"Amplitude and frequency of {shape_words(arm)} beyond flutter are not computed: cycles of segments "
+        "need linear material."
     ]
 
 

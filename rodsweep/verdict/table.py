@@ -1,4 +1,4 @@
-"""Rows of text with the numbers of an arm, their formulas and sources."""
+"""Rows of text with numbers of an arm, formulas and sources."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from .planes import PlaneOfMotion
 from .shape import law_words, station_words
 
 LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
-"""Stress of neo-Hookean rubber in the units of a report."""
+"""Formula of the stress of neo-Hookean rubber, for a report."""
 
 
 class NumberRow(NamedTuple):
@@ -34,7 +34,7 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
 
 
 def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Sides of a rectangle, with h in the plane of motion; empty for other sections."""
+    """Row with the sides of a rectangle, h in the plane of motion; empty for other sections."""
     if not plane.name:
         return []
     sides = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
@@ -42,7 +42,7 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
 
 def shape_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows of the taper or of every segment, and of a law of rubber; empty for a uniform linear arm."""
+    """Rows with the taper or every segment, and the law of rubber; empty for a uniform linear arm."""
     rows = []
     if arm.taper != 1:
         formula = "tip radius/radius; all other rows are of the base"
@@ -60,7 +60,7 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensional(arm: SlenderArm) -> list[NumberRow]:
-    """Rows of section, stiffness and load."""
+    """Rows with section, stiffness and load, in SI units."""
     section = arm.cross_section
     kappa = section.shear_coefficient(arm.poisson)
     return [
@@ -74,7 +74,7 @@ def dimensional(arm: SlenderArm) -> list[NumberRow]:
 
 
 def load_row(arm: SlenderArm) -> list[NumberRow]:
-    """Row of the tip force; empty without load."""
+    """Row with the tip force; empty without load."""
     if arm.load is None:
         return []
     of_tip = " of the tip" if arm.shape.varies else ""
@@ -83,12 +83,12 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
 
 
 def over(arm: SlenderArm, values: list[float], unit: str = "") -> str:
-    """Value for the likeliest drag, then in brackets the range over drag."""
+    """Text of the value for the likeliest drag, with the range over drag in brackets."""
     return f"{values[0]:.3g} ({rounded(min(values), max(values))}){unit}"
 
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows of drag coefficients and the time scale, each with its range."""
+    """Rows with drag coefficients and the time scale, each with the range over drag."""
     drags = arm.drags
     translation = "Cox 1970; Gray & Hancock 1955, Lighthill 1976"
     return [
@@ -117,7 +117,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensionless(arm: SlenderArm) -> list[NumberRow]:
-    """Rows of the dimensionless parameters, as in the keys of a config."""
+    """Rows with the dimensionless parameters, named like the keys of a config."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [

@@ -21,13 +21,14 @@ from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces
 
 DIGITS_OF_FACTORS = 2
-"""Digits of the factors in remedies, which are rounded to the safe side."""
+"""Digits of the factors in remedies, which are rounded conservatively."""
 THINNING_STEPS = 20
 """Maximum iterations for a thickness; ten suffice if inertia of arm and fluid are comparable."""
 AIM = 0.995
 """Target of the iteration for a thickness: required viscosity over viscosity of the fluid."""
 CLOSE_TO_LIMIT = 0.99
-"""Required viscosity over that of the fluid above which (up to 1) the thickness has two correct digits."""
+"""The iteration for a thickness stops between this ratio of required to actual viscosity and 1, where the
+thickness has two correct digits."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Assessment:
 
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
-        """Effects at the first flutter with the likeliest drag, at the rate that the smallest drag gives."""
+        """Effects at the first flutter with the likeliest drag, at the fastest rate over all drags."""
         return effects_at_flutter(self.arm, self.found)
 
     @cached_property
@@ -49,7 +50,7 @@ class Assessment:
 
     @property
     def force_at_flutter(self) -> float | None:
-        """Force of the first flutter, with the likeliest drag that has one, in k3/L^2."""
+        """Force of `first_flutter_of`, in k3/L^2; None without flutter."""
         first = first_flutter_of(self.found)
         return None if first is None else first.at
 
@@ -69,13 +70,13 @@ class Assessment:
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
     def those(self, validity: Validity) -> list[Effect]:
-        """Effects of a given validity by decreasing excess, without effects that concern cycles only."""
+        """Effects with the given validity by decreasing excess, without effects on cycles only."""
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(counted, key=lambda effect: -float(effect.excess))
 
 
 def first_flutter_of(found: FlutterRange) -> Crossing | None:
-    """The first flutter, with the likeliest drag that has one; None without flutter."""
+    """The first flutter with the likeliest of all drags that have flutter; None if no drag has flutter."""
     return next((each for c in found.forces if (each := c.first(Kind.hopf))), None)
 
 
@@ -94,11 +95,11 @@ def viscosity_factor(effects: tuple[Effect, ...]) -> float:
 
 @solving
 def thickness_factor(arm: SlenderArm) -> float:
-    """Largest factor on all sides of the section at which inertia is within its limit in the same fluid.
+    """Largest factor on all sides of the section for which inertia in the same fluid is within its limit.
 
-    Solves for the thresholds of thinner arms. NaN if the arm does not flutter, or if the model does not apply
-    to the thinner arm for a further reason, such as weight. NaN also for an arm that varies along its length,
-    of which every solve takes a second.
+    Solves for thresholds of thinner arms. NaN if the arm does not flutter, or if the model does not apply to
+    the thinner arm for a further reason, such as weight. NaN also for an arm that varies along its length,
+    because each solve would take a second.
     """
     if arm.shape.varies:
         return nan
@@ -117,7 +118,7 @@ def thickness_factor(arm: SlenderArm) -> float:
 
 
 def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
-    """The arm without load, all sides of its section multiplied by a factor."""
+    """The arm without load, with all sides of the section multiplied by `factor`."""
     given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
     section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
     return SlenderArm(**(given | section), poisson=arm.poisson, law=arm.law, section=arm.section)

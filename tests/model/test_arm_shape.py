@@ -214,9 +214,9 @@ SEGMENTS = {"radius": None, "length": None}
         ),
         ({"length": None}, "length is missing; write it as in '10 cm'"),
         ({"young": None}, "young is missing; write it as in '100 kPa'"),
-        ({"law": ["linear"]}, "law = \\['linear'\\] is no word"),
-        ({"section": 3}, "section = 3 is no word"),
-        ({"law": "hooke"}, "law = hooke is none of the known laws; it must be linear or neo_hookean"),
+        ({"law": ["linear"]}, "law = \\['linear'\\] is not a text"),
+        ({"section": 3}, "section = 3 is not a text"),
+        ({"law": "hooke"}, "law = hooke is not known; it must be linear or neo_hookean"),
         ({"section": "swelling"}, "section = swelling is not known for law = linear; it must be fixed"),
         (
             {"law": "neo_hookean", "section": "swelling", "poisson": 0.49},
@@ -231,8 +231,8 @@ SEGMENTS = {"radius": None, "length": None}
             {"radius": None, "tip_radius": "3 mm", "segments": ["10 cm: radius 5 mm"]},
             "tip_radius = '3 mm' and segments are both given",
         ),
-        (SEGMENTS | {"segments": []}, "segments = \\[\\] is no list of segments"),
-        (SEGMENTS | {"segments": 3}, "segments = 3 is no list of segments"),
+        (SEGMENTS | {"segments": []}, "segments = \\[\\] is not a list"),
+        (SEGMENTS | {"segments": 3}, "segments = 3 is not a list"),
         (SEGMENTS | {"segments": ["9 cm: radius 6 mm"] * 101}, "segments: there are 101; .* at most 100"),
         (
             SEGMENTS | {"segments": ["9 cm radius 6 mm"]},
@@ -248,7 +248,7 @@ SEGMENTS = {"radius": None, "length": None}
             SEGMENTS | {"segments": ["9 cm: radius 6 mm, radius 5 mm"]},
             "segments, number 1: radius is given twice",
         ),
-        (SEGMENTS | {"segments": ["9 cm: radius 6 mm, "]}, "segments, number 1: '' is no quantity"),
+        (SEGMENTS | {"segments": ["9 cm: radius 6 mm, "]}, "segments, number 1: '' is not a quantity"),
         (
             SEGMENTS | {"segments": ["9 cm: radius 0 mm"]},
             "segments, number 1: radius = '0 mm' is not above",

@@ -158,7 +158,7 @@ def test_a_load_relative_to_flutter_is_read_as_people_write_it(given, share):
         ({"viscosity": "30 kPa"}, "viscosity = '30 kPa' is not measured in Pa.s; write"),
         (
             {"viscosity": "30 cSt"},
-            ".* is a kinematic viscosity, which is to be multiplied by",
+            ".* is a kinematic viscosity; multiply it by",
         ),
         ({"pressure": "100 % below flutter"}, "pressure = '100 % below flutter' has the unit"),
         ({"length": ""}, "length = '' is not a number with a unit"),

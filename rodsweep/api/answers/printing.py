@@ -6,11 +6,11 @@ from html import escape
 
 from ...post.tables.columns import Column
 
-DIGITS = 8
+PRINTED_DIGITS = 8
 """Significant digits printed; the stored values keep full precision."""
-ERROR_DIGITS = 2
+PRINTED_ERROR_DIGITS = 2
 """Significant digits of error estimates."""
-WIDTH = 110
+REPR_WIDTH = 110
 """Maximum width, in characters, of a list printed with one item per line. A wider list gets one line per
 variable, with the items side by side, if this is narrower."""
 YES_NO = ("no", "yes")
@@ -81,14 +81,14 @@ def _number_lines(columns: Sequence[Column]) -> list[Line]:
 def _narrowest(columns: Sequence[Column]) -> list[Line]:
     """Lines of a list; empty for an empty list.
 
-    One item per line if this fits `WIDTH` or is the narrower layout, otherwise one variable per line.
+    One item per line if this fits `REPR_WIDTH` or is the narrower layout, otherwise one variable per line.
     """
     if not len(columns[0].values):
         return []
     there = [column for column in columns if not column.absent.all()]
     upright = _upright(there)
     turned = [(c.name, *_texts(c), _unit(c)) for c in there]
-    return upright if _width(upright) <= max(WIDTH, _width(turned)) else turned
+    return upright if _width(upright) <= max(REPR_WIDTH, _width(turned)) else turned
 
 
 def _upright(columns: Sequence[Column]) -> list[Line]:
@@ -103,7 +103,7 @@ def _texts(column: Column) -> list[str]:
         return [YES_NO[int(value)] for value in column.values]
     if column.words or column.values.dtype.kind != "f":
         return column.text()
-    digits = ERROR_DIGITS if column.is_estimate else DIGITS
+    digits = PRINTED_ERROR_DIGITS if column.is_estimate else PRINTED_DIGITS
     texts = (f"{value + 0.0:.{digits}g}" for value in column.values)
     return ["" if none else text for text, none in zip(texts, column.absent, strict=True)]
 

@@ -1,4 +1,4 @@
-"""`rod.portrait()`: everything about one rod in one picture and one paragraph."""
+"""`rod.portrait()`: all results for one rod in one picture and one paragraph."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -21,7 +21,7 @@ from ...solve.orbit.measures import CyclePath
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ...solve.orbit.orbit_mesh import mesh_of
-from ..study import Contender, Entry, Measurement, grouped, middle, table, tournament
+from ..study import Contender, JudgedCase, Measurement, grouped, middle, table, tournament
 from .tracking import EXACT, asked, orbit_of
 
 RODS = (
@@ -152,7 +152,7 @@ def ways(accuracy: float) -> list[Contender]:
 def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
     """All starts of all points, timed in turn."""
     rods = [swept(point, ACCURACY) for point in points]
-    entries = [Entry(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
+    entries = [JudgedCase(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
     return tournament(entries, ways(ACCURACY), rounds)
 
 

@@ -168,8 +168,8 @@ class ArmSection(Strict):
             )
         if self.load and not forced:
             raise ValueError(
-                f"parameters.arm.{self.load} is given but the task finds the load itself; remove it and set "
-                "its option F_max, or stop"
+                f"parameters.arm.{self.load} is given, but the task solves for the load; remove it, and set "
+                "the end of the search by the option F_max (in branch: stop)"
             )
         if forced and not (self.load or "F" in beside):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")

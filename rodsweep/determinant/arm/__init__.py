@@ -1,1 +1,1 @@
-"""D(w) of arms that are not uniform, from the propagators of their elements."""
+"""D(w) of arms that are not uniform or not of linear material, from propagators of short elements."""

@@ -1,13 +1,13 @@
-"""D of arms along a path of one parameter: eigenvalues with their slopes, and double eigenvalues.
+"""D of arms along a path of one parameter: eigenvalues with slopes, and double eigenvalues.
 
-D depends on the parameter through all coefficients along the arm, so that derivatives by the parameter are
-central differences between the determinants of neighbouring arms. They need not be accurate: they steer
-Newton's method and predict, while D itself decides.
+D depends on the parameter through all coefficients along the arm, so derivatives with respect to the
+parameter are differences between determinants of neighbouring arms. The differences need not be accurate:
+Newton's method and predictors use them, and the residual D decides convergence.
 """
 
 import math
 
-from ..newton import FAILED, JACOBIAN_STEP, LAST_NEWTON_STEP, MOST_NEWTON_STEPS, Zero
+from ..newton import FAILED, JACOBIAN_STEP, LAST_NEWTON_STEP, MAX_NEWTON_STEPS, Zero
 from ..parameter_path import Path
 from ..value import ROUND_OFF, Value
 from .determinant import ArmDeterminant, arm_determinant
@@ -15,13 +15,13 @@ from .roots import refined, root_error, second_derivative
 
 CENTRAL = ((1, 0.5), (-1, -0.5))
 FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
-"""(place, weight) of differences of second order, in units of their step."""
+"""Central and forward difference of second order: (offset in steps, weight times step) of each value."""
 MAX_SHORTENINGS = 20
-"""Largest number of times that a step is divided by 4: to 1e-12 of its first length."""
+"""Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
 
 
 class ArmAlongPath:
-    """D of the arms of one path; p: the path variable."""
+    """D of the arms of one path, as a function of the path variable p."""
 
     def __init__(self, path: Path):
         self.path = path
@@ -31,7 +31,7 @@ class ArmAlongPath:
         return arm_determinant(self.path.at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """(eigenvalue near the guess, its slope by p, its error) at p."""
+        """(w, dw/dp, error of w) of the eigenvalue w near the guess, at p."""
         here = self.determinant(p)
         w = refined(guess, here)
         value = here.value(w)
@@ -39,28 +39,34 @@ class ArmAlongPath:
 
     def derivative(self, w: complex, p: float, S: float) -> complex:
         """dD/dp exp(-S) at w and p."""
-        places, h = self._stencil(p, math.inf)
+        stencil, h = self._stencil(p, math.inf)
         slope = 0j
-        for place, weight in places:
-            there = self.determinant(p + place * h).value(w)
-            slope += weight * there.D * math.exp(there.S - S)
+        for offset, weight in stencil:
+            neighbour = self.determinant(p + offset * h).value(w)
+            slope += weight * neighbour.D * math.exp(neighbour.S - S)
         return slope / h
 
     def double(self, x: float, p: float, reach: float) -> Zero:
-        """The double real eigenvalue near (x, p): D = D_w = 0, p at most `reach` away."""
-        start, first, last = x, p, math.inf
-        for _ in range(2 * MOST_NEWTON_STEPS):
+        """The double real eigenvalue D = D_w = 0 near (x, p).
+
+        FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+        """
+        start = x
+        first = p
+        last = math.inf
+        for _ in range(2 * MAX_NEWTON_STEPS):
             here = self.determinant(p)
             value = here.value(complex(x, 0.0))
             D, D_w, S, noise = value.D.real, value.D_w.real, value.S, value.noise
             D_ww = second_derivative(complex(x, 0.0), S, here).real
-            places, k = self._stencil(p, JACOBIAN_STEP * reach)
-            beside = [(weight, self._real(x, p + place * k, S)) for place, weight in places]
-            D_p, D_wp = (sum(weight * value[i] for weight, value in beside) / k for i in range(2))
+            stencil, k = self._stencil(p, JACOBIAN_STEP * reach)
+            neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
+            D_p, D_wp = (sum(weight * value[i] for weight, value in neighbours) / k for i in range(2))
             cross = D_w * D_wp - D_p * D_ww
             if cross == 0 or not math.isfinite(cross):
                 return FAILED
-            in_x, in_p = (D_p * D_w - D_wp * D) / cross, (D_ww * D - D_w * D_w) / cross
+            in_x = (D_p * D_w - D_wp * D) / cross
+            in_p = (D_ww * D - D_w * D_w) / cross
             blur = noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
             e_x = (blur * abs(D_wp) + noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
@@ -81,10 +87,10 @@ class ArmAlongPath:
         return value.D.real * scale, value.D_w.real * scale
 
     def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
-        """((place, weight) of each arm in a difference by p, its step), the step at most `largest`.
+        """(stencil, step) of a difference with respect to p, with a step of at most `largest`.
 
-        The step is shortened until both neighbours exist: none is crushed, and no compliance or drag is
-        negative. Where a compliance or a drag is 0 the difference is one-sided.
+        The step is shortened until both neighbours are valid arms: not crushed, no negative compliance or
+        drag. The stencil is one-sided at a compliance or a drag of 0.
         """
         step = min(JACOBIAN_STEP * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
@@ -96,7 +102,7 @@ class ArmAlongPath:
         return CENTRAL, step
 
     def _exists(self, p: float) -> bool:
-        """Whether the model has an arm at p."""
+        """Whether the arm at p is valid."""
         try:
             self.path.at(p)
         except ValueError:

@@ -1,18 +1,20 @@
-"""How many transverse eigenvalues of an arm lie right of a vertical line, without mesh or shift.
+"""Number of an arm's transverse eigenvalues right of a vertical line, without mesh or shift.
 
-The number is the change of arg D along the upper half of a box that contains them, over pi, as in
-`rodsweep.determinant.certificate.winding_number`. Between two nodes the phase is that of the tangents
-log D(w) + L (v - w), L = D'/D, at both, which meet between them, if each is off by less than pi/2 there.
+The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
+by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
+tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
+the tangents meet.
 
-Outside the hull of the spectrum this is proved from D'/D alone. D is entire of order 1/2, so that D = prod
-(1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
+Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that
+D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
 
     Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
     |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
 
-Inside, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimate with the largest |f| on a circle
-bounds its change. That maximum is taken from `CIRCLE` points, with a factor for what lies between them: here
-the count is an estimate, as are the rounding errors of D and the error of its elements.
+Inside the hull, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimate with the maximum of |f| on a
+circle bounds the change of f. The maximum is estimated from `CIRCLE` points and a safety factor. Inside the
+hull the count is therefore an estimate; the rounding errors of D and the errors of its elements are estimates
+everywhere.
 """
 
 import cmath
@@ -22,35 +24,37 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Complex
-from ..certificate.winding_number import LEAST_HEIGHT, WIDTH_ADDED, WIDTH_FACTOR, Count
+from ..certificate.winding_number import LEAST_HEIGHT, NOT_AN_INTEGER, WIDTH_ADDED, WIDTH_FACTOR, Count
 from ..value import Value
 from .determinant import ArmDeterminant
 from .hull import Hull, clearance
 
 LARGEST_TURN = 1.5
-"""Error of the phase of a tangent, in radians, up to which it is used: two of them are below pi."""
+"""Largest allowed error of a tangent's phase, in radians. The errors of two tangents then sum to less than
+pi."""
 CIRCLE = 8
 """Points of a circle about a node inside the hull."""
 BETWEEN_POINTS = 1.5
-"""Factor on the largest of these points."""
+"""Safety factor on the maximum of |f| over the points of a circle, for larger values between the points."""
 CLEARANCE = 0.9
-"""Share of |D| up to which f may change."""
-ROUNDING_OF_D = 100.0
-"""Rounding error of D in units of its noise that a node must exceed."""
+"""Largest allowed change of f, in units of |D|."""
+ROUNDING_OF_ARM_D = 100.0
+"""Bound of the rounding error of D, in units of its noise; a node needs a larger |D|."""
 RADII = (3.0, 1.5, 0.75)
-"""Radii of circles that are tried, in units of the length over which D changes."""
+"""Radii of circles to try, in units of the length over which D changes."""
 STEEPEST = 1.0
-"""Largest |L| times the unit of these radii: close to a zero of D the circle is as small as its distance."""
-SMALLEST_REACH = 1e-12
-"""Reach in units of |w| below which the line is taken to run through a zero of D."""
+"""Largest |L| times the unit of `RADII`, so that circles shrink with the distance to a zero of D."""
+SMALLEST_ARM_REACH = 1e-12
+"""Reach in units of |w| below which the line counts as running through a zero of D."""
 MAX_NODES = 5000
+"""Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
 STRIDE = 1.9
-"""Distance of the next node that is tried, in units of the reach of this one."""
+"""First trial distance to the next node, in units of the reach of the present node."""
 UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.arange(CIRCLE) + 0.5) / CIRCLE)
 
 
 class PhaseNode(NamedTuple):
-    """A point w: D exp(-S) there, L = D'/D, and how far the phase is known from them."""
+    """A point w with D exp(-S), L = D'/D, and the distance `reach` within which the tangent is valid."""
 
     w: complex
     D: complex
@@ -59,7 +63,7 @@ class PhaseNode(NamedTuple):
 
 
 class PhaseLost(ArithmeticError):
-    """The refusal to state a change of phase; nodes: how many were used."""
+    """The change of phase could not be determined; nodes: number of nodes used."""
 
     def __init__(self, nodes: int):
         super().__init__("an eigenvalue lies too close to the line, or the box is too large")
@@ -67,9 +71,9 @@ class PhaseLost(ArithmeticError):
 
 
 def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Count:
-    """The number of transverse eigenvalues with Re w > line, for a line <= 0 or above.
+    """The number of transverse eigenvalues with Re w > line, for any real line.
 
-    Raises nothing: what cannot be told is a Count without a number.
+    Raises no error: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
@@ -78,7 +82,8 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
         return Count(0, 0)
     corner = complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
     top = complex(line, corner.imag)
-    nodes, total = 0, 0.0
+    nodes = 0
+    total = 0.0
     try:
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, determinant, hull)
@@ -89,19 +94,21 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
     except FloatingPointError as unresolved:
         return Count(None, nodes, str(unresolved))
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > 1e-3:
+    if abs(total / math.pi - number) > NOT_AN_INTEGER:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number, nodes)
 
 
 def phase_change(start: complex, end: complex, determinant: ArmDeterminant, hull: Hull) -> tuple[float, int]:
-    """(change of arg D along the segment, nodes used); `PhaseLost` where it cannot be told."""
+    """(change of arg D along the segment, nodes used); raises `PhaseLost` if the nodes do not connect."""
     length = abs(end - start)
     direction = (end - start) / length
-    t, total, nodes = 0.0, 0.0, 1
+    t = 0.0
+    total = 0.0
+    nodes = 1
     here = node_at(start, determinant, hull)
     while t < length:
-        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MAX_NODES:
+        if not here.reach > SMALLEST_ARM_REACH * abs(here.w) or nodes > MAX_NODES:
             raise PhaseLost(nodes)
         ahead = min(STRIDE * here.reach, length - t)
         while True:
@@ -111,7 +118,7 @@ def phase_change(start: complex, end: complex, determinant: ArmDeterminant, hull
             nodes += 1
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
-            # The next node does not reach back: it is placed where this one reaches on its own.
+            # The reaches leave a gap: place the next node within the reach of the present node.
             ahead = 0.99 * here.reach if ahead > here.reach else ahead / 2
         total += _turn(here, there)
         t = length if there.w == end else t + ahead
@@ -120,7 +127,7 @@ def phase_change(start: complex, end: complex, determinant: ArmDeterminant, hull
 
 
 def _turn(here: PhaseNode, there: PhaseNode) -> float:
-    """The change of phase between two nodes whose reaches meet."""
+    """The change of arg D between two nodes whose reaches overlap."""
     step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
     expected = (here.L * step * share + there.L * step * (1 - share)).imag
@@ -128,9 +135,9 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
 
 
 def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> PhaseNode:
-    """The node about w."""
+    """The node at w; its reach is 0 if rounding errors hide D."""
     value = determinant.value(w)
-    if not abs(value.D) > ROUNDING_OF_D * value.noise:
+    if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
         return PhaseNode(w, value.D, 0j, 0.0)
     L = value.D_w / value.D
     distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
@@ -144,9 +151,9 @@ def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> PhaseNode:
 
 
 def _reach_inside(w: complex, value: Value, L: complex, determinant: ArmDeterminant) -> float:
-    """The reach of a node from circles about it."""
+    """The reach of a node at w inside the hull, from the largest |f| on circles about w."""
     length = min(determinant.length(w), STEEPEST / max(abs(L), 1e-300))
-    room = CLEARANCE - ROUNDING_OF_D * value.noise / abs(value.D)
+    room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
     best = 0.0
     for factor in RADII:
         rho = factor * length
@@ -162,7 +169,7 @@ def _reach_inside(w: complex, value: Value, L: complex, determinant: ArmDetermin
 def _largest_on_circle(
     w: complex, rho: float, value: Value, L: complex, determinant: ArmDeterminant
 ) -> float:
-    """The largest |f/f(w)| of the points of a circle; inf where it overflows."""
+    """The largest |f/f(w)| over `CIRCLE` points of the circle of radius rho about w; inf for overflow."""
     size = -math.inf
     for step in (rho * UNIT_CIRCLE).tolist():
         there = determinant.value(w + step)

@@ -1,8 +1,9 @@
-"""D(w) of one arm at any w: elements that suit the size of w, made when they are first needed.
+"""D(w) of one arm at any w, from elements whose length depends on |w|.
 
-The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements.
-They are so short that the fastest local exponential grows by exp(`LONGEST`) at most and that the Gauss
-points resolve the coefficients; a break of the profile is always an end of an element.
+The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements,
+computed at first use. Elements are so short that the fastest local exponential grows at most by
+exp(`LARGEST_EXPONENT`) and that the Gauss points resolve the coefficients; every break of the profile is an
+end of an element.
 """
 
 import cmath
@@ -20,25 +21,27 @@ from ..value import Value
 from .propagators import STAGES, element_propagators, gauss_method, tail_of
 from .value import chain_value
 
-LONGEST = 2.4
-"""Largest |q| h of an element: twelve stages integrate exp(2.4) to 1e-17."""
-TO_THE_TIP = 0.5
+LARGEST_EXPONENT = 2.4
+"""Largest |q| h of an element of length h: twelve stages integrate exp(2.4) to 1e-17."""
+LENGTH_OVER_APEX_DISTANCE = 0.5
 """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
 RESOLVED = 1e-9
-"""Tail of the coefficients' Legendre series, relative, above which an element is halved. The error of a Gauss
+"""Relative tail of the coefficients' Legendre series above which an element is halved. The error of a Gauss
 method is about the square of the tail."""
 MAX_HALVINGS = 12
+"""Maximum halvings of an element, down to 1/4096 of its first length."""
 SAMPLES = 33
-"""Points between two breaks at which the local exponents are looked up."""
+"""Points between two breaks at which the local exponents are evaluated."""
 MIN_LEVEL = 2
-"""The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
+"""The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
 MAX_ELEMENTS = 4000
-KEPT = 16
-"""Arms whose propagators are kept."""
+"""Maximum elements of an arm; cones with tapers from 0.1 to 1 need 4 to 60 for |w| up to 1e6."""
+MAX_CACHED_ARMS = 16
+"""Number of arms whose propagators stay in memory."""
 
 
 class ArmDeterminant:
-    """D(w) of one arm; raises FloatingPointError where no `MAX_ELEMENTS` elements resolve it."""
+    """D(w) of one arm. Methods raise FloatingPointError if `MAX_ELEMENTS` elements do not resolve the arm."""
 
     def __init__(self, rod: Rod):
         self.rod = rod
@@ -56,7 +59,7 @@ class ArmDeterminant:
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
-        """The number of elements that D takes at |w| = size."""
+        """The number of elements for D at |w| = size."""
         return len(self._level(size)[1])
 
     def wave_number(self, w: complex) -> float:
@@ -64,11 +67,11 @@ class ArmDeterminant:
         return mean_waves(w, self.rod.F, self._sampled, self._weights)[0]
 
     def length(self, w: complex) -> float:
-        """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
+        """Change of w that changes an exponent of D, integrated along the arm, by about one."""
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._weights)[1], 1e-300)
 
     def _level(self, size: float) -> tuple[float, Array]:
-        """(W, propagators) for |w| = size."""
+        """(W, propagators) of the level for |w| = size; propagators: (elements, terms, 4, 4)."""
         level = MIN_LEVEL
         if size > 4.0**MIN_LEVEL:
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)
@@ -93,11 +96,14 @@ class ArmDeterminant:
         raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
 
     def _edges(self, W: float) -> Array:
-        """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
-        density = bound_of_waves(W, self.rod.F, self._local) / LONGEST
+        """Ends of elements for |w| <= W, (elements + 1,).
+
+        The local exponents and the taper require a density of elements; each element has an equal share.
+        """
+        density = bound_of_waves(W, self.rod.F, self._local) / LARGEST_EXPONENT
         if self.rod.taper != 1:
             apex = 1 / (1 - self.rod.taper)
-            density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - self._points)))
+            density = np.maximum(density, 1 / (LENGTH_OVER_APEX_DISTANCE * np.abs(apex - self._points)))
         edges = [np.zeros(1)]
         breaks = self.rod.build.breaks
         shares = np.split(density, len(breaks) - 1)
@@ -111,7 +117,7 @@ class ArmDeterminant:
 
 
 def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
-    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that the arm is at each point."""
+    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that equal the arm at each point."""
     return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
 
 
@@ -126,17 +132,22 @@ def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
 def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[float, float]:
     """(mean |q| of both pairs of exponents, mean of the larger |dq/dw|) along an arm.
 
-    local: the `LocalCoefficients` at points, (6, points); weights: of these points, (points,).
+    local: the `LocalCoefficients` at points, (6, points). weights: quadrature weights, (points,).
     """
-    number, rate = 0.0, 0.0
+    number = 0.0
+    rate = 0.0
     for i in range(len(weights)):
         nu, c2, c3, gamma2, gamma3, g = local[:, i]
-        v, T, X = w * gamma2 * c3, c2 / c3 + gamma3 / gamma2, c2 / c3 * gamma3 / gamma2
+        v = w * gamma2 * c3
+        T = c2 / c3 + gamma3 / gamma2
+        X = c2 / c3 * gamma3 / gamma2
         P = cmath.sqrt(v * (g * nu + X * v))
-        M, size = T * v - F * c3 * g, abs(P)
-        first, second = math.sqrt(abs(M + 2 * P)), math.sqrt(abs(M - 2 * P))
+        M = T * v - F * c3 * g
+        size = abs(P)
+        first = math.sqrt(abs(M + 2 * P))
+        second = math.sqrt(abs(M - 2 * P))
         towards = P.conjugate() / size if size > 0 else 1 + 0j
-        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
+        # D is even in P, so for small P the rate is limited: the branch point of P does not affect D.
         turn = (g * nu + 2 * X * v) * towards / max(size, 1.0, first, second)
         fast = max(abs(T + turn) / max(1.0, first), abs(T - turn) / max(1.0, second)) / 2
         number += weights[i] * (first + second) / 2
@@ -144,7 +155,7 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
     return number, rate
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=MAX_CACHED_ARMS)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
-    """D of the arm, kept for the next question about it."""
+    """D of the arm `rod`, cached."""
     return ArmDeterminant(rod)

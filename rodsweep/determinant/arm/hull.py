@@ -9,16 +9,15 @@ The last three terms are at most a n N^2, where a is the largest norm of the mat
 
     [[alpha'/(alpha sqrt(gamma2 c2)), F sqrt(alpha c3/gamma2)], [(g - alpha nu)/sqrt(gamma3 alpha c2), 0]]
 
-along the arm. Where gamma3 = 0 the term with theta is bounded by theta(0) = 0 instead: it is at most
-c n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
+along the arm. For gamma3 = 0 the clamp, theta(0) = 0, bounds the term with theta by c n^2 N^2 with
+4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both bounds give, for some n >= 0,
 
     Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
 
-a convex region bounded by a parabola. Of several alpha the one with the smallest region is taken. With alpha
-= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
-`rodsweep.determinant.certificate.box`.
+a convex region bounded by a parabola. The smallest region over several alpha is chosen. For a uniform rod,
+alpha = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) gives the region of `rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are looked up at points between the breaks, with `MARGIN` for what lies between them.
+Extremes along the arm are evaluated at points between the breaks, with the safety factor `HULL_MARGIN`.
 """
 
 from collections.abc import Iterator
@@ -33,24 +32,24 @@ from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 
-POINTS = 25
-"""Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
-MARGIN = 1.05
-"""Factor on a, for extremes between the points and for rounding."""
+CHEBYSHEV_POINTS = 25
+"""Chebyshev points of each smooth piece, for evaluating coefficients and differentiating alpha."""
+HULL_MARGIN = 1.05
+"""Safety factor on a and c, for extremes between the points and for rounding."""
 INSIDE = 1e-9
-"""Distance of the first and last point from the ends of a piece, in units of its length."""
-LARGEST_SHARE = 0.9
-"""Largest c: the region grows beyond use where c approaches 1."""
+"""Distance of the first and last point from the ends of a piece, in units of the piece's length."""
+LARGEST_C = 0.9
+"""Largest useful c: the region grows without bound as c approaches 1."""
 MIDDLES = (0.0, 0.5, 1.0)
-"""Factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha that are tried."""
+"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
 WEIGHTS = 41
-"""Constant weights alpha that are tried, between the smallest and the largest g/nu."""
+"""Number of constant weights alpha to try, between the smallest and the largest g/nu."""
 DIRECTIONS = 48
-"""Normals of the region that are tried for the distance of a point."""
+"""Number of normals of the region to try for the distance of a point."""
 
 
 class Hull(NamedTuple):
-    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf where none is known."""
+    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf if no bound is known."""
 
     a: float
     c: float
@@ -65,19 +64,20 @@ class Hull(NamedTuple):
 
 
 UNKNOWN = Hull(inf, 0.0)
-"""The region where no bound applies."""
+"""The whole plane, when no bound applies."""
 
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """(distance of w, Im w >= 0, from the hull, unit normal towards w); at most 0 for w inside.
+    """(distance, normal): lower bound of the distance of w, Im w >= 0, from the hull; unit normal towards w.
 
-    The distance is a lower bound, and the normal n has <n, w - v> >= distance for every v in the hull.
+    The distance is at most 0 for w inside. <normal, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
-    best, normal = -inf, 1 + 0j
+    best = -inf
+    normal = 1 + 0j
     for k in range(DIRECTIONS):
-        # Close to the imaginary axis the support function grows without bound.
+        # The support function grows without bound as the normal approaches the imaginary axis.
         T = (k / (DIRECTIONS - k)) ** 2
         if not c * T < b:
             break
@@ -90,34 +90,34 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest of the regions that contain the spectrum of the arm; `UNKNOWN` where none is found."""
+    """The smallest known region that contains the spectrum of the arm; `UNKNOWN` without a bound."""
     pieces = _pieces(rod)
     candidates = [*_constant(rod.F, pieces), *_following(rod, pieces), *_by_clamp(rod.F, pieces)]
     best = min(candidates, key=lambda hull: hull.a**2 / (1 - hull.c), default=UNKNOWN)
-    return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
+    return Hull(HULL_MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
 
 
 class Piece(NamedTuple):
-    """Coefficients at the Chebyshev points of a smooth piece, increasing u; u has the shape (POINTS,)."""
+    """Coefficients at the Chebyshev points of a smooth piece, increasing u, (CHEBYSHEV_POINTS,)."""
 
     u: Array
     local: LocalCoefficients
 
 
 def _pieces(rod: Rod) -> list[Piece]:
-    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    x = -np.cos(np.pi * np.arange(CHEBYSHEV_POINTS) / (CHEBYSHEV_POINTS - 1)) * (1 - 2 * INSIDE)
     breaks = rod.build.breaks
     grids = [a + (b - a) * (x + 1) / 2 for a, b in zip(breaks[:-1], breaks[1:], strict=True)]
     return [Piece(u, rod.local(u)) for u in grids]
 
 
 def _joined(pieces: list[Piece]) -> LocalCoefficients:
-    """The coefficients of all pieces, one behind another."""
+    """The coefficients of all pieces, concatenated."""
     return LocalCoefficients(*(np.concatenate(rows) for rows in zip(*(p.local for p in pieces), strict=True)))
 
 
 def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
-    """The regions by constant alpha; none where gamma3 = 0 lets an arm that shears rotate freely."""
+    """The regions for constant alpha; no region if an arm with shear has gamma3 = 0 somewhere."""
     nu, c2, c3, gamma2, gamma3, g = _joined(pieces)
     push = F**2 * float((c3 / gamma2).max())
     if not c2.any():  # then g = nu
@@ -126,14 +126,14 @@ def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
     if not gamma3.all():
         return
     ratio = np.abs(g / nu)
-    some = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
-    alphas = np.append(some, 1.0)
+    between = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
+    alphas = np.append(between, 1.0)
     turns = ((g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)).max(axis=1)
     yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
 
 
 def _following(rod: Rod, pieces: list[Piece]) -> Iterator[Hull]:
-    """The regions by an alpha that follows g/nu, which must be above 0 and without jumps."""
+    """The regions for alpha = g/(nu + ...); no region unless g > 0 and alpha has no jumps."""
     nu, c2, _, _, _, g = _joined(pieces)
     if not (g > 0).all() or not (c2 > 0).all() or not rod.build.continuous:
         return
@@ -142,7 +142,7 @@ def _following(rod: Rod, pieces: list[Piece]) -> Iterator[Hull]:
 
 
 def _norm(F: float, piece: Piece, factor: float) -> float:
-    """The largest norm of the matrix along a piece."""
+    """The largest norm of the matrix along a piece, with `factor` of `MIDDLES` in alpha."""
     nu, c2, c3, gamma2, gamma3, g = piece.local
     level = factor * abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
     alpha = g / (nu + level)
@@ -151,31 +151,33 @@ def _norm(F: float, piece: Piece, factor: float) -> float:
     B = F * np.sqrt(alpha * c3 / gamma2)
     e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
     C = np.where(e == 0, 0.0, e / np.sqrt(np.where(e == 0, 1.0, gamma3 * alpha * c2)))
-    total, product = A**2 + B**2 + C**2, B * C
+    total = A**2 + B**2 + C**2
+    product = B * C
     largest = (total + np.sqrt(np.maximum(total**2 - 4 * product**2, 0.0))) / 2
     return sqrt(float(largest.max()))
 
 
 @cache
 def _chebyshev() -> tuple[Array, Array]:
-    """(derivative, integral from -1) of the interpolant through the points in [-1, 1], as matrices."""
-    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, POINTS - 1))
+    """Matrices (derivative, integral from -1) of the interpolant through the points in [-1, 1]."""
+    x = -np.cos(np.pi * np.arange(CHEBYSHEV_POINTS) / (CHEBYSHEV_POINTS - 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, CHEBYSHEV_POINTS - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
-    derivative = np.polynomial.chebyshev.chebvander(x, POINTS - 2) @ slopes
-    return derivative, np.polynomial.chebyshev.chebvander(x, POINTS) @ integrals
+    derivative = np.polynomial.chebyshev.chebvander(x, CHEBYSHEV_POINTS - 2) @ slopes
+    return derivative, np.polynomial.chebyshev.chebvander(x, CHEBYSHEV_POINTS) @ integrals
 
 
 def _by_clamp(F: float, pieces: list[Piece]) -> Iterator[Hull]:
-    """The region by alpha = 1 and theta(0) = 0, which needs no rotational drag."""
-    below, integral = 0.0, 0.0  # of c3, and of what bounds the term with theta
+    """The region for alpha = 1 and theta(0) = 0, without rotational drag; no region if c is too large."""
+    below = 0.0  # int_0^u c3 du at the start of the piece
+    integral = 0.0  # 4 c^2/F^2: for alpha = 1, g - alpha nu = F c2
     for u, (_, c2, c3, _, _, _) in pieces:
         along = _chebyshev()[1] * (u[-1] - u[0]) / 2
         turned = below + along @ c3
         integral += float(along[-1] @ (c2 * turned))
         below = float(turned[-1])
-    c = MARGIN * abs(F) * sqrt(max(integral, 0.0)) / 2
+    c = HULL_MARGIN * abs(F) * sqrt(max(integral, 0.0)) / 2
     local = _joined(pieces)
-    if c < LARGEST_SHARE:
+    if c < LARGEST_C:
         yield Hull(abs(F) * sqrt(float((local.c3 / local.gamma2).max())), c)

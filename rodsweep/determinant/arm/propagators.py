@@ -5,10 +5,10 @@ is built)
 
     y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
 
-Over one element X(b) = Phi(w) X(a), with Phi entire in w. Its Taylor polynomial in w comes from collocation
-at the Gauss points of the element. Coefficients are sampled at these points alone, so that any profile and
-law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a linear system gives (s, m), then
-quadrature gives theta and y.
+Over one element X(b) = Phi(w) X(a), with Phi entire in w. The Taylor polynomial of Phi in w comes from
+collocation at the Gauss points of the element. Coefficients are sampled at the Gauss points alone, so every
+profile and law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a linear system gives
+(s, m), then quadrature gives theta and y.
 """
 
 from functools import cache
@@ -20,19 +20,20 @@ from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 
 STAGES = 12
-"""Gauss points of an element. Ten leave 1e-17 of exp(2.4); two more cover what the coefficients vary."""
+"""Gauss points of an element. Ten integrate exp(2.4) to 1e-17; two more allow for varying coefficients."""
 MAX_TERMS = 24
+"""Maximum number of terms of a propagator in w/W."""
 NEGLIGIBLE = 1e-18
-"""Most terms in w/W, and the size of a term, relative to the first one, behind which none is needed."""
-TINY = 1e-300
-"""Divisor in place of 0."""
+"""Size of a term, relative to the first term, at which the polynomial is truncated."""
+SMALLEST_DIVISOR = 1e-300
+"""Lower bound of divisors, against division by zero."""
 
 
 @cache
 def gauss_method(stages: int) -> tuple[Array, Array, Array]:
     """(points, integrals from 0 to each point, weights) on [0, 1], shapes (s,), (s, s), (s,)."""
     x, weights = np.polynomial.legendre.leggauss(stages)
-    # The Legendre coefficients of a function's interpolant, integrated exactly.
+    # Integrals of the interpolant are exact integrals of its Legendre series.
     vandermonde = np.polynomial.legendre.legvander(x, stages - 1)
     to_series = vandermonde.T * weights * (np.arange(stages)[:, None] + 0.5)
     integrals = np.empty((stages, stages))
@@ -45,7 +46,8 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: float) -> Array:
     """The coefficients of Phi in powers of w/W, shape (elements, terms, 4, 4).
 
-    local: at the Gauss points, each (elements, stages). lengths: of the elements, in L, (elements,).
+    local: coefficients at the Gauss points, each (elements, stages). lengths: lengths of the elements, in L,
+    (elements,).
     """
     method = gauss_method(local.nu.shape[1])[1:]
     terms = np.zeros((len(lengths), MAX_TERMS, 4, 4))
@@ -58,10 +60,10 @@ def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: f
 def _fill_terms(
     load: tuple[float, float], coefficients: Array, lengths: Array, method: tuple[Array, Array], terms: Array
 ) -> int:
-    """Fills the terms of all elements, (elements, MAX_TERMS, 4, 4); returns how many are needed at most.
+    """Fills the terms of all elements, (elements, MAX_TERMS, 4, 4); returns the largest number of terms.
 
-    load: (F, W). coefficients: in the order of `LocalCoefficients`, (elements, 6, stages). method: integrals
-    and weights of `gauss_method`.
+    load: (F, W). coefficients: in the order of `LocalCoefficients`, (elements, 6, stages). lengths:
+    (elements,). method: integrals and weights of `gauss_method`.
     """
     most = 1
     for e in range(len(lengths)):
@@ -73,17 +75,24 @@ def _fill_terms(
 def _fill_element(
     load: tuple[float, float], local: Array, h: float, method: tuple[Array, Array], terms: Array
 ) -> int:
-    """Fills the terms of one element, (MAX_TERMS, 4, 4); returns how many are needed."""
+    """Fills the terms of one element of length h, (MAX_TERMS, 4, 4); returns the number of terms.
+
+    load: (F, W). local: coefficients at the Gauss points, (6, stages). method: integrals and weights.
+    """
     F, W = load
     Q, weights = method
     nu, c2, c3, gamma2, gamma3, g = local[0], local[1], local[2], local[3], local[4], local[5]
     inverse = _inverse_of_moments(F, local, h, Q)
     stages = len(weights)
-    y, theta, largest = np.zeros((stages, 4)), np.zeros((stages, 4)), 0.0
+    y = np.zeros((stages, 4))
+    theta = np.zeros((stages, 4))
+    largest = 0.0
     for n in range(terms.shape[0]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
-        loads, moments = _scaled(W * gamma2, y), _scaled(W * gamma3, theta)
-        push, turn = _integrated(Q, h, loads, 2, start), _integrated(Q, h, moments, 3, start)
+        loads = _scaled(W * gamma2, y)
+        moments = _scaled(W * gamma3, theta)
+        push = _integrated(Q, h, loads, 2, start)
+        turn = _integrated(Q, h, moments, 3, start)
         m = _product(inverse, turn - _integrated(Q, h, _scaled(g, push), 0, 0.0))
         slopes = _scaled(c3, m)
         s = push + _integrated(Q, h, F * slopes, 0, 0.0)
@@ -108,7 +117,10 @@ def _fill_element(
 
 @compiled
 def _inverse_of_moments(F: float, local: Array, h: float, Q: Array) -> Array:
-    """The inverse of 1 + h Q g h Q F c3, which gives m with s eliminated, (stages, stages)."""
+    """The inverse of 1 + h Q g h Q F c3, the matrix of the equation for m without s, (stages, stages).
+
+    local: coefficients at the Gauss points, (6, stages). Q: integrals of `gauss_method`, (stages, stages).
+    """
     c3, g = local[2], local[5]
     stages = len(Q)
     system = np.zeros((stages, stages))
@@ -125,7 +137,7 @@ def _inverse_of_moments(F: float, local: Array, h: float, Q: Array) -> Array:
 
 @compiled
 def _scaled(factors: Array, values: Array) -> Array:
-    """Values, (stages, 4), times a factor at each stage, (stages,)."""
+    """Each row of values, (stages, 4), times a factor, (stages,)."""
     out = np.empty_like(values)
     for i in range(len(factors)):
         for column in range(4):
@@ -135,7 +147,7 @@ def _scaled(factors: Array, values: Array) -> Array:
 
 @compiled
 def _product(A: Array, values: Array) -> Array:
-    """A values, shapes (stages, stages) and (stages, 4)."""
+    """The matrix product of A, (stages, stages), and values, (stages, 4)."""
     out = np.zeros_like(values)
     for i in range(len(A)):
         for k in range(len(A)):
@@ -146,7 +158,10 @@ def _product(A: Array, values: Array) -> Array:
 
 @compiled
 def _integrated(Q: Array, h: float, values: Array, column: int, start: float) -> Array:
-    """The integrals of values, (stages, 4), to each stage, plus a start value in one column."""
+    """Integrals of values, (stages, 4), from the start of the element to each stage.
+
+    start: initial value of the component `column`.
+    """
     out = _product(Q, h * values)
     out[:, column] += start
     return out
@@ -154,7 +169,7 @@ def _integrated(Q: Array, h: float, values: Array, column: int, start: float) ->
 
 @compiled
 def _invert(A: Array, inverse: Array) -> None:
-    """Fills `inverse` with that of A, both (n, n), by elimination with pivoting; A is overwritten."""
+    """Fills `inverse` with the inverse of A, both (n, n), by elimination with pivoting; overwrites A."""
     n = len(A)
     inverse[:] = 0.0
     for i in range(n):
@@ -181,7 +196,7 @@ def _invert(A: Array, inverse: Array) -> None:
 
 @cache
 def _last_terms(stages: int) -> Array:
-    """Matrix from values at the Gauss points to the last two Legendre coefficients, (stages, 2)."""
+    """Matrix from values at the Gauss points to the two highest Legendre coefficients, (stages, 2)."""
     x, weights = np.polynomial.legendre.leggauss(stages)
     last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
     terms: Array = weights[:, None] * last
@@ -189,8 +204,11 @@ def _last_terms(stages: int) -> Array:
 
 
 def tail_of(local: LocalCoefficients) -> Array:
-    """The last two coefficients of the Legendre series of the coefficients, relative, (elements,)."""
+    """Truncation estimate: the two highest Legendre coefficients of nu, c2, c3, gamma2, gamma3, (elements,).
+
+    Each is relative to the largest value in the element; the largest of all counts.
+    """
     values = np.array(local[:5])
-    size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
+    size = np.maximum(np.abs(values).max(axis=-1), SMALLEST_DIVISOR)  # a compliance or a drag may be 0
     largest: Array = (np.abs(values @ _last_terms(values.shape[-1])).max(axis=-1) / size).max(axis=0)
     return largest

@@ -1,6 +1,6 @@
-"""Eigenvalues of a mesh refined to roots of D, for arms that are not uniform.
+"""Refinement of a mesh's eigenvalues to roots of D, for arms without a closed form of D.
 
-The rules are those of `rodsweep.determinant.roots`, with D from propagators in place of the closed form.
+The algorithm is that of `rodsweep.determinant.roots`, with D from propagators.
 """
 
 import cmath
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ..newton import MOST_REFINEMENTS, REAL_BELOW
+from ..newton import MAX_REFINEMENTS, REAL_BELOW
 from ..roots import (
     A_ROOT,
     BLURRED,
@@ -29,7 +29,7 @@ Mask = NDArray[np.bool_]
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
-    """D'' exp(-S) at w by a difference of D'; real where w is."""
+    """D'' exp(-S) at w, by a central difference of D'; real for real w."""
     h = SECOND_STEP * abs(w)
     after, before = determinant.value(w + h), determinant.value(w - h)
     second = (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
@@ -37,7 +37,7 @@ def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> comp
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
-    """How far from w a root of D lies, in 1/tau2, next to a double root too."""
+    """Estimated distance from w to the nearest root of D, in 1/tau2, valid near a double root too."""
     D, D_w, S, noise = determinant.value(w)
     e = max(abs(D), TYPICAL_NOISE * noise)
     error = e / max(abs(D_w), 1e-300)
@@ -50,13 +50,13 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
 
 
 def refined(w: complex, determinant: ArmDeterminant) -> complex:
-    """The eigenvalue near w by Newton's method, until rounding keeps the steps from getting smaller.
+    """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess stays real.
+    A real guess gives a real eigenvalue.
     """
     real = w.imag == 0
     last = math.inf
-    for _ in range(MOST_REFINEMENTS):
+    for _ in range(MAX_REFINEMENTS):
         value = determinant.value(w)
         if value.D_w == 0:
             break
@@ -73,7 +73,10 @@ def refined(w: complex, determinant: ArmDeterminant) -> complex:
 
 
 def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
-    """The two roots near `middle` by the quadratic that D is about it; near a real one two real or a pair."""
+    """The two roots of the Taylor polynomial of D of second order about `middle`.
+
+    For a real `middle` both roots are real or complex conjugates.
+    """
     D, D_w, S, _ = determinant.value(middle)
     if middle.imag == 0:
         D, D_w = complex(D.real, 0.0), complex(D_w.real, 0.0)
@@ -85,10 +88,10 @@ def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, co
 
 
 def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float) -> Roots:
-    """Eigenvalues of a mesh that approximate roots of D, refined to these roots.
+    """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
 
-    raw: eigenvalues of a mesh, complex, shape (n,). most_waves: |q| that the mesh can stand for. Eigenvalues
-    that are infinite but for rounding lie outside the hull or beyond the mesh, or have no root near.
+    raw: eigenvalues of a mesh, complex, shape (n,). most_waves: largest |q| that the mesh resolves. Rounding
+    makes infinite eigenvalues finite; these lie outside the hull, beyond the mesh or far from every root.
     """
     first = np.where(np.abs(raw.imag) <= REAL_BELOW * np.abs(raw), raw.real + 0j, raw)
     first[~np.isfinite(raw)] = np.inf
@@ -115,14 +118,14 @@ def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: flo
     error = np.array([root_error(value, determinant) for value in w.tolist()])
     wave = np.array([determinant.wave_number(value) for value in w.tolist()])
     displacement = np.abs(w - start[kept]) / np.maximum(np.abs(w), length[kept])
-    _tell_apart(w, error, determinant)
+    _raise_errors_of_equal_roots(w, error, determinant)
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen[kept], w, error, displacement, wave, axis, int(ahead))
 
 
 def _inside(w: complex, hull: Hull) -> bool:
-    """Whether the box at the depth of w contains it."""
+    """Whether w lies in the box of all eigenvalues with Re >= Re w."""
     if not cmath.isfinite(w):
         return False
     real, imag = hull.box(max(-w.real, 0.0))
@@ -130,8 +133,12 @@ def _inside(w: complex, hull: Hull) -> bool:
 
 
 def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Mask]:
-    """(w, mask): pairs closer than their errors, marked by the mask, are moved to the two roots near them."""
-    w, moved = w.copy(), np.zeros(len(w), dtype=bool)
+    """(w, mask) after moving each pair of eigenvalues closer than its errors to the two roots near it.
+
+    w: (n,). error: (n,). mask: eigenvalues that were moved, (n,).
+    """
+    w = w.copy()
+    moved = np.zeros(len(w), dtype=bool)
     for i in range(len(w)):
         others = [j for j in range(len(w)) if j != i and not moved[j]]
         if moved[i] or not others:
@@ -147,7 +154,11 @@ def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[C
 
 
 def _refine(w: Complex, start: Complex, moved: Mask, stands: Mask, determinant: ArmDeterminant) -> None:
-    """Replaces each w that stands for a root by the root; the second of a pair is the first's conjugate."""
+    """Refines in place each w that approximates a root; conjugates of refined roots are copied.
+
+    w, start: refined and original eigenvalues, (n,). moved, stands: masks of eigenvalues that `_separated`
+    moved, and that approximate a root, (n,).
+    """
     for i in np.flatnonzero(stands).tolist():
         pair = i > 0 and stands[i - 1] and w[i].imag != 0 and not moved[i - 1] and not moved[i]
         if pair and start[i] == start[i - 1].conjugate():
@@ -156,8 +167,11 @@ def _refine(w: Complex, start: Complex, moved: Mask, stands: Mask, determinant: 
             w[i] = refined(complex(w[i]), determinant)
 
 
-def _tell_apart(w: Complex, error: Array, determinant: ArmDeterminant) -> None:
-    """Raises the errors of two that are the same root to the distance of the next one, 2 |D'/D''|."""
+def _raise_errors_of_equal_roots(w: Complex, error: Array, determinant: ArmDeterminant) -> None:
+    """Raises the errors of two eigenvalues at the same root to the distance of the next root, 2 |D'/D''|.
+
+    w, error: (n,).
+    """
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])

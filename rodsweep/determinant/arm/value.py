@@ -1,11 +1,12 @@
-"""D(w) of an arm from the propagators of its elements: two columns, kept orthonormal from clamp to tip.
+"""D(w) of an arm from the propagators of its elements, by continuous orthonormalisation from clamp to tip.
 
-D is the determinant of the (s, m) x (s, m) block of the product of all propagators. The product loses all
-digits where exponentials grow, but its action on the plane of the two clamped solutions does not. After
-each element the two columns are made orthonormal; the factor R of this QR decomposition has a real positive
-determinant, whose logarithm is summed. The derivative of the columns by w is projected onto the complement
-of their plane; the trace of the removed part is a logarithmic derivative of D and is summed, too. Without
-the projection the derivative grows like the fastest exponential and D' loses its digits.
+D is the determinant of the (s, m) x (s, m) block of the product of all propagators. The product itself loses
+all digits where exponentials grow; its action on the plane of the two clamped solutions does not. The two
+columns that span the plane are orthonormalised after each element; the factor R of this QR decomposition has
+a real positive determinant, whose logarithm is summed. The derivative of the columns with respect to w is
+projected onto the complement of the plane; the trace of the removed part is a logarithmic derivative of D,
+and is summed too. Without the projection the derivative would grow like the fastest exponential and D' would
+lose its digits.
 """
 
 import math
@@ -17,7 +18,7 @@ from ...model.compiled.compilation import compiled
 from ..value import Value
 
 UNIT = 4.440892098500626e-16
-"""Unit of the noise of D, two roundings."""
+"""Unit of the noise of D: two relative rounding errors."""
 
 
 @compiled
@@ -40,7 +41,7 @@ def _applied(polynomial: Array, z: complex, Q: Complex, T: Complex, out_Q: Compl
 
 @compiled
 def _inner(A: Complex, i: int, B: Complex, j: int) -> complex:
-    """The inner product of column i of A and column j of B."""
+    """The inner product of column i of A and column j of B, both (4, 2)."""
     total = 0j
     for row in range(4):
         total += A[row, i].conjugate() * B[row, j]
@@ -49,11 +50,11 @@ def _inner(A: Complex, i: int, B: Complex, j: int) -> complex:
 
 @compiled
 def _orthonormal(Q: Complex, T: Complex) -> tuple[float, complex]:
-    """Makes the columns of Q orthonormal and those of T orthogonal to them, in place.
+    """Makes the columns of Q orthonormal and the columns of T orthogonal to Q, in place; both (4, 2).
 
-    Returns (log of the determinant taken off Q, trace of what is taken off T in the plane of Q).
+    Returns (log det R of the factor removed from Q, trace of the part of T removed in the plane of Q).
     """
-    # X -> X R^-1 changes the derivative alike.
+    # Q and its derivative T are both multiplied by R^-1.
     first = math.sqrt(_inner(Q, 0, Q, 0).real)
     for row in range(4):
         Q[row, 0] /= first
@@ -68,7 +69,8 @@ def _orthonormal(Q: Complex, T: Complex) -> tuple[float, complex]:
         T[row, 1] /= second
     trace = 0j
     for k in range(2):
-        in_first, in_second = _inner(Q, 0, T, k), _inner(Q, 1, T, k)
+        in_first = _inner(Q, 0, T, k)
+        in_second = _inner(Q, 1, T, k)
         trace += in_first if k == 0 else in_second
         for row in range(4):
             T[row, k] -= in_first * Q[row, 0] + in_second * Q[row, 1]
@@ -79,10 +81,14 @@ def _orthonormal(Q: Complex, T: Complex) -> tuple[float, complex]:
 def chain_value(w: complex, W: float, polynomials: Array) -> Value:
     """D and D' = dD/dw times exp(-S), from propagators for |w| <= W, shape (elements, terms, 4, 4)."""
     z = w / W
-    Q, T = np.zeros((4, 2), np.complex128), np.zeros((4, 2), np.complex128)
-    next_Q, next_T = np.empty((4, 2), np.complex128), np.empty((4, 2), np.complex128)
+    Q = np.zeros((4, 2), np.complex128)
+    T = np.zeros((4, 2), np.complex128)
+    next_Q = np.empty((4, 2), np.complex128)
+    next_T = np.empty((4, 2), np.complex128)
     Q[2, 0] = Q[3, 1] = 1.0
-    S, rate, elements = 0.0, 0j, polynomials.shape[0]
+    S = 0.0
+    rate = 0j
+    elements = polynomials.shape[0]
     for e in range(elements):
         _applied(polynomials[e], z, Q, T, next_Q, next_T)
         size, trace = _orthonormal(next_Q, next_T)
@@ -92,6 +98,6 @@ def chain_value(w: complex, W: float, polynomials: Array) -> Value:
         T, next_T = next_T, T
     D = Q[2, 0] * Q[3, 1] - Q[2, 1] * Q[3, 0]
     bend = T[2, 0] * Q[3, 1] + Q[2, 0] * T[3, 1] - T[2, 1] * Q[3, 0] - Q[2, 1] * T[3, 0]
-    # `rate` is that of D with the columns as they were: the frame of Q carries it all.
+    # `rate` is the logarithmic derivative of the determinants removed on the way.
     D_w = (bend + D * rate) / W
     return Value(D, D_w, S, (elements + 2) * UNIT)

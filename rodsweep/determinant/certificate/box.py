@@ -1,7 +1,7 @@
 """An a-priori box that contains every transverse eigenvalue with Re w >= -depth.
 
-Testing the eigenproblem of Sec. VI with its own eigenfunction, y with weight 1 and theta with a
-weight rho > 0, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),
+The inner product of the eigenproblem of Sec. VI with the eigenfunction, weighted by 1 for y and rho > 0 for
+theta, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),
 
     w N^2 = -c2 |s|^2 - rho |theta'|^2 + (rho g - nu) <theta, s> - F <y, theta'>.
 
@@ -10,9 +10,9 @@ a^2 = max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
 
     Re w <= a n - n^2 <= a^2/4,   |Im w| <= a n,   and Re w >= -depth forces n^2 <= a n + depth.
 
-The weight is free; the best one makes both entries of the maximum equal.
+The weight rho is free; the best rho makes both entries of the maximum equal.
 
-Beside w = 0 no eigenvalue lies on the imaginary axis: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
+No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
 """
 
 from functools import lru_cache
@@ -22,32 +22,32 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients, Rod
 from ..parameter_path import Path, changes, coefficients_at
 
-MARGIN = 1.01
-"""Factor on every bound, so that rounding in the bound itself cannot matter."""
+BOX_MARGIN = 1.01
+"""Safety factor on every bound, for rounding errors in the bound."""
 QUIET = 0.5
-"""Largest |D - 1| that counts as near 1."""
+"""Bound of |D - 1| near w = 0, where D therefore has no zero."""
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
-    """(max Re w, max |Im w|) over all eigenvalues with Re w >= -depth, depth >= 0; inf if unknown."""
+    """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth, depth >= 0; inf if unknown."""
     return box_of(sqrt(squared_amplification(rod)), depth)
 
 
 @compiled
 def box_of(a: float, depth: float) -> tuple[float, float]:
-    """`eigenvalue_box` from a, the root of `squared_amplification`."""
+    """`eigenvalue_box` from a, the square root of `squared_amplification`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
-    # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
+    # Without the padding, F = 0 would make the box empty.
     pad = 0.01 * depth + 1e-6
-    return MARGIN * a * a / 4 + pad, MARGIN * a * n + pad
+    return BOX_MARGIN * a * a / 4 + pad, BOX_MARGIN * a * n + pad
 
 
 @lru_cache(maxsize=1)
 def squared_amplification(rod: Rod) -> float:
-    """The smallest a^2 over all weights rho.
+    """The smallest a^2 over all weights rho; inf if no bound exists.
 
-    For g > 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
-    shear stiffness) rho g - nu has no zero, and with gamma3 = 0 there is no bound at all.
+    For g > 0 the minimum is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
+    shear stiffness) rho g - nu has no zero, and gamma3 = 0 gives no bound.
     """
     drag = rod.c2 * rod.rotational_drag
     level = abs(rod.F) * sqrt(drag)
@@ -60,16 +60,16 @@ def squared_amplification(rod: Rod) -> float:
 
 
 def squared_amplification_over(path: Path, start: float, stop: float) -> float:
-    """An upper bound of `squared_amplification` over all rods of a path between two p; inf if none."""
+    """An upper bound of `squared_amplification` over all rods from start to stop; inf without a bound."""
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     return squared_amplification_between(ends[0], ends[1])
 
 
 @compiled
 def squared_amplification_between(first: Coefficients, last: Coefficients) -> float:
-    """An upper bound of `squared_amplification` over all rods between two on a path; inf if none.
+    """An upper bound of `squared_amplification` between two rods on a path; inf without a bound.
 
-    Every factor is monotone along a path but for nu g, which is not used: ends are extremes.
+    Every factor used is monotone along a path, so the extremes are at the ends; nu g is not used.
     """
     load = max(abs(first.F), abs(last.F))
     least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
@@ -77,7 +77,8 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
     for rod in (first, last):
         if rod.c2 > 0:
             weak = max(weak, rod.c2 / rod.gamma3 if rod.gamma3 > 0 else inf)
-    g_first, g_last = first.nu + first.F * first.c2, last.nu + last.F * last.c2
+    g_first = first.nu + first.F * first.c2
+    g_last = last.nu + last.F * last.c2
     root_of_drag = min(sqrt(first.c2 * first.gamma3), sqrt(last.c2 * last.gamma3))
     denominator = min(first.nu, last.nu) + least_load * root_of_drag
     strong = inf
@@ -88,7 +89,7 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
 
 
 def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:
-    """r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and all p from start to stop."""
+    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and all p from start to stop."""
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
@@ -97,26 +98,26 @@ def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float
     G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
     pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
-        pull = 0.0  # a product of two factors that are linear, or one of which does not change
+        pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
     return _quiet(largest, T, X, G, pull)
 
 
 def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
-    """`quiet_radius` of a single rod."""
+    """`quiet_radius` for a single rod."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
 
 
 def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
-    """The first of r, r/2, r/4, ... such that D is near 1 for |eta| <= it; 0 where numbers underflow."""
+    """The first radius of r, r/2, r/4, ... with |D(i eta) - 1| < 1/2 inside; 0 for underflow."""
     while _departure(r, T, X, G, pull) >= QUIET:
         r /= 2
     return r
 
 
 def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
-    """A bound of |D(i eta) - 1| for |eta| <= r."""
+    """An upper bound of |D(i eta) - 1| for |eta| <= r; inf for a bound that is too large to be useful."""
     exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(pull):
         return inf

@@ -1,20 +1,20 @@
-"""All crossings of the imaginary axis along a path of rods, with a proof that none is missed.
+"""All crossings of the imaginary axis along a path of rods, with a proof of completeness.
 
-Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The part of
-the (eta, p) plane that the a-priori bounds leave is divided into boxes until each is
+Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The a-priori
+bounds leave a finite part of the (eta, p) plane, which is divided into boxes until each box is
 
-* empty: with its centre c and half-widths (h_w, h_p), f = D exp(-L dw - K dp) is at most M in the
-  bidisc of radii (h_w, h_p)/t, so that by Cauchy's estimate on complex lines
+* empty: with the centre c and half-widths (h_w, h_p) of the box, f = D exp(-L dw - K dp) is at most M in the
+  bidisc of radii (h_w, h_p)/t. Cauchy's estimate on complex lines gives
 
       |f - f(c) - f'(c)(dw, dp)| <= M t^2/(1 - t)   in the box,
 
-  and that is less than the distance of the parallelogram f(c) + f'(c)(box) from zero; or
-* regular: Cauchy's estimate of the second derivatives shows that the box, doubled, holds at most one
-  zero, and Newton's method finds it; or
-* open: as small as rounding allows, which happens where two crossings are about to meet.
+  which is less than the distance of the parallelogram f(c) + f'(c)(box) from zero; or
+* regular: Cauchy's estimate of the second derivatives shows that the doubled box contains at most one
+  zero, and Newton's method finds the zero; or
+* open: as small as rounding allows, near the meeting of two crossings.
 
-(L, K) is the logarithmic derivative of D, which makes f'(c) vanish, or the mean growth rate of its
-exponentials, which stays bounded near a zero of D.
+(L, K) is either the logarithmic derivative of D, for which f'(c) vanishes, or the mean growth rate of the
+exponentials in D, which stays bounded near a zero of D.
 """
 
 import cmath
@@ -28,22 +28,27 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..newton import FAILED, Zero, crossing_newton
 from ..parameter_path import Path, changes, coefficients_at, determinant_along
-from .box import MARGIN, quiet_radius, squared_amplification_over
+from .box import BOX_MARGIN, quiet_radius, squared_amplification_over
 from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, centre_at
 
 SLABS = 8
-"""Least number of intervals of p to start from."""
+"""Minimum number of initial intervals of p."""
 FIRST_RATIO = 4.0
-"""Ratio of the ends of the boxes in eta to start from."""
-LARGEST_SHARE, NEXT_SHARE, MOST_SHARES = 0.45, 0.6, 30
-"""Share t of the bidisc that a box takes up: the largest tried, the ratio to the next, how many."""
+"""Ratio of the upper to the lower end of the initial boxes in eta."""
+LARGEST_RADIUS_SHARE = 0.45
+"""Largest trial share t: half-width of a box over radius of the bidisc."""
+NEXT_RADIUS_SHARE = 0.6
+"""Ratio of the next trial share t to the present share."""
+MAX_RADIUS_SHARES = 30
+"""Maximum number of trial shares t, down to 2e-7."""
 SMALLEST_BOX = 1e-9
 """Half-widths in units of eta and p below which a box is left open."""
-MOST_BOXES = 1_000_000
+MAX_BOXES = 1_000_000
+"""Maximum number of boxes to examine; all others are left open."""
 SAME_ZERO = 1.5
-"""Distance from the centre of a regular box, in half-widths, within which a zero known before is the same."""
+"""Distance from the centre of a regular box, in half-widths, within which a known zero is the box's zero."""
 EMPTY, REGULAR, UNDECIDED = 0, 1, 2
-"""What is known of a box."""
+"""Result of examining a box: no zero, at most one zero in the doubled box, or no proof of either."""
 
 
 class Box(NamedTuple):
@@ -57,7 +62,7 @@ class Box(NamedTuple):
 
 @compiled
 def distance(value: complex, a: complex, b: complex) -> float:
-    """A lower bound of |value + x a + y b| over |x|, |y| <= 1, sharp where it is not zero."""
+    """A lower bound of |value + x a + y b| over |x|, |y| <= 1; 0 if no positive bound is found."""
     best = 0.0
     for normal in (value, 1j * a, 1j * b):
         size = abs(normal)
@@ -69,19 +74,23 @@ def distance(value: complex, a: complex, b: complex) -> float:
 
 @compiled
 def mean_rates(centre: Centre) -> Pair:
-    """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials."""
-    root_plus, root_minus = cmath.sqrt(centre.plus), cmath.sqrt(centre.minus)
-    a, b = math.exp(root_plus.real - centre.S), math.exp(root_minus.real - centre.S)
-    a, b = a / (a + b), b / (a + b)
+    """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials as weights."""
+    root_plus = cmath.sqrt(centre.plus)
+    root_minus = cmath.sqrt(centre.minus)
+    size_plus = math.exp(root_plus.real - centre.S)
+    size_minus = math.exp(root_minus.real - centre.S)
+    a = size_plus / (size_plus + size_minus)
+    b = size_minus / (size_plus + size_minus)
     in_w = a * centre.slopes_plus[0] / (2 * root_plus) + b * centre.slopes_minus[0] / (2 * root_minus)
     return in_w, a * centre.slopes_plus[1] / (2 * root_plus) + b * centre.slopes_minus[1] / (2 * root_minus)
 
 
 @compiled
 def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
-    """Whether M t^2/(1 - t)^power < room for some bidisc about the box."""
-    t, last = LARGEST_SHARE, math.inf
-    for _ in range(MOST_SHARES):
+    """Whether M t^2/(1 - t)^power < room for a trial share t; half: half-widths of the box."""
+    t = LARGEST_RADIUS_SHARE
+    last = math.inf
+    for _ in range(MAX_RADIUS_SHARES):
         M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
         rest = M * t * t / (1 - t) ** power
         if rest < room:
@@ -89,7 +98,7 @@ def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: floa
         if rest > last:
             return False
         last = rest
-        t *= NEXT_SHARE
+        t *= NEXT_RADIUS_SHARE
     return False
 
 
@@ -97,9 +106,9 @@ def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: floa
 def examine(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
-    """(kind, cost in eta, cost in p) of the box about w.
+    """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w with half-widths `half`.
 
-    The costs say how much the exponents change over the box in either variable.
+    Costs are changes of the exponents over an undecided box in each variable; 0 for other boxes.
     """
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
     centre = centre_at(w, coefficients, changes(coefficients, direction), S)
@@ -107,12 +116,14 @@ def examine(
     rounding = ROUNDING_OF_D * noise
     if abs(D) > 2 * rounding:
         for rates in ((D_w / D, D_p / D), mean):
-            a, b = 1j * (D_w - rates[0] * D) * half[0], (D_p - rates[1] * D) * half[1]
+            a = 1j * (D_w - rates[0] * D) * half[0]
+            b = (D_p - rates[1] * D) * half[1]
             room = CLEARANCE * distance(D, a, b) - rounding
             if room > 0 and remainder(centre, rates, half, room, 1):
                 return EMPTY, 0.0, 0.0
-    # In the doubled box the derivatives of f change by at most 3 M t^2/(1 - t)^2 each.
-    a, b = 2j * (D_w - mean[0] * D) * half[0], 2 * (D_p - mean[1] * D) * half[1]
+    # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
+    a = 2j * (D_w - mean[0] * D) * half[0]
+    b = 2 * (D_p - mean[1] * D) * half[1]
     if abs(D) < 2 * (abs(a) + abs(b)):
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         room = (CLEARANCE * least - rounding) / 3
@@ -125,11 +136,13 @@ def examine(
 
 @compiled
 def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
-    """How much the exponents change over a box in eta and in p."""
+    """Changes of the exponents over a box in eta and in p; half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
-    root_plus, root_minus = math.sqrt(max(abs(centre.plus), 1.0)), math.sqrt(max(abs(centre.minus), 1.0))
-    plus, minus = centre.slopes_plus, centre.slopes_minus
+    root_plus = math.sqrt(max(abs(centre.plus), 1.0))
+    root_minus = math.sqrt(max(abs(centre.minus), 1.0))
+    plus = centre.slopes_plus
+    minus = centre.slopes_minus
     in_w = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
@@ -139,14 +152,16 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
 
 @compiled
 def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[list[Zero], list[Box], int]:
-    """(zeros, open boxes, boxes examined) of D(i eta; p) in the boxes `first`, shape (n, 4)."""
+    """(zeros of D(i eta; p), open boxes, number of examined boxes) in the boxes `first`, shape (n, 4)."""
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
+    # numba infers the type of an empty list from its element.
     zeros = [FAILED for _ in range(0)]
     left = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     examined = 0
     while len(stack) > 0:
         box = stack.pop()
-        eta, p = (box.eta_from + box.eta_to) / 2, (box.p_from + box.p_to) / 2
+        eta = (box.eta_from + box.eta_to) / 2
+        p = (box.p_from + box.p_to) / 2
         half = (box.eta_to - box.eta_from) / 2, (box.p_to - box.p_from) / 2
         examined += 1
         coefficients = coefficients_at(p, origin, direction)
@@ -155,15 +170,15 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
             continue
         if kind == REGULAR:
             zero = crossing_newton(eta, p, origin, direction, half)
-            away = _away(zero, eta, p, half)
-            if away <= 2:  # false where Newton's method failed, which returns nan
-                seen = away > 1.01  # then a neighbouring box finds it too
-                for other in zeros:  # the doubled box holds one zero at most
-                    seen = seen or _away(other, eta, p, half) <= SAME_ZERO
-                if not seen:
+            away = _half_widths_away(zero, eta, p, half)
+            if away <= 2:  # false if Newton's method failed, which returns nan
+                known = away > 1.01  # outside the box: a neighbouring box finds the same zero
+                for other in zeros:  # the doubled box contains at most one zero
+                    known = known or _half_widths_away(other, eta, p, half) <= SAME_ZERO
+                if not known:
                     zeros.append(zero)
                 continue
-        if examined > MOST_BOXES or (half[0] < SMALLEST_BOX * eta and half[1] < SMALLEST_BOX * abs(p)):
+        if examined > MAX_BOXES or (half[0] < SMALLEST_BOX * eta and half[1] < SMALLEST_BOX * abs(p)):
             left.append(box)
         elif cost_w >= cost_p:
             stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))
@@ -175,22 +190,23 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
 
 
 @compiled
-def _away(zero: Zero, eta: float, p: float, half: tuple[float, float]) -> float:
-    """How far a zero is from the centre of a box, in half-widths."""
+def _half_widths_away(zero: Zero, eta: float, p: float, half: tuple[float, float]) -> float:
+    """Distance of a zero from the centre (eta, p) of a box, in units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])
 
 
 def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
-    """Intervals of p from start to stop over which the rod changes by a factor of order one at most."""
+    """Intervals of p from start to stop; in each, nu at most halves, a drag or compliance at most doubles."""
     edges = [start]
     width = (stop - start) / SLABS
     while edges[-1] < stop:
         p = edges[-1]
         step = width
-        nu, slope = coefficients_at(p, path.origin, path.direction).nu, path.direction.nu
-        if slope < 0:  # the rod is crushed where nu = 0
+        nu = coefficients_at(p, path.origin, path.direction).nu
+        slope = path.direction.nu
+        if slope < 0:  # the rod is crushed at nu = 0
             step = min(step, 0.5 * nu / -slope)
-        if path.name != "F":  # drag and compliances over decades
+        if path.name != "F":  # drag and compliances vary over decades
             step = min(step, max(p, 1e-6 * width))
         end = p + step
         edges.append(stop if stop - end < 1e-3 * step else end)
@@ -198,10 +214,10 @@ def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
 
 
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
-    """Boxes that hold every crossing with p from start to stop, shape (n, 4); None without a bound."""
+    """Boxes that contain every crossing with p from start to stop, shape (n, 4); None without a bound."""
     boxes = []
     for a, b in slabs(path, start, stop):
-        top = MARGIN * squared_amplification_over(path, a, b) + 1e-6
+        top = BOX_MARGIN * squared_amplification_over(path, a, b) + 1e-6
         if not math.isfinite(top):
             return None
         low = quiet_radius(path, a, b, top)

@@ -1,6 +1,6 @@
-"""Upper bounds of D(w, p) exp(-L (w - c) - K (p - p_c)) over a bidisc, for Cauchy's estimate.
+"""Upper bounds of |D(w, p) exp(-L (w - c) - K (p - p_c))| over a bidisc, for Cauchy's estimate.
 
-p is the variable of a path of rods (`parameter_path`); for a single rod its disc has radius 0.
+p is the variable of a path of rods (`parameter_path`); the disc of p has radius 0 for a single rod.
 """
 
 import cmath
@@ -13,20 +13,22 @@ from ..parameter_path import Changes, root_changes
 from ..value import branches
 
 ROUNDING_OF_D = 4.0
-"""Rounding error of D in units of its noise: at most 0.7 at 20 000 values chosen to be bad, and room."""
+"""Bound of the rounding error of D, in units of its noise; 20 000 unfavourable values had at most 0.7."""
 CLEARANCE = 0.9
-"""Share of |D| that a proved change may use up."""
+"""Largest allowed proved change, in units of |D|."""
 HUGE = 600.0
-"""Exponents are cut here before exp, which would overflow at 709."""
+"""Upper limit of exponents before exp, which would overflow at 709."""
 LARGEST_CHANGE = 0.98
-"""Relative change of a factor of P^2 over a disc, beyond which no bound is given."""
+"""Largest relative change of a factor of P^2 over a disc for which a bound is computed."""
 
 Pair = tuple[complex, complex]
+"""A derivative with respect to w and a derivative with respect to p."""
 Radii = tuple[float, float]
+"""Radii of a bidisc in w and in p."""
 
 
 class Centre(NamedTuple):
-    """All that is known of D at the centre of a bidisc: the slopes are those of z+- in w, then in p."""
+    """The centre of a bidisc: w, the rod, S, P, z+ and z-, and slopes (dz/dw, dz/dp) of z+ and z-."""
 
     w: complex
     coefficients: Coefficients
@@ -41,28 +43,29 @@ class Centre(NamedTuple):
 
 @compiled
 def centre_at(w: complex, coefficients: Coefficients, change: Changes, S: float) -> Centre:
-    """The centre (w, p) of a bidisc, where the rod has these coefficients and changes."""
-    there = branches(w, coefficients)
-    along_plus, along_minus = root_changes(w, there, change)
+    """The centre of a bidisc at w, for the rod `coefficients` with derivatives `change` along the path."""
+    at = branches(w, coefficients)
+    along_plus, along_minus = root_changes(w, at, change)
     drag = coefficients.c2 + coefficients.gamma3
-    plus, minus = (drag + 2 * there.P_w, along_plus), (drag - 2 * there.P_w, along_minus)
-    return Centre(w, coefficients, change, S, there.P, there.plus, there.minus, plus, minus)
+    slopes_plus = (drag + 2 * at.P_w, along_plus)
+    slopes_minus = (drag - 2 * at.P_w, along_minus)
+    return Centre(w, coefficients, change, S, at.P, at.plus, at.minus, slopes_plus, slopes_minus)
 
 
 @compiled
 def bend_of_root(root: complex, bend: float, x: float) -> float:
-    """Bound of sqrt(z) beyond its linear part, where z changes by x |z| in all and by bend beyond its own."""
+    """Bound of the nonlinear part of sqrt(z). x: total change of z over |z|. bend: nonlinear change of z."""
     return bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
 @compiled
 def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: float, S: float) -> Radii:
-    """Bounds of |E(z)| and |dE/dz|, both times |exp(-L dw - K dp)| exp(-S).
+    """Bounds of |E(z)| and |dE/dz| over a bidisc, both times |exp(-L dw - K dp)| exp(-S).
 
-    slopes: (dz/dw, dz/dp), rates: (L, K). Two bounds of the exponents +-sqrt(z) - L dw - K dp, the
-    smaller counts: one from |sqrt(z)| alone, one from its Taylor polynomial, where the disc stays away
-    from z = 0. `bend` bounds the part of z beyond the linear one. |E| <= exp(Re sqrt z)/2 and
-    |dE/dz| <= cosh(Re sqrt z)/24, and where z is large what the closed forms give.
+    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. The smaller of two bounds
+    of the exponents +-sqrt(z) - L dw - K dp applies: a bound from |sqrt(z)| alone, and a bound from the
+    Taylor polynomial of sqrt(z) if the disc is away from z = 0. Then |E| <= exp(Re sqrt z)/2 and
+    |dE/dz| <= cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
     drift = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
@@ -71,7 +74,8 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     grow = crude
     decay = crude
     if change < 0.5 * abs(z):
-        in_w, in_p = slopes[0] / (2 * root), slopes[1] / (2 * root)
+        in_w = slopes[0] / (2 * root)
+        in_p = slopes[1] / (2 * root)
         curve = bend_of_root(root, bend, change / abs(z))
         with_rates = abs(in_w - rates[0]) * radii[0] + abs(in_p - rates[1]) * radii[1]
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
@@ -79,22 +83,26 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
         decay = min(decay, -root.real + against + curve)
     exponentials = math.exp(min(grow - S, HUGE)) + math.exp(min(decay - S, HUGE))
     exponentials += 2 * math.exp(min(drift - S, HUGE))
-    E, E1 = 1 / 8, 1 / 48
+    E = 1 / 8
+    E1 = 1 / 48
     if abs(z) > change:
         m = abs(z) - change
-        E, E1 = min(E, 1 / (2 * m)), min(E1, 1 / (4 * m * math.sqrt(m)) + 1 / (2 * m * m))
+        E = min(E, 1 / (2 * m))
+        E1 = min(E1, 1 / (4 * m * math.sqrt(m)) + 1 / (2 * m * m))
     return E * exponentials, E1 * exponentials
 
 
 @compiled
 def bound_together(centre: Centre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` from |E(z+) - E(z-)| <= 4 |P| max |dE/dz| between them: good where P is small."""
-    w, S = centre.w, centre.S
+    """`bound_on_bidisc` from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|, which is sharp for small P."""
+    w = centre.w
+    S = centre.S
     F, nu, c2, gamma3 = centre.coefficients
     T1, N1, N2, G1, G2, X1, X2 = centre.changes
     rho, sigma = radii
     g = nu + F * c2
-    X, T = c2 * gamma3, c2 + gamma3
+    X = c2 * gamma3
+    T = c2 + gamma3
     far = abs(w) + rho
     dG = (abs(G1) + abs(G2) / 2 * sigma) * sigma
     dX = (abs(X1) + abs(X2) / 2 * sigma) * sigma
@@ -111,19 +119,21 @@ def bound_on_bidisc(centre: Centre, rates: Pair, radii: Radii) -> float:
     """Bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about (w, p)."""
     F, nu, c2, _ = centre.coefficients
     apart = bound_apart(centre, rates, radii)
-    if F * (nu + F * c2) < 0:  # both exponentials grow, and almost alike: apart they would not cancel
+    if F * (nu + F * c2) < 0:  # both exponentials grow at similar rates; separate bounds do not cancel
         return min(apart, bound_together(centre, rates, radii))
     return apart
 
 
 @compiled
 def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` from E(z+) and E(z-) alone; inf where none is given.
+    """`bound_on_bidisc` from separate bounds of E(z+) and E(z-); inf if the bidisc is too large.
 
-    In w -> w (1 + e1) and g nu + c2 gamma3 w -> (...)(1 + e2), |e1| and |e2| are bounded over the
-    bidisc; sqrt(1 + e) is majorised by 2 - sqrt(1 - e).
+    Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with bounds of
+    |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e).
     """
-    w, S, P = centre.w, centre.S, centre.P
+    w = centre.w
+    S = centre.S
+    P = centre.P
     F, nu, c2, gamma3 = centre.coefficients
     T1, _, N2, G1, G2, X1, X2 = centre.changes
     rho, sigma = radii

@@ -1,15 +1,14 @@
-"""Discs in which one exponential of D outweighs the rest: D has no zero there, and its phase is known.
+"""Discs in which one exponential of D dominates: D has no zero there, and the phase of D is known.
 
 With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 
     D = A (1 + e),   A = w z+' exp(sqrt z+)/(4 z+),
     A e = 1 + (w z+'/(4 z+)) (exp(-sqrt z+) - 2) + (w/2) z-' E(z-).
 
-Over a disc |dw| <= rho in which |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is that of A but for
-arg(1 + e), which stays within a right angle and is needed only where a chain of such discs begins and
-ends. All bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in
-`rodsweep.determinant.certificate.discs`. Far from the negative real axis, where the eigenvalues lie, a disc
-may be a third of |w| wide.
+Over a disc |dw| <= rho with |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is arg A + arg(1 + e). The
+term arg(1 + e) stays within a right angle and is needed only at both ends of a chain of such discs. All
+bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in `rodsweep.determinant.certificate.discs`. Far
+from the eigenvalues, which lie near the negative real axis, the radius may be a quarter of |w|.
 """
 
 import cmath
@@ -21,16 +20,16 @@ from ...model.rod import Coefficients
 from ..value import branches, scaled_determinant
 from .discs import CLEARANCE, bend_of_root, terms_on_bidisc
 
-SHARE = 0.25
-"""Radius of the first disc tried, in units of the distance to the next branch point."""
+FIRST_RADIUS = 0.25
+"""Radius of the first trial disc, in units of the distance to the nearest branch point."""
 HALVINGS = 2
-"""Smaller discs tried where the first is too large."""
-FACTOR = 0.5
-"""Largest relative change over a disc of what A is made of: keeps every phase within a right angle."""
+"""Number of further trial discs, each half as large."""
+LARGEST_FACTOR_CHANGE = 0.5
+"""Largest relative change of each factor of A over a disc; keeps every phase within a right angle."""
 
 
 class Exponent(NamedTuple):
-    """One of z+ and z- at some w, dz/dw and sqrt z."""
+    """z+ or z- at a point w, with slope dz/dw and root sqrt z."""
 
     z: complex
     slope: complex
@@ -39,7 +38,7 @@ class Exponent(NamedTuple):
 
 @compiled
 def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
-    """(P, the dominant exponent, the other)."""
+    """(P, dominant exponent, recessive exponent) at w."""
     P, P_w, _, plus, minus = branches(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
@@ -51,17 +50,18 @@ def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent,
 
 @compiled
 def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
-    """(bound of z+- beyond the linear part over the disc, of the change of z+-'); inf where none is given.
+    """Bounds over the disc of (nonlinear part of z+-, change of z+-'); inf if the disc is too large.
 
-    z = T w - F g +- 2 P: beyond the linear part only P bends, majorised by 2 - sqrt(1 - e).
+    z = T w - F g +- 2 P, so only P has a nonlinear part, which 2 - sqrt(1 - e) majorises.
     """
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu
-    e1, e2 = rho / abs(w), 0.0
+    e1 = rho / abs(w)
+    e2 = 0.0
     if X > 0:
         e2 = X * rho / abs(gn + X * w)
-    if e1 > FACTOR or e2 > FACTOR:
+    if e1 > LARGEST_FACTOR_CHANGE or e2 > LARGEST_FACTOR_CHANGE:
         return math.inf, math.inf
     least = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
@@ -78,7 +78,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     bend, turn = _bend_and_turn(w, rho, P, coefficients)
     change = abs(slope) * rho + bend
     x = change / abs(z)
-    if x > FACTOR or turn > FACTOR * abs(slope):
+    if x > LARGEST_FACTOR_CHANGE or turn > LARGEST_FACTOR_CHANGE * abs(slope):
         return False
     L = slope / (2 * root)
     drift = abs(L) * rho
@@ -86,7 +86,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
-    if change_other < FACTOR * abs(z_other):
+    if change_other < LARGEST_FACTOR_CHANGE * abs(z_other):
         curve_other = bend_of_root(root_other, bend, change_other / abs(z_other))
         together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
         if not root.real - curve > root_other.real + together:
@@ -107,15 +107,16 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 @compiled
 def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """(w z'/z, sqrt z) of the dominant exponential."""
+    """(w z'/z, sqrt z) of the dominant exponential at w: factor and exponent of A."""
     _, dominant, _ = _ordered(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled
-def _beside(w: complex, factor: complex, root: complex, coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A)."""
+def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
+    """arg(1 + e) = arg(D/A) at w; factors: `dominant_factors` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
+    factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
 
 
@@ -123,23 +124,25 @@ def _beside(w: complex, factor: complex, root: complex, coefficients: Coefficien
 def dominated_stretch(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """(how far from start one exponential is proved to outweigh the rest, change of arg D, discs)."""
+    """(length of the stretch from `start` with proved dominance, change of arg D over it, disc count)."""
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu
-    w, t, total = start, 0.0, 0.0
+    w = start
+    t = 0.0
+    total = 0.0
     discs = 0
-    factor, root = 0j, 0j
-    first, first_root = 0j, 0j
+    here = (0j, 0j)
+    first = (0j, 0j)
     while t < length:
-        rho = SHARE * abs(w)
+        rho = FIRST_RADIUS * abs(w)
         if X > 0:
-            rho = min(rho, SHARE * abs(gn + X * w) / X)
+            rho = min(rho, FIRST_RADIUS * abs(gn + X * w) / X)
         rho = min(rho, (length - t) / 2)
         found = False
         for _ in range(HALVINGS + 1):
             discs += 1
-            # A little wider than the step, so that rounding leaves no gap between two discs.
+            # The disc is a little wider than the step, so that rounding leaves no gap between discs.
             if dominated(w + direction * rho, 1.001 * rho, coefficients):
                 found = True
                 break
@@ -147,13 +150,13 @@ def dominated_stretch(
         if not found:
             break
         if t == 0.0:
-            factor, root = dominant_factors(w, coefficients)
-            first, first_root = factor, root
+            here = dominant_factors(w, coefficients)
+            first = here
         t = length if t + 2 * rho >= length * (1 - 1e-15) else t + 2 * rho
         w = start + direction * t
-        factor_next, root_next = dominant_factors(w, coefficients)
-        total += (root_next - root).imag + cmath.phase(factor_next / factor)
-        factor, root = factor_next, root_next
+        after = dominant_factors(w, coefficients)
+        total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])
+        here = after
     if t > 0.0:
-        total += _beside(w, factor, root, coefficients) - _beside(start, first, first_root, coefficients)
+        total += _phase_beside(w, here, coefficients) - _phase_beside(start, first, coefficients)
     return t, total, discs

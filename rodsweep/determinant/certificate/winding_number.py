@@ -1,21 +1,21 @@
-"""How many transverse eigenvalues lie right of a vertical line: a count without mesh or shift.
+"""Proved number of transverse eigenvalues right of a vertical line, without mesh or shift.
 
 All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.certificate.box`, so their number
-is the winding number of the entire function D around it. D is real on the real axis, so the upper half
-of the box suffices: count = (change of arg D along it)/pi.
+is the winding number of the entire function D around the box. D is real on the real axis, so the upper half
+of the box suffices: count = (change of arg D along the upper half)/pi.
 
-The change of phase is proved, not presumed: where one exponential of D outweighs the others in long strides
-(`rodsweep.determinant.certificate.dominance`), elsewhere from node to node. About a node c the function
-f(w) = D(w) exp(-L (w - c)), L = D'(c)/D(c), has f'(c) = 0, so by Cauchy's estimate on the disc of
-radius rho, where |f| <= M,
+The change of phase is proved. Where one exponential of D dominates, long steps are possible
+(`rodsweep.determinant.certificate.dominance`); elsewhere the proof goes from node to node. About a node c the
+function f(w) = D(w) exp(-L (w - c)), L = D'(c)/D(c), has f'(c) = 0, so Cauchy's estimate on the disc of
+radius rho, where |f| <= M, gives
 
     |f(w) - f(c)| <= M r^2/(rho (rho - r)),   r = |w - c|.
 
-While that stays below 0.9 |D(c)|, less the rounding error of D, no zero lies within r and the phase
-of f changes by less than pi/2. (The tenth that is left covers that the computed L, and with it f'(c),
-is off by rounding.) A node `reaches` that far; a step is taken only where one of its two
-ends reaches the other. Where no reach is left, a zero of D is closer to the line than the rounding
-of D can tell, and the count is refused instead of guessed.
+If the bound is below 0.9 |D(c)| minus the rounding error of D, no zero lies within r and the phase of f
+changes by less than pi/2. (The remaining tenth allows for the rounding error of L, and therefore of f'(c).)
+The largest such r is the `reach` of the node; a step is accepted only if one end lies within the reach of the
+other. If the reach is 0, the rounding error of D cannot separate a zero of D from the line, and the count
+fails.
 """
 
 import cmath
@@ -32,22 +32,28 @@ from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc, centre_at
 from .dominance import dominated_stretch
 
 STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""The changes along no path: a bound for one rod."""
-WIDTH_FACTOR, WIDTH_ADDED, LEAST_HEIGHT = 4.0, 50.0, 0.5
-"""Factor on the width of the box, width added to it, and its least height in units of the line's distance:
-farther out one exponential of D outweighs the rest, and larger is cheaper."""
+"""Zero changes along a path, for bounds of a single rod."""
+WIDTH_FACTOR = 4.0
+"""Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
+cheaper."""
+WIDTH_ADDED = 50.0
+"""Width added to the box, in 1/tau2, for the same reason."""
+LEAST_HEIGHT = 0.5
+"""Smallest height of the box, in units of the line's distance from the imaginary axis."""
 PATIENCE = 0.25
-"""Length, in units of |w|, of what is walked node by node before larger discs are tried again; doubled where
-they fail again."""
+"""Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled after
+every failure."""
 SMALLEST_REACH = 1e-13
-"""Reach in units of |w| below which the line is taken to run through a zero of D."""
-MOST_NODES = 20_000
-"""Nodes on one edge before the count is given up; the paper's rods need about 30 in all."""
+"""Reach in units of |w| below which the line counts as running through a zero of D."""
+MAX_EDGE_NODES = 20_000
+"""Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
+NOT_AN_INTEGER = 1e-3
+"""Distance of a winding number from the nearest integer beyond which the count fails."""
 
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """Number of eigenvalues with Re w > line, or why there is none (`number` is None)."""
+    """Number of eigenvalues right of a line; None for a failed count, whose reason is `why_not`."""
 
     number: int | None
     nodes: int
@@ -55,7 +61,7 @@ class Count:
 
 
 class Node(NamedTuple):
-    """A point w: D exp(-S) there, L = D'/D, and how far it reaches: no zero of D is as near."""
+    """A point w with D exp(-S), L = D'/D, and the reach: the distance within which D has no zero."""
 
     w: complex
     D: complex
@@ -65,7 +71,7 @@ class Node(NamedTuple):
 
 @compiled
 def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> float:
-    """Largest disc about w that keeps off the branch points and keeps the exponents of order one."""
+    """Radius of a disc about w that avoids branch points and over which exponents change by order one."""
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = branches(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
@@ -87,7 +93,7 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
 
 @compiled
 def node_at(w: complex, coefficients: Coefficients) -> Node:
-    """The node about w; up to its reach f turns by less than pi/2."""
+    """The node at w. The phase of f changes by less than pi/2 within the node's reach."""
     D, D_w, S, noise = scaled_determinant(w, coefficients)
     room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
     if not room > 0:
@@ -106,10 +112,15 @@ def node_at(w: complex, coefficients: Coefficients) -> Node:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
+    """(change of arg D along the segment, number of nodes), alternating between both proofs.
+
+    The number of nodes is negative after a failure.
+    """
     length = abs(end - start)
     direction = (end - start) / length
-    t, total, nodes = 0.0, 0.0, 0
+    t = 0.0
+    total = 0.0
+    nodes = 0
     patience = PATIENCE
     while t < length:
         w = start + direction * t
@@ -124,7 +135,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
             to = end if goal == length else start + direction * goal
             change, used = stepped_change(w, to, coefficients)
             nodes += abs(used)
-            if used < 0 or nodes > MOST_NODES:
+            if used < 0 or nodes > MAX_EDGE_NODES:
                 return 0.0, -nodes
             total += change
             t = goal
@@ -133,15 +144,20 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
 
 @compiled
 def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
+    """(change of arg D along the segment, number of nodes), from node to node.
+
+    The number of nodes is negative after a failure.
+    """
     length = abs(end - start)
     direction = (end - start) / length
-    t, total, nodes = 0.0, 0.0, 1
+    t = 0.0
+    total = 0.0
+    nodes = 1
     here = node_at(start, coefficients)
     while t < length:
-        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MOST_NODES:
+        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MAX_EDGE_NODES:
             return 0.0, -nodes
-        # The next node may lie beyond this one's reach if it reaches back; otherwise step inside.
+        # The next node may lie beyond the reach of this node if its own reach covers the step.
         ahead = min(1.9 * here.reach, length - t)
         while True:
             inside = ahead < here.reach
@@ -161,9 +177,10 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
 def contour_change(
     line: float, foot: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
-    """(change of arg D, nodes used) from the real axis up to the corner, left to the line, down to its foot.
+    """(change of arg D, number of nodes) along the upper half of the box.
 
-    The nodes are negative where it failed.
+    The path goes from the real axis up to the corner, left to the line, down to the height `foot`. The number
+    of nodes is negative after a failure.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)
@@ -171,36 +188,38 @@ def contour_change(
         return 0.0, nodes
     above, used = phase_change(corner, top, coefficients)
     nodes += abs(used)
-    if used < 0 or foot == corner.imag:  # then D is near 1 all along the line
+    if used < 0 or foot == corner.imag:  # in the latter case D is near 1 on the whole line
         return right + above, nodes if used > 0 else -nodes
-    # Upwards, because steps from the top could not resolve a foot below its rounding.
+    # The line is walked upwards, because a sum from the top could not resolve a small foot.
     left, used = phase_change(complex(line, foot), top, coefficients)
     nodes += abs(used)
     return right + above - left, nodes if used > 0 else -nodes
 
 
 def count_right_of(line: float, rod: Rod) -> Count:
-    """Number of transverse eigenvalues of `rod` with Re w > line, for a line <= 0 or above.
+    """Proved number of transverse eigenvalues of `rod` with Re w > line, for any real line.
 
-    Raises nothing: what cannot be proved is a Count without a number.
+    Raises no error: a failed proof is a Count without a number, with the reason.
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= real:
         return Count(0, 0)
-    foot, total = 0.0, 0.0
-    if line == 0.0:  # D = 1 at the foot of the line: the rest of it, where D is near 1, needs no nodes
+    foot = 0.0
+    total = 0.0
+    if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
         foot = quiet_radius_of(rod.coefficients, imag)
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real, imag = WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line))
+    real = WIDTH_FACTOR * real + WIDTH_ADDED
+    imag = max(imag, LEAST_HEIGHT * abs(line))
     change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
         return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
     total += change
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > 1e-3:
+    if abs(total / math.pi - number) > NOT_AN_INTEGER:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number, nodes)

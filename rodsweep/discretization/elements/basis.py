@@ -26,7 +26,7 @@ def interpolation(nodes: Array, points: Array) -> Array:
 
 
 def differentiation(nodes: Array) -> Array:
-    """Matrix from values at `nodes` to derivatives there, shape (n, n); rows sum to zero exactly."""
+    """Matrix from values at `nodes` to derivatives at `nodes`, shape (n, n); rows sum to zero exactly."""
     weights = barycentric_weights(nodes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)

@@ -1,8 +1,8 @@
-"""Radau IIA collocation in time: a state is a polynomial on each interval, exact at nodes that include its
-end.
+"""Radau IIA collocation in time: a state is a polynomial on each interval of time.
 
-With s stages the error at the ends of the intervals is of order 2 s - 1, also for algebraic unknowns, which
-have no time derivative, because the end of an interval is a node.
+The polynomial satisfies the equations at the nodes, the last of which is the end of the interval. With s
+stages the error at the ends of intervals is of order 2 s - 1, also for algebraic unknowns, which have no time
+derivative.
 """
 
 from functools import cache
@@ -16,10 +16,10 @@ from .basis import differentiation, interpolation
 
 
 class Collocation(NamedTuple):
-    """The method with s stages on [0, 1].
+    """The collocation method with s stages on [0, 1].
 
-    nodes, weights: (s,), the last node is 1. differentiation: (s, s + 1), from values at 0 and at the nodes
-    to derivatives at the nodes.
+    nodes, weights: (s,); the last node is 1. differentiation: (s, s + 1), matrix from values at 0 and at the
+    nodes to derivatives at the nodes.
     """
 
     nodes: Array
@@ -37,11 +37,11 @@ class Collocation(NamedTuple):
 
 @cache
 def radau(stages: int) -> Collocation:
-    """Radau IIA; its nodes are the zeros of P_(s-1) - P_s."""
+    """Radau IIA with s = `stages`; the nodes are the zeros of P_(s-1) - P_s."""
     series = np.zeros(stages + 1)
     series[-2:] = 1.0, -1.0
     x = np.sort(legendre.legroots(series).real)
-    for _ in range(3):  # Newton, for the eigenvalues of a companion matrix are right to 1e-14 only
+    for _ in range(3):  # Newton's method: eigenvalues of a companion matrix are accurate only to 1e-14
         x = x - legendre.legval(x, series) / legendre.legval(x, legendre.legder(series))
     x[-1] = 1.0
     moments = np.zeros(stages)

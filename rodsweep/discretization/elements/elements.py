@@ -1,4 +1,4 @@
-"""Elements on the rod, and the values of fields on their Lobatto nodes at other points."""
+"""Elements on the rod, and interpolation from their Lobatto nodes to other points."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ from .basis import interpolation
 from .quadrature import gauss_lobatto
 
 INSIDE = 1e-9
-"""Distance of `Elements.points_inside` from the ends of an element, in units of its length."""
+"""Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
 
 
 @dataclass(frozen=True)
 class Elements:
-    """Elements between `edges`, which increase from 0 to 1, all of one order."""
+    """Elements between `edges`, which increase from 0 to 1, all of the same order."""
 
     edges: tuple[float, ...]
     order: int
@@ -29,7 +29,7 @@ class Elements:
 
     @property
     def nodes(self) -> int:
-        """Nodes but for one end, the clamp or the tip."""
+        """Number of nodes without one end, the clamp or the tip."""
         return self.elements * self.order
 
     @cached_property
@@ -48,9 +48,9 @@ class Elements:
 
     @cached_property
     def points_inside(self) -> Array:
-        """u of the nodes of every element, the outer ones just inside it, (elements, order + 1).
+        """u of the nodes of every element, with the outer nodes moved just inside, (elements, order + 1).
 
-        At a jump between two elements coefficients at these points are those of its own side.
+        At a jump between two elements each element therefore samples the coefficient on its own side.
         """
         inner: Array = np.clip((gauss_lobatto(self.order)[0] + 1) / 2, INSIDE, 1 - INSIDE)
         starts: Array = np.array(self.edges[:-1])
@@ -61,25 +61,28 @@ class Elements:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
         nodes = gauss_lobatto(self.order)[0]
         matrix = np.zeros((len(points), self.nodes + 1))
-        for first, here, local in self.by_element(points):
-            matrix[here, first : first + self.order + 1] = interpolation(nodes, local)
+        for first, inside, local in self.by_element(points):
+            matrix[inside, first : first + self.order + 1] = interpolation(nodes, local)
         return matrix
 
     def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
-        """(first node, numbers of the points in it, these in [-1, 1]) of each element with points, (n,)."""
+        """Points, (n,), grouped by element: (first node, indices of points, local coordinates in [-1, 1]).
+
+        A point between two elements belongs to the right element.
+        """
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.elements - 1)
         for e in np.unique(element):
-            here = np.nonzero(element == e)[0]
-            yield int(e) * self.order, here, 2 * (points[here] - self.edges[e]) / self.lengths[e] - 1
+            inside = np.nonzero(element == e)[0]
+            yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
 @lru_cache(maxsize=256)
 def equal_edges(elements: int) -> tuple[float, ...]:
-    """Ends of equal elements."""
+    """Edges of `elements` equal elements on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))
 
 
 def halved(edges: tuple[float, ...]) -> tuple[float, ...]:
-    """Ends of twice as many elements."""
+    """Edges after halving every element."""
     middles = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
     return tuple(sorted([*edges, *middles]))

@@ -1,7 +1,7 @@
-"""Elements on the rod, the matrices on their nodes, and the way from strains to a shape.
+"""Elements on the rod, matrices on the nodes, and integration of strains to a shape.
 
-Fields are continuous in P_p with Lobatto nodes and lumped mass. theta(u) = int Pi, r(u) = int R(theta) (h1,
-h2).
+Fields are continuous and in P_p on each element, with Lobatto nodes and lumped mass.
+theta(u) = int Pi, r(u) = int R(theta) (h1, h2).
 """
 
 from dataclasses import dataclass, field
@@ -16,13 +16,14 @@ from .elements import Elements, equal_edges
 from .quadrature import gauss, gauss_lobatto
 
 EXTRA_POINTS = 10
-"""Gauss points of an element minus its order, for integrals of shapes: theta turns by a radian or two."""
+"""Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two radians in
+an element."""
 
 
 class NodeMatrices(NamedTuple):
     """D, D^T and -D^T W on all nodes of a mesh, (nodes + 1, nodes + 1), and W, (nodes + 1,).
 
-    All are contiguous, and so are the inner loops over the nodes.
+    All arrays are contiguous, for inner loops over the nodes.
     """
 
     D: Array
@@ -33,15 +34,15 @@ class NodeMatrices(NamedTuple):
 
 @dataclass(frozen=True)
 class Mesh(Elements):
-    """Elements, and the matrices on all their nodes; `nodes` is without the tip.
+    """Elements with matrices on all nodes; `nodes` is the number of nodes without the tip.
 
-    The matrices follow from edges and order, by which meshes are equal, also that of another process.
+    Meshes with equal edges and order are equal, across processes too.
     """
 
     matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int]]:
-        """Pickled, also in a message to another rank, as edges and order."""
+        """Pickles edges and order only, also for messages to other ranks."""
         return mesh_on, (self.edges, self.order)
 
     @property
@@ -59,13 +60,15 @@ def mesh(elements: int, order: int) -> Mesh:
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     """The mesh of elements between `edges`, all of order `order`."""
     x, w = gauss_lobatto(order)
-    slopes, lengths = differentiation(x), np.diff(edges)
+    slopes = differentiation(x)
+    lengths = np.diff(edges)
     nodes = len(lengths) * order
-    weighted, total = np.zeros((nodes + 1, nodes + 1)), np.zeros(nodes + 1)
+    weighted = np.zeros((nodes + 1, nodes + 1))
+    total = np.zeros(nodes + 1)
     for length, first in zip(lengths, range(0, nodes, order), strict=True):
-        here = slice(first, first + order + 1)
-        weighted[here, here] += w[:, None] * slopes  # the lengths of the element cancel
-        total[here] += length / 2 * w
+        element = slice(first, first + order + 1)
+        weighted[element, element] += w[:, None] * slopes  # the length of the element cancels
+        total[element] += length / 2 * w
     D = weighted / total[:, None]
     parts = D, D.T, -weighted.T, total
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
@@ -73,44 +76,55 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
 
 @lru_cache(maxsize=256)
 def transfer(source: Mesh, target: Mesh) -> Array:
-    """Matrix from values at all nodes of one mesh to those of another, (target nodes, source nodes)."""
+    """Matrix from values at all nodes of `source` to values at all nodes of `target`.
+
+    Shape (target nodes + 1, source nodes + 1).
+    """
     return source.evaluation(target.positions)
 
 
 def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
-    """(x, y, theta) at all nodes from strains (h1, h2, Pi), both (3, ..., nodes + 1), and `clamp`, (3,)."""
+    """(x, y, theta) at all nodes from strains (h1, h2, Pi), both (3, ..., nodes + 1).
+
+    clamp: (x, y, theta) at u = 0, (3,).
+    """
     values, angles, integrals, ends = reconstruction(grid.order)
     p = grid.order
     state = np.empty_like(strains)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, length in enumerate(grid.lengths):
-        here = slice(e * p, (e + 1) * p + 1)
-        h1, h2, Pi = (strain[..., here] for strain in strains)
+        element = slice(e * p, (e + 1) * p + 1)
+        h1, h2, Pi = (strain[..., element] for strain in strains)
         theta = start[2] + length * (Pi @ angles)
-        cos, sin = np.cos(theta), np.sin(theta)
-        state[0][..., here] = start[0] + length * ((cos * (h1 @ values) - sin * (h2 @ values)) @ integrals)
-        state[1][..., here] = start[1] + length * ((sin * (h1 @ values) + cos * (h2 @ values)) @ integrals)
-        state[2][..., here] = start[2] + length * (Pi @ ends)
-        start = state[..., here][..., -1:]
+        cos = np.cos(theta)
+        sin = np.sin(theta)
+        slope_x = cos * (h1 @ values) - sin * (h2 @ values)
+        slope_y = sin * (h1 @ values) + cos * (h2 @ values)
+        state[0][..., element] = start[0] + length * (slope_x @ integrals)
+        state[1][..., element] = start[1] + length * (slope_y @ integrals)
+        state[2][..., element] = start[2] + length * (Pi @ ends)
+        start = state[..., element][..., -1:]
     return state
 
 
 @lru_cache(maxsize=64)
 def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
-    """Matrices, to be applied from the right, on an element [0, 1] with Gauss points finer than its nodes.
+    """Matrices (values, angles, integrals, ends) on an element [0, 1] with p + 1 nodes and m Gauss points.
 
-    values: nodes to Gauss points; angles: integrals of nodal polynomials from 0 to the Gauss points; both
-    (p + 1, m). integrals: integrals from 0 to the nodes of functions given at the Gauss points, (m, p + 1);
-    ends: integrals of nodal polynomials from 0 to the nodes, (p + 1, p + 1).
+    All are applied from the right. values: interpolation from nodes to Gauss points, (p + 1, m). angles:
+    integrals of nodal polynomials from 0 to the Gauss points, (p + 1, m). integrals: integrals from 0 to the
+    nodes of functions given at the Gauss points, (m, p + 1). ends: integrals of nodal polynomials from 0 to
+    the nodes, (p + 1, p + 1).
     """
-    x, g = gauss_lobatto(order)[0], gauss(order + EXTRA_POINTS)[0]
+    x = gauss_lobatto(order)[0]
+    g = gauss(order + EXTRA_POINTS)[0]
     return interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T
 
 
 def primitive(nodes: Array, ends: Array) -> Array:
-    """Matrix from values at `nodes` to half the integral of their polynomial from -1 to each end.
+    """Matrix from values at `nodes` to half the integral of the interpolant from -1 to each end.
 
-    Shape (ends, nodes).
+    nodes: (n,). ends: (m,). Shape (m, n).
     """
     points, weights = gauss(len(nodes))
     return np.array(

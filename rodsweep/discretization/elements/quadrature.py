@@ -7,6 +7,12 @@ from numpy.polynomial import legendre
 
 from ...arrays import Array
 
+MAX_NODE_STEPS = 50
+"""Maximum Newton steps to the Lobatto nodes, for the rare case that rounding errors keep the steps above the
+tolerance."""
+NODE_TOLERANCE = 4e-16
+"""Newton step at which the Lobatto nodes have converged to rounding error."""
+
 
 @cache
 def gauss(n: int) -> tuple[Array, Array]:
@@ -19,15 +25,15 @@ def gauss(n: int) -> tuple[Array, Array]:
 def gauss_lobatto(p: int) -> tuple[Array, Array]:
     """Nodes and weights of the (p + 1)-point Lobatto rule, exact to degree 2p - 1; shape (p + 1,).
 
-    The inner nodes are the zeros of P_p', found by Newton from Chebyshev's points.
+    The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points.
     """
     x = -np.cos(np.pi * np.arange(p + 1) / p)
-    for _ in range(50):
+    for _ in range(MAX_NODE_STEPS):
         # (1 - x^2) P_p' = p (P_{p-1} - x P_p) and its derivative -p (p + 1) P_p.
         P, Q = _legendre_pair(p, x)
         step = (x * P - Q) / ((p + 1) * P)
         x = x - step
-        if np.abs(step).max() < 4e-16:
+        if np.abs(step).max() < NODE_TOLERANCE:
             break
     x = (x - x[::-1]) / 2
     x[0], x[-1] = -1.0, 1.0
@@ -40,8 +46,9 @@ def lobatto_points(nodes: int) -> Array:
 
 
 def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
-    """P_p(x) and P_{p-1}(x) by the three-term recurrence."""
-    below, here = np.ones_like(x), x.copy()
+    """P_p(x) and P_{p-1}(x) by the three-term recurrence; all arrays have the shape of x, (n,)."""
+    previous = np.ones_like(x)
+    current = x.copy()
     for n in range(1, p):
-        below, here = here, ((2 * n + 1) * x * here - n * below) / (n + 1)
-    return here, below
+        previous, current = current, ((2 * n + 1) * x * current - n * previous) / (n + 1)
+    return current, previous

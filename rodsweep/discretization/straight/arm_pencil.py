@@ -1,8 +1,9 @@
 """The transverse eigenproblem of an arm with profiles and any law as a sparse matrix pencil.
 
-The form is that of `rodsweep.discretization.straight.pencil` with weights c2(u), c3(u), nu(u), g(u) at the
-Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. An element ends where a coefficient jumps, so that
-the solution is smooth within each. The matrix is not affine in any parameter: it is filled for every arm.
+The weak form is that of `rodsweep.discretization.straight.pencil`, with weights c2(u), c3(u), nu(u), g(u) at
+the Gauss points and gamma2(u), gamma3(u) at the Lobatto nodes. Elements end where a coefficient jumps, so the
+solution is smooth within each element. The matrix is not affine in any parameter, and is filled for every
+arm.
 """
 
 from typing import NamedTuple
@@ -19,19 +20,19 @@ from .pencil import LEAST_ANGLE_WEIGHT, SHEAR_WEIGHT
 
 
 class ArmMesh(Elements):
-    """Elements that end where a coefficient jumps."""
+    """Elements for `ArmPencil`; an element must end wherever a coefficient jumps."""
 
     @property
     def unknowns(self) -> int:
-        """The number of unknowns y, theta and s."""
+        """The total number of unknowns y, theta and s."""
         return 3 * self.nodes
 
 
 class Matrices(NamedTuple):
     """The pencil of one arm.
 
-    A: entries in the order of the pattern, (nnz,). B: its diagonal, (unknowns,). scale: what y and theta at
-    the nodes are in units of the unknowns, (2, nodes).
+    A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
+    unknowns to y and theta at the nodes, (2, nodes).
     """
 
     A: Array
@@ -40,15 +41,17 @@ class Matrices(NamedTuple):
 
 
 class ArmPencil:
-    """The pattern of the pencil on a mesh, and its entries for any arm whose breaks are edges of the mesh.
+    """Sparsity pattern on a mesh, and matrices of any arm whose breaks are edges of the mesh.
 
-    rows, columns: of the pattern, (nnz,), sorted by row, then column, diagonal included. The unknowns are
-    (y, theta, s), `mesh.nodes` of each.
+    rows, columns: indices of the pattern, (nnz,), sorted by row, then column, with the diagonal. The unknowns
+    are (y, theta, s), `mesh.nodes` of each.
     """
 
     def __init__(self, mesh: ArmMesh):
         self.mesh = mesh
-        self.order, self.nodes, self.unknowns = mesh.order, mesh.nodes, mesh.unknowns
+        self.order = mesh.order
+        self.nodes = mesh.nodes
+        self.unknowns = mesh.unknowns
         edges = np.array(mesh.edges)
         self._h = mesh.lengths
         self._x, self._w = gauss_lobatto(mesh.order)
@@ -68,14 +71,17 @@ class ArmPencil:
         return self.mesh.positions
 
     def finite(self, rod: Rod) -> int:
-        """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
+        """The number of finite eigenvalues; theta adds none without shear or without rotational drag."""
         return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
 
     def matrices(self, rod: Rod) -> Matrices:
         """The pencil of an arm."""
-        inside, at_nodes = rod.local(self._gauss_points), rod.local(self._lobatto_points)
+        inside = rod.local(self._gauss_points)
+        at_nodes = rod.local(self._lobatto_points)
         weight = self._wg * self._h[:, None] / 2
-        S, V, wg = self._slope, self._value, self._wg
+        S = self._slope
+        V = self._value
+        wg = self._wg
         shape = (self.mesh.elements, self.order + 1, self.order)
         blocks = [
             np.broadcast_to(-S.T * wg, shape),
@@ -89,7 +95,8 @@ class ArmPencil:
         entries = np.concatenate([*(block.ravel() for block in blocks), [-rod.F]])
         summed = np.bincount(self._where, entries, minlength=len(self.rows) + 1)[: len(self.rows)]
         lumped = self._w * self._h[:, None] / 2
-        push, turn = self._at_nodes(lumped * at_nodes.gamma2), self._at_nodes(lumped * at_nodes.gamma3)
+        push = self._at_nodes(lumped * at_nodes.gamma2)
+        turn = self._at_nodes(lumped * at_nodes.gamma3)
         least = LEAST_ANGLE_WEIGHT**2 * self._at_nodes(lumped)
         angle = np.maximum(turn, least)
         masses = np.concatenate([push, angle, weight.ravel() * SHEAR_WEIGHT**2])
@@ -99,14 +106,17 @@ class ArmPencil:
         return Matrices(A, B, scale[: 2 * self.nodes].reshape(2, -1))
 
     def dense(self, rod: Rod) -> tuple[Array, Array]:
-        """(A, diagonal of B) of the arm as whole arrays, shapes (unknowns, unknowns) and (unknowns,)."""
-        found = self.matrices(rod)
+        """(A, diagonal of B) of the arm as dense arrays, shapes (unknowns, unknowns) and (unknowns,)."""
+        sparse = self.matrices(rod)
         A = np.zeros((self.unknowns, self.unknowns))
-        A[self.rows, self.columns] = found.A
-        return A, found.B
+        A[self.rows, self.columns] = sparse.A
+        return A, sparse.B
 
     def fields(self, vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, the clamp included, (nodes + 1, k), of k vectors; scale: of `matrices`."""
+        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k).
+
+        scale: `Matrices.scale`, (2, nodes).
+        """
         clamp = np.zeros((1, vectors.shape[1]))
         y = vectors[: self.nodes] * scale[0][:, None]
         theta = vectors[self.nodes : 2 * self.nodes] * scale[1][:, None]
@@ -117,12 +127,15 @@ class ArmPencil:
         return self.mesh.evaluation(points)
 
     def _at_nodes(self, values: Array) -> Array:
-        """Sums over elements of values at their nodes, (elements, order + 1), without the clamp, (nodes,)."""
-        place = (self._y + 1).ravel()
-        return np.asarray(np.bincount(place, values.ravel(), minlength=self.nodes + 1)[1:], float)
+        """Values of the elements, (elements, order + 1), summed at each node except the clamp, (nodes,)."""
+        node = (self._y + 1).ravel()
+        return np.asarray(np.bincount(node, values.ravel(), minlength=self.nodes + 1)[1:], float)
 
     def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
-        """(rows, columns, place of each entry of the blocks); the clamp's entries go behind the last one."""
+        """(rows, columns, index in the pattern of each entry of the blocks of `matrices`).
+
+        Entries of the clamp have an index beyond the pattern.
+        """
         n, size, y = self.nodes, self.unknowns, self._y
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.elements, self.order)
@@ -138,7 +151,10 @@ class ArmPencil:
 
 
 def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
-    """row * size + column of each entry of the elements' blocks; negative where one of them is the clamp."""
+    """row * size + column of each entry of the elements' blocks; -1 if the row or column is the clamp.
+
+    rows, columns: (elements, n) and (elements, m).
+    """
     keys = rows[:, :, None] * size + columns[:, None, :]
     clamped = (rows < 0)[:, :, None] | (columns < 0)[:, None, :]
     return np.where(clamped, -1, keys).ravel()

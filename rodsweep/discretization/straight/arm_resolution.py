@@ -1,4 +1,4 @@
-"""How fine a mesh of an arm must be: where its elements end, and their order."""
+"""Choice of the mesh of an arm: edges and order of the elements."""
 
 from math import ceil, hypot, log, pi
 
@@ -12,15 +12,15 @@ from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WA
 from .arm_pencil import ArmMesh
 
 SAMPLES = 33
-"""Points of each smooth piece at which local waves are looked up."""
+"""Points of each smooth piece at which local wave numbers are evaluated."""
 LARGEST_RATIO = 2.2
-"""Largest ratio of the radii at the ends of an element: order 12 then gives eigenvalues to 1e-4."""
+"""Largest ratio of the radii at the ends of an element, for which order 12 gives eigenvalues to 1e-4."""
 FOR_PROFILES = 2
-"""Orders added where coefficients vary within an element."""
+"""Increase of the order for coefficients that vary within an element."""
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
-    """The mesh that should give so many leading eigenvalues to a relative accuracy."""
+    """A mesh expected to give `modes` leading eigenvalues to the relative accuracy."""
     points, weights = _samples(rod)
     _, amplified = local_growth(rod, points)
     at_rest = (modes - MODE_OFFSET) * pi * _local_share(rod, points, weights)
@@ -32,14 +32,14 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
 def arm_elements(
     rod: Rod, wave_number: float, accuracy: float, largest_order: int = LARGEST_ORDER
 ) -> Elements:
-    """Elements that resolve a field of an arm with a mean wave number to a relative accuracy."""
+    """Elements that resolve a field with the mean wave number `wave_number` to the relative accuracy."""
     points, weights = _samples(rod)
     waves = wave_number * _local_share(rod, points, weights)
     return _resolving(rod, waves * weights, accuracy, largest_order)
 
 
 def _samples(rod: Rod) -> tuple[Array, Array]:
-    """Points of the smooth pieces of an arm, and the length that each stands for, (n,) both."""
+    """Midpoints of short intervals of an arm, and their lengths, both (n,)."""
     breaks = rod.build.breaks
     inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
     points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
@@ -47,17 +47,18 @@ def _samples(rod: Rod) -> tuple[Array, Array]:
 
 
 def _local_share(rod: Rod, points: Array, weights: Array) -> Array:
-    """Wave numbers of one frequency at points, in units of their mean; all (n,)."""
+    """Local wave number at one frequency, in units of the mean over the arm; all arrays (n,)."""
     local = rod.local(points)
     at_rest: Array = (local.gamma2 * local.c3) ** 0.25
     return at_rest / (weights @ at_rest)
 
 
 def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
-    """Elements that resolve waves which turn by `turns` around each sample, (n,)."""
+    """Elements that resolve waves; turns: phase, |q| times length, of each sample interval, (n,)."""
     breaks = rod.build.breaks
     shares = turns.reshape(len(breaks) - 1, -1).sum(axis=1)
-    edges, largest = [0.0], 0.0
+    edges = [0.0]
+    largest = 0.0
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
         needed = _elements_for(float(share), accuracy, largest_order)
@@ -69,7 +70,7 @@ def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> E
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
-    """The next mesh after one that proved too coarse: a third more order, or twice the elements."""
+    """The next finer mesh: the order times 4/3, or twice as many elements of 2/3 of the order."""
     order = ceil(mesh.order * 4 / 3)
     if order <= LARGEST_ORDER:
         return ArmMesh(mesh.edges, order)
@@ -80,7 +81,7 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
 
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
-    """The number of elements of the largest order that resolve a piece whose waves turn by `share`."""
+    """Number of elements of the largest order that resolve a piece over which the phase grows by `share`."""
     count = 1
     while required_order(share / count, accuracy) > largest_order:
         count += 1
@@ -92,7 +93,7 @@ def _radius(rod: Rod, u: float) -> float:
 
 
 def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
-    """The ends of `count` elements from start to stop, with equal ratios of radii."""
+    """Ends of `count` elements from start to stop, without start, with equal ratios of radii."""
     if rod.taper == 1:
         inner: Array = np.linspace(start, stop, count + 1)[1:]
     else:

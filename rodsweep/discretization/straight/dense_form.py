@@ -1,6 +1,6 @@
-"""The transverse problem of one rod on one mesh as whole matrices, and the fields of its vectors.
+"""The transverse problem of one rod on one mesh as dense matrices, and fields of eigenvectors.
 
-The unknowns (y, theta, s) and their scales are those of `pencil` and `arm_pencil`.
+Unknowns (y, theta, s) and scales are those of `pencil` and `arm_pencil`.
 """
 
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ AnyPencil = Pencil | ArmPencil
 
 @dataclass(frozen=True, eq=False)
 class DenseForm:
-    """A x = w B x of one rod.
+    """The eigenproblem A x = w B x of one rod.
 
-    A: (unknowns, unknowns); B: the diagonal, (unknowns,); scale: what y and theta at the nodes are in units
-    of the unknowns, (2, nodes).
+    A: (unknowns, unknowns). B: diagonal of B, (unknowns,). scale: factors from unknowns to y and theta at the
+    nodes, (2, nodes).
     """
 
     rod: Rod
@@ -33,23 +33,25 @@ class DenseForm:
     scale: Array
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, the clamp included, (nodes + 1, k), of k vectors, (unknowns, k)."""
-        n, clamp = self.mesh.nodes, np.zeros((1, vectors.shape[1]))
+        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
+        n = self.mesh.nodes
+        clamp = np.zeros((1, vectors.shape[1]))
         y, theta = (vectors[i * n : (i + 1) * n] * self.scale[i][:, None] for i in range(2))
         return np.vstack([clamp, y]), np.vstack([clamp, theta])
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
-        """(h2, Pi) = (Y' - nu Theta, Theta') of k vectors at points, (2, k, points).
+        """(h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors at points, (2, k, points).
 
-        h2 = c2 s is exactly 0 in an unshearable rod. Where a coefficient jumps, both are those behind it.
+        h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient, both are right limits.
         """
         c2 = self.rod.local(_inside(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, slope(self.mesh, self.fields(vectors)[1], points).T])
 
     def averaged(self, pair: float, tip: float) -> Array:
-        """A with the term pair (a theta - b y) - tip a y of its test functions (a, b) at u = 1."""
-        A, n = self.A.copy(), self.mesh.nodes
+        """A plus the tip term pair (a theta - b y) - tip a y, with test functions (a, b), at u = 1."""
+        A = self.A.copy()
+        n = self.mesh.nodes
         y, theta = self.scale[:, -1]
         A[n - 1, 2 * n - 1] += pair * y * theta
         A[2 * n - 1, n - 1] -= pair * y * theta
@@ -58,17 +60,17 @@ class DenseForm:
 
 
 def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
-    """The matrices of a rod on the mesh of a pencil."""
+    """The dense eigenproblem of a rod on the mesh of a pencil."""
     if isinstance(pencil, Pencil):
         return DenseForm(rod, pencil, *pencil.dense(rod), pencil.scale(rod))
     return DenseForm(rod, pencil.mesh, *pencil.dense(rod), pencil.matrices(rod).scale)
 
 
 def _inside(mesh: Elements, points: Array) -> Array:
-    """Points, (n,), moved off the ends of the elements that `Elements.by_element` puts them in."""
+    """Points, (n,), moved from the ends of elements into the element of `Elements.by_element`."""
     moved = np.array(points, dtype=float)
-    for first, here, local in mesh.by_element(points):
+    for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
         share = np.clip((local + 1) / 2, INSIDE, 1 - INSIDE)
-        moved[here] = mesh.edges[e] + mesh.lengths[e] * share
+        moved[inside] = mesh.edges[e] + mesh.lengths[e] * share
     return moved

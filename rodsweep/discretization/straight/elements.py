@@ -1,13 +1,13 @@
 """The matrices of the mixed form about the straight rod, element by element.
 
-The equal elements of a uniform rod have the same matrices. A system with A - s M is solved by eliminating the
-nodes inside the elements, with one factorisation for all of them, and then a system for the nodes between
-them: what it costs hardly grows with the number of elements.
+The equal elements of a uniform rod have equal matrices. A system with the matrix A - s M is solved by static
+condensation: the interior nodes of the elements are eliminated, with one factorisation for all elements; then
+a system for the nodes between elements is solved. The cost hardly grows with the number of elements.
 
-About the straight rod stretch and what is across it do not meet: each set of components stands alone.
+About the straight rod longitudinal and transverse components are decoupled, and have separate matrices.
 
-On an element of even order p the inside alone is singular, or nearly so: P_p - 1 vanishes at both ends, and
-its derivative at all nodes between them. Several elements ask for an odd order.
+On an element of even order p the interior block is singular, or nearly so: P_p - 1 vanishes at both ends, and
+its derivative vanishes at all interior nodes. Several elements therefore need an odd order.
 """
 
 from dataclasses import dataclass
@@ -25,26 +25,30 @@ from ..elements.quadrature import gauss_lobatto
 from ..state_layout import COMPONENTS
 from .mixed_form import MixedForm
 
-LONGITUDINAL, TRANSVERSE = (0,), (1, 2)
-"""Components of se(2), of stresses and of velocities, that the reflection in the rod keeps or turns."""
+LONGITUDINAL = (0,)
+"""Components of stresses and velocities in se(2) that keep their sign under reflection in the rod's axis."""
+TRANSVERSE = (1, 2)
+"""Components of stresses and velocities in se(2) that change their sign under reflection in the rod's
+axis."""
 
 Indices = NDArray[np.int_]
 
 
 @dataclass(frozen=True, eq=False)
 class _Numbering:
-    """Where the unknowns of the elements stand; `local` unknowns of an element, `ends` of them at its ends.
+    """Indices of the elements' unknowns.
 
-    unknowns: (elements, local), into the unknowns of the form and one more, for the stresses of the tip,
-    which are none; inside, ends: local numbers, the left end first; between: (elements, ends), into all
-    unknowns between elements; asked: which of these there are, (all,).
+    An element has `local` unknowns. unknowns: indices in the state, (elements, local); stresses at the tip
+    are not unknowns, and have the index behind the state. inside, ends: local indices of interior unknowns
+    and of unknowns at both ends, the left end first. between: indices of the end unknowns among all unknowns
+    between elements, (elements, ends). exists: False for stresses at the tip, (unknowns between elements,).
     """
 
     unknowns: Indices
     inside: Indices
     ends: Indices
     between: Indices
-    asked: NDArray[np.bool_]
+    exists: NDArray[np.bool_]
 
 
 @lru_cache(maxsize=64)
@@ -61,16 +65,16 @@ def _numbering(elements: int, order: int, components: tuple[int, ...]) -> _Numbe
     ends = ends[np.argsort(node[ends], kind="stable")]
     between = np.arange(elements)[:, None] * width + np.arange(len(ends))
     unknowns = np.concatenate([*stresses, *velocities], axis=1)
-    asked = np.ones(between[-1, -1] + 1, bool)
-    asked[between[-1]] = unknowns[-1, ends] < unknown
-    return _Numbering(unknowns, inside, ends, between, asked)
+    exists = np.ones(between[-1, -1] + 1, bool)
+    exists[between[-1]] = unknowns[-1, ends] < unknown
+    return _Numbering(unknowns, inside, ends, between, exists)
 
 
 @dataclass(frozen=True, eq=False)
 class StraightElements:
-    """A and M of a form about its straight rod, of some components alone, element by element.
+    """A and M of a `MixedForm` about its straight rod, for some components, element by element.
 
-    Vectors have the shape (unknowns,) of the form; what they have in other components does not count.
+    Vectors are states of the form, (unknowns,); other components are ignored.
     """
 
     form: MixedForm
@@ -78,7 +82,7 @@ class StraightElements:
 
     @cached_property
     def numbering(self) -> _Numbering:
-        """Raises ValueError for several elements of an even order."""
+        """Indices of the elements' unknowns. Raises ValueError for several elements of an even order."""
         mesh = self.form.mesh
         if mesh.elements > 1 and mesh.order % 2 == 0:
             raise ValueError(f"several elements need an odd order, not {mesh.order}")
@@ -86,16 +90,19 @@ class StraightElements:
 
     @cached_property
     def A(self) -> Array:
-        """What an element has of A, shape (local, local)."""
-        form, each, some = self.form, np.eye(COMPONENTS), np.ix_(self.components, self.components)
-        material = form.rod.material
-        E, Sigma = material.rest[:, None], material.tip_stress[:, None]
+        """Element contribution to A, shape (local, local)."""
+        each = np.eye(COMPONENTS)
+        block = np.ix_(self.components, self.components)
+        material = self.form.rod.material
+        E = material.rest[:, None]
+        Sigma = material.tip_stress[:, None]
         WD, W = self._reference
-        half, nodes = len(self.components), np.arange(len(W))
+        half = len(self.components)
+        nodes = np.arange(len(W))
         at_nodes = np.zeros((2 * half, 2 * half))
-        at_nodes[:half, half:] = ad(E, each)[some]
-        at_nodes[half:, :half] = (coad(E, each) + coad(np.diag(material.compliance), Sigma))[some]
-        at_nodes[half:, half:] = -np.diag(material.drag)[some]
+        at_nodes[:half, half:] = ad(E, each)[block]
+        at_nodes[half:, :half] = (coad(E, each) + coad(np.diag(material.compliance), Sigma))[block]
+        at_nodes[half:, half:] = -np.diag(material.drag)[block]
         A = np.zeros((2 * half, len(W), 2 * half, len(W)))
         A[:, nodes, :, nodes] = W[:, None, None] * at_nodes
         for stress in range(half):
@@ -105,7 +112,7 @@ class StraightElements:
 
     @cached_property
     def M(self) -> Array:
-        """What an element has of the diagonal of M, shape (local,)."""
+        """Element contribution to the diagonal of M, shape (local,)."""
         stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
@@ -116,51 +123,54 @@ class StraightElements:
         return WD, w / (2 * self.form.mesh.elements)
 
     def times_A(self, x: Values) -> Values:
-        """A x."""
+        """A x, shape (unknowns,)."""
         return self.assembled(self.gathered(x) @ self.A.T)
 
     def times_M(self, x: Values) -> Values:
-        """M x."""
+        """M x, shape (unknowns,)."""
         return self.assembled(self.gathered(x) * self.M)
 
     def size_of_product(self, p: Values, q: Values) -> float:
-        """|p| |A| |q|: what rounding in p A q is a part of."""
+        """|p| |A| |q|, with moduli of all entries: the scale of the rounding error of p A q."""
         return float(np.sum(np.abs(self.gathered(p)) * (np.abs(self.gathered(q)) @ np.abs(self.A).T)))
 
     def gathered(self, x: Values) -> Values:
-        """What the elements have of a vector, shape (elements, local)."""
+        """Entries of a vector by element, shape (elements, local)."""
         return np.append(x, 0)[self.numbering.unknowns]
 
     def assembled(self, parts: Values) -> Values:
-        """The vector to which the elements contribute (elements, local)."""
+        """The sum of element contributions, (elements, local), as a vector (unknowns,)."""
         x = np.zeros(self.form.unknowns + 1, parts.dtype)
         np.add.at(x, self.numbering.unknowns, parts)
         return x[:-1]
 
     def factors(self, shift: complex) -> "ElementFactors":
-        """A - shift M, factorised."""
-        numbering, K = self.numbering, self.A - np.diag(shift * self.M).astype(complex)
-        ends, asked = numbering.ends, numbering.asked
-        inside, condensed = None, K[np.ix_(ends, ends)]
+        """Factorisation of A - shift M."""
+        numbering = self.numbering
+        K = self.A - np.diag(shift * self.M).astype(complex)
+        condensed = K[np.ix_(numbering.ends, numbering.ends)]
+        inside = None
         if numbering.inside.size:
             inside = _Inside.of(K, numbering)
             condensed -= inside.entering @ inside.right
-        whole = np.zeros((len(asked), len(asked)), complex)
-        for here in numbering.between:
-            whole[np.ix_(here, here)] += condensed
-        return ElementFactors(
-            elements=self, K=K, inside=inside, between=factorised(whole[np.ix_(asked, asked)])
-        )
+        exists = numbering.exists
+        whole = np.zeros((len(exists), len(exists)), complex)
+        for element in numbering.between:
+            whole[np.ix_(element, element)] += condensed
+        between = factorised(whole[np.ix_(exists, exists)])
+        return ElementFactors(elements=self, K=K, inside=inside, between=between)
 
 
 LU = tuple[Complex, NDArray[np.int32]]
+"""LU factorisation of LAPACK: factors and pivots."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Inside:
-    """The nodes inside an element eliminated: K_ii factorised, K_ie, K_ei, K_ii^-1 K_ie, K_ii^-H K_ei^H.
+    """Elimination of the interior unknowns i of an element, with unknowns e at its ends.
 
-    Of the shapes (inside, ends), (ends, inside), (inside, ends), (inside, ends).
+    factors: factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
+    K_ii^-1 K_ie, (inside, ends). left: K_ii^-H K_ei^H, (inside, ends).
     """
 
     factors: LU
@@ -171,21 +181,24 @@ class _Inside:
 
     @classmethod
     def of(cls, K: Complex, numbering: _Numbering) -> Self:
-        """Elimination of the interior of an element from its matrix K, (local, local)."""
-        inside, ends = numbering.inside, numbering.ends
+        """Elimination of the interior unknowns from the element matrix K, (local, local)."""
+        inside = numbering.inside
+        ends = numbering.ends
         factors = factorised(K[np.ix_(inside, inside)])
-        leaving, entering = K[np.ix_(inside, ends)], K[np.ix_(ends, inside)]
-        right, left = solved_with(factors, leaving), solved_with(factors, entering.conj().T, adjoint=True)
+        leaving = K[np.ix_(inside, ends)]
+        entering = K[np.ix_(ends, inside)]
+        right = solved_with(factors, leaving)
+        left = solved_with(factors, entering.conj().T, adjoint=True)
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
-    def passed(self, adjoint: bool) -> tuple[Complex, Complex]:
-        """What passes on what lies inside to the ends, and back: K_ei, K_ii^-1 K_ie, or of K^H."""
+    def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
+        """Coupling of interior and ends: (K_ei, K_ii^-1 K_ie), or the same of K^H."""
         return (self.leaving.conj().T, self.left) if adjoint else (self.entering, self.right)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ElementFactors:
-    """K = A - shift M, factorised: inside the elements if there are several, and between them."""
+    """Factorisation of K = A - shift M: K is the element matrix, `inside` is None for a single element."""
 
     elements: StraightElements
     K: Complex
@@ -193,27 +206,32 @@ class ElementFactors:
     between: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
-        """x of K x = b, or of K^H x = b, (unknowns,).
+        """The solution x of K x = b, or of K^H x = b; both (unknowns,).
 
-        With a step of iterative refinement where what lies inside was eliminated without pivots from between.
+        The elimination of the interior has no pivots from outside, so a step of iterative refinement follows.
         """
-        x, elements = self._eliminated(b, adjoint), self.elements
+        elements = self.elements
+        x = self._eliminated(b, adjoint)
         if self.inside is None:
             return x
         rows = self.K.conj() if adjoint else self.K.T
         return x + self._eliminated(b - elements.assembled(elements.gathered(x) @ rows), adjoint)
 
     def _eliminated(self, b: Values, adjoint: bool) -> Complex:
-        numbering, inside = self.elements.numbering, self.inside
-        within, ends = (numbering.unknowns[:, part] for part in (numbering.inside, numbering.ends))
-        right, between = np.zeros((2, len(numbering.asked)), complex)
-        b, x = np.append(b, 0), np.zeros(len(b) + 1, complex)
+        numbering = self.elements.numbering
+        inside = self.inside
+        within = numbering.unknowns[:, numbering.inside]
+        ends = numbering.unknowns[:, numbering.ends]
+        right = np.zeros(len(numbering.exists), complex)
+        between = np.zeros(len(numbering.exists), complex)
+        b = np.append(b, 0)
+        x = np.zeros(len(b), complex)
         right[numbering.between] = b[ends]
         if inside is not None:
-            to_ends, from_ends = inside.passed(adjoint)
+            to_ends, from_ends = inside.coupling(adjoint)
             alone = solved_with(inside.factors, b[within].T, adjoint).T
             np.subtract.at(right, numbering.between, alone @ to_ends.T)
-        between[numbering.asked] = solved_with(self.between, right[numbering.asked], adjoint)
+        between[numbering.exists] = solved_with(self.between, right[numbering.exists], adjoint)
         x[ends] = between[numbering.between]
         if inside is not None:
             x[within] = alone - between[numbering.between] @ from_ends.T
@@ -221,19 +239,19 @@ class ElementFactors:
 
 
 def factorised(K: Complex) -> LU:
-    """LU with partial pivoting of K, (n, n); a singular matrix gives infinite or nan numbers."""
+    """LU factorisation of K, (n, n), with partial pivoting; a singular matrix gives inf or nan solutions."""
     factors, pivots, _ = zgetrf(K)
     return factors, pivots
 
 
 def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
-    """x of K x = right, or of K^H x = right, with right sides (n,) or (n, m)."""
+    """The solution x of K x = right, or of K^H x = right; right: (n,) or (n, m)."""
     x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
     return x
 
 
 @lru_cache(maxsize=64)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
-    """(W D, W) on [-1, 1]: the lengths of elements cancel in W D."""
+    """(W D, W) on [-1, 1], (order + 1, order + 1) and (order + 1,); W D does not depend on the length."""
     x, w = gauss_lobatto(order)
     return w[:, None] * differentiation(x), w

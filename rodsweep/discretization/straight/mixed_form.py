@@ -1,8 +1,8 @@
 """The nonlinear rod in the plane in its mixed form: stresses and velocities in the body frame, on a mesh.
 
-The balance of `rodsweep.model.balance` with both fields kept as unknowns. S is what the stress of a linear
-rod has beyond that of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3); W are the weights of the
-quadrature, D is the derivative, and s(S) is the constitutive law, S itself for a linear rod:
+The balance of `rodsweep.model.balance` with stresses and velocities as unknowns. S is the stress of a linear
+rod minus the stress of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3). W are the weights of the
+quadrature, D is the derivative, and s(S) is the constitutive law, s(S) = S for a linear rod:
 
     W C dS/dt = -D^T W V + W ad_E V          at all nodes but the tip; the clamp V(0) = 0 is natural
     0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + s(S); S(1) = 0 is essential
@@ -11,10 +11,11 @@ where E = (nu, 0, 0) + C S. With X = (S; v1, v2, Omega3) this is
 
     M dX/dt = A X + B(X, X)/2 + C(X, X, X)/6 + ...,
 
-where only the law makes terms beyond the quadratic ones. No stiffness is divided by, so that
-c1 = c2 = gamma3 = 0 are ordinary values. M is singular: what of X carries no time derivative is bound by the
-equations. On several elements the fields are continuous and D = W^-1 sum_e W_e D_e. Summation by parts,
-W D + D^T W = diag(-1, 0, ..., 0, 1), and with it the energy law hold to rounding on every mesh.
+where terms beyond the quadratic ones come from the law alone. No formula contains a stiffness or the inverse
+of a drag, so c1 = c2 = gamma3 = 0 are allowed. M is singular: components of X without a time derivative
+satisfy algebraic equations. On several elements the fields are continuous and D = W^-1 sum_e W_e D_e.
+Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and therefore the energy law hold to rounding on
+every mesh.
 """
 
 from dataclasses import dataclass
@@ -39,9 +40,9 @@ MIRROR = np.array([1.0, -1.0, -1.0])
 class MixedForm:
     """One rod on one mesh; k1, k2 may be inf and gamma3 may be 0.
 
-    X has the shape (..., unknowns): with N = mesh.nodes first the N values of S1, of S2 (k3/L^2) and of
-    S3 (k3/L) at the nodes but the tip, then the N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at
-    all nodes. It may be complex everywhere.
+    X has the shape (..., unknowns), with N = mesh.nodes: N values of S1, of S2 (k3/L^2) and of S3 (k3/L) at
+    all nodes except the tip, then N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at all nodes. X
+    may be complex.
     """
 
     rod: Rod
@@ -49,7 +50,7 @@ class MixedForm:
 
     @cached_property
     def layout(self) -> StateLayout:
-        """Positions of the fields in X; every component of V is an unknown."""
+        """Positions of the fields in X; all components of V are unknowns."""
         return plane_layout(self.mesh.nodes, tuple(range(COMPONENTS)))
 
     @property
@@ -63,7 +64,7 @@ class MixedForm:
 
     @cached_property
     def nodal(self) -> NodalRod:
-        """Compliance, drag and rest at all nodes, and the force."""
+        """Compliance, drag and strain at rest at all nodes, and the tip stress."""
         return nodal_rod(material_on(self.rod, self.mesh), self.mesh, tuple(range(COMPONENTS)))
 
     @cached_property
@@ -73,7 +74,7 @@ class MixedForm:
 
     @cached_property
     def parity(self) -> Array:
-        """The diagonal of R, which maps motions to their mirror images, motions too; +-1, (unknowns,)."""
+        """Diagonal of R, which maps X to its mirror image; +-1, (unknowns,). R X solves the equations too."""
         signs = np.repeat(MIRROR[:, None], self.mesh.nodes + 1, axis=1)
         return self.layout.state(signs, signs)
 
@@ -85,9 +86,12 @@ class MixedForm:
 
     @cached_property
     def A(self) -> Array:
-        """A, shape (unknowns, unknowns)."""
-        N, stresses, velocities = self.mesh.nodes, slice(self.stresses), slice(self.stresses, None)
-        WD, each = -self.mesh.matrices.weak.T, np.eye(COMPONENTS)
+        """The matrix A, shape (unknowns, unknowns)."""
+        N = self.mesh.nodes
+        stresses = slice(self.stresses)
+        velocities = slice(self.stresses, None)
+        WD = -self.mesh.matrices.weak.T
+        each = np.eye(COMPONENTS)
         A = self._coupling()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
         A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law.tangent[:, :N].ravel()
@@ -95,8 +99,9 @@ class MixedForm:
         return A
 
     def times_A_F(self, X: Values) -> Values:
-        """dA/dF X, shape (..., unknowns)."""
-        (S, V), W = self.fields(X), self.mesh.quadrature
+        """(dA/dF) X, shape (..., unknowns)."""
+        S, V = self.fields(X)
+        W = self.mesh.quadrature
         change = self.law.change
         E = first_field(change.nu)
         moved = self._along(change.tangent, S) * S
@@ -108,27 +113,31 @@ class MixedForm:
 
     @cached_property
     def tip_y(self) -> Array:
-        """The row that gives the tip's y in L to first order in X, (unknowns,).
+        """The row, (unknowns,), whose product with X is y of the tip in L to first order.
 
         y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
         """
-        W, c = self.mesh.quadrature[:-1], self.nodal.compliance[:, :-1]
+        W = self.mesh.quadrature[:-1]
+        c = self.nodal.compliance[:, :-1]
         return self.layout.row(
             {"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self.nodal.rest[0])[:-1] * W}
         )
 
     def fields(self, X: Values) -> tuple[Values, Values]:
-        """(S, V) at all nodes, the tip included, each of shape (3, ..., nodes + 1)."""
+        """(S, V) at all nodes, tip included, each of shape (3, ..., nodes + 1)."""
         return self.layout.stresses(X), self.layout.velocities(X)
 
     def unknown(self, S: Values, V: Values) -> Values:
-        """X of (S, V) at all nodes, each (3, ..., nodes + 1); what S has at the tip does not count."""
+        """X from (S, V) at all nodes, each (3, ..., nodes + 1); S at the tip is ignored."""
         return self.layout.state(S, V)
 
     def bilinear(self, X: Values, Y: Values) -> Values:
         """B(X, Y) = B(Y, X), shape (..., unknowns)."""
-        (S, U), (T, V) = self.fields(X), self.fields(Y)
-        CS, CT, W = self._strain(S), self._strain(T), self.mesh.quadrature
+        S, U = self.fields(X)
+        T, V = self.fields(Y)
+        CS = self._strain(S)
+        CT = self._strain(T)
+        W = self.mesh.quadrature
         forces: Values = W * (coad(CS, self._stressed(T)) + coad(CT, self._stressed(S)))
         if self.law.nonlinear:
             second = self.law.second(S, T)
@@ -138,7 +147,8 @@ class MixedForm:
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
         """C(X, Y, Z), symmetric, shape (..., unknowns); 0 for a linear law."""
         S, T, R = (self.fields(each)[0] for each in (X, Y, Z))
-        W, law = self.mesh.quadrature, self.law
+        W = self.mesh.quadrature
+        law = self.law
         third = law.third(S, T, R)
         forces = W * coad(self._along(self.nodal.rest, S), third) + self._slope(third)
         for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
@@ -146,7 +156,7 @@ class MixedForm:
         return self.unknown(np.zeros_like(forces), forces)
 
     def _strain(self, S: Values) -> Values:
-        """C S, the strain beyond that of the straight rod."""
+        """C S, the strain minus the strain of the straight rod."""
         return self._along(self.nodal.compliance, S) * S
 
     def _stressed(self, S: Values) -> Values:
@@ -159,19 +169,22 @@ class MixedForm:
 
     @staticmethod
     def _along(constant: Values, field: Values) -> Values:
-        """Values at the nodes of each component, (3, nodes + 1), to be combined with (3, ..., nodes + 1)."""
+        """A constant (3, nodes + 1), reshaped to broadcast against a field (3, ..., nodes + 1)."""
         return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)
 
     def _coupling(self) -> Array:
         """The matrix of W (ad_E v; ad*_E T s + ad*_{C s} Sigma) in (s; v) about the straight rod."""
-        N, W = self.mesh.nodes, self.mesh.quadrature[:-1]
+        N = self.mesh.nodes
+        W = self.mesh.quadrature[:-1]
         each = np.eye(COMPONENTS)[:, :, None]
-        E, C, T = (a[:, None, :N] for a in (self.nodal.rest, self.nodal.compliance, self.law.tangent))
+        E = self.nodal.rest[:, None, :N]
+        C = self.nodal.compliance[:, None, :N]
+        T = self.law.tangent[:, None, :N]
         Sigma = self.nodal.tip_stress[:, None, None]
         s = np.arange(self.stresses).reshape(COMPONENTS, N)
         v = np.arange(self.stresses, self.unknowns).reshape(COMPONENTS, N + 1)[:, :N]
         matrix = np.zeros((self.unknowns, self.unknowns))
-        # At the tip nothing is left of it: s = 0 there, and E only enters an equation that is not asked.
+        # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, each)
         own = each * np.swapaxes(T, 0, 1)
         strained = each * np.swapaxes(C, 0, 1)
@@ -180,7 +193,7 @@ class MixedForm:
 
 
 def first_field(values: Array) -> Array:
-    """A field of which only the first component is not 0, (3, nodes + 1), from its values, (nodes + 1,)."""
+    """The field (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
     field = np.zeros((COMPONENTS, len(values)))
     field[0] = values
     return field
@@ -191,6 +204,6 @@ def remaining(grid: Mesh, values: Array) -> Array:
     ends = reconstruction(grid.order)[3]
     total = np.zeros(grid.nodes + 1)
     for e, length in enumerate(grid.lengths):
-        here = slice(e * grid.order, (e + 1) * grid.order + 1)
-        total[here] = total[here.start] + length * (values[here] @ ends)
+        element = slice(e * grid.order, (e + 1) * grid.order + 1)
+        total[element] = total[element.start] + length * (values[element] @ ends)
     return total[-1] - total

@@ -7,13 +7,13 @@ the shear force s in discontinuous P_{p-1} (Gauss nodes). With test functions (a
     w gamma3 <b, th> = -<b', theta'> + g <b, s>
     0                =  <c, y' - nu theta> - c2 <c, s>
 
-which is Sec. VI with the shear force kept as an unknown: no stiffness appears, only compliances, so
-that k1, k2 = inf and gamma3 = 0 are ordinary values.
+which is Sec. VI with the shear force kept as an unknown. Only compliances appear, no stiffness, so
+k1, k2 = inf and gamma3 = 0 are allowed.
 
-Every unknown is scaled by the square root of its mass, theta by sqrt(gamma3) and s by SHEAR_WEIGHT
-besides: the Euclidean norm in which a Krylov space is orthogonalised is then the norm of the Gamma
-inner product (Sec. VI), in which the problem at F = 0 is symmetric and s, which carries no time
-derivative, weighs next to nothing. Unscaled, the fourth eigenvalue loses four digits.
+Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by
+SHEAR_WEIGHT. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma
+inner product (Sec. VI): the problem at F = 0 is symmetric, and s, which has no time derivative, has
+almost no weight. Without the scaling the fourth eigenvalue loses four digits.
 """
 
 from dataclasses import dataclass
@@ -30,21 +30,21 @@ from ..elements.elements import Elements, equal_edges
 from ..elements.quadrature import gauss, gauss_lobatto
 
 SHEAR_WEIGHT = 1e-9
-"""Weight of s in the norm. Nearly crushed rods lose seven digits at 1e-3, none below 1e-8."""
+"""Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""
 LEAST_ANGLE_WEIGHT = 1e-4
-"""Weight of theta for gamma3 -> 0, where it carries no time derivative either."""
+"""Smallest weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
 NO_TIP = 1e-10
-"""y(1) in units of the largest value, below which a vector cannot be scaled by it."""
+"""Smallest y(1), in units of the mode's largest value, for which a mode can be normalised to y(1) = 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pencil(Elements):
-    """Constant pieces for equal elements.
+    """The pencil A x = w B x of uniform rods on equal elements, as constant pieces.
 
-    The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i], in coordinate form: pieces
-    has shape (6, nnz), rows and columns shape (nnz,), sorted by row, then column, diagonal included.
-    B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s.
-    The unknowns are (y, theta, s), (nodes, nodes, nodes) of them; `nodes` is without the clamp.
+    The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i], in coordinate form. pieces: (6, nnz).
+    rows, columns: (nnz,), sorted by row, then column, with the diagonal. B is diagonal: 1 for y, gamma3 over
+    the squared angle weight for theta, 0 for s. mass: lumped mass of the nodes, (nodes,). The unknowns are
+    (y, theta, s), `nodes` of each, without the clamp.
     """
 
     rows: NDArray[np.int32]
@@ -57,26 +57,26 @@ class Pencil(Elements):
         return 3 * self.nodes
 
     def finite(self, rod: Rod) -> int:
-        """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
+        """The number of finite eigenvalues; theta adds none without shear or without rotational drag."""
         return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
 
     def coefficients(self, rod: Rod) -> Array:
-        """What the pieces are multiplied by, shape (6,)."""
-        t, g, nu = angle_weight(rod.rotational_drag), rod.g, rod.nu
-        return np.array([1.0, 1 / t**2, rod.F / t, g / t, nu / t, rod.c2])
+        """Factors of the pieces for a rod, shape (6,)."""
+        t = angle_weight(rod.rotational_drag)
+        return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
     def stiffness(self, rod: Rod) -> Array:
         """The entries of A, shape (nnz,)."""
         return self.coefficients(rod) @ self.pieces
 
     def dense_pieces(self) -> Array:
-        """The pieces as whole matrices, column by column as LAPACK stores them, shape (6, unknowns^2)."""
+        """The pieces as dense matrices in column-major order, as LAPACK expects, shape (6, unknowns^2)."""
         whole = np.zeros((6, self.unknowns**2))
         whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
         return whole
 
     def dense(self, rod: Rod) -> tuple[Array, Array]:
-        """(A, diagonal of B) of the rod as whole arrays, shapes (unknowns, unknowns) and (unknowns,)."""
+        """(A, diagonal of B) of the rod as dense arrays, shapes (unknowns, unknowns) and (unknowns,)."""
         A = np.zeros((self.unknowns, self.unknowns))
         A[self.rows, self.columns] = self.stiffness(rod)
         return A, self.inertia(rod)
@@ -89,12 +89,12 @@ class Pencil(Elements):
         return B
 
     def scale(self, rod: Rod) -> Array:
-        """What y and theta at the nodes are in units of the unknowns, (2, nodes)."""
+        """Factors from unknowns to y and theta at the nodes, (2, nodes)."""
         push = 1 / np.sqrt(self.mass)
         return np.stack([push, push / angle_weight(rod.rotational_drag)])
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, the clamp included, shape (nodes + 1, k), from k eigenvectors."""
+        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
         push, turn = self.scale(rod)[:, :, None]
         clamp = np.zeros((1, vectors.shape[1]))
         y = vectors[: self.nodes] * push
@@ -103,42 +103,43 @@ class Pencil(Elements):
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm: sqrt(gamma3), bounded below."""
+    """Weight of theta in the norm: sqrt(gamma3), at least `LEAST_ANGLE_WEIGHT`."""
     return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
-    """Factors (k,) that scale k modes (nodes + 1, k) to y(1) = 1; NaN for a mode whose tip does not move."""
+    """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode with y(1) = 0."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
-    """s of the vectors at `points`, from its own unknowns at the Gauss nodes; shape (points, k)."""
+    """s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points; shape (points, k)."""
     nodes, weights = gauss(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * SHEAR_WEIGHT**2
     values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
-    for first, here, local in mesh.by_element(points):
-        result[here] = interpolation(nodes, local) @ values[first : first + mesh.order]
+    for first, inside, local in mesh.by_element(points):
+        result[inside] = interpolation(nodes, local) @ values[first : first + mesh.order]
     return result
 
 
 def slope(mesh: Elements, values: Complex, points: Array) -> Complex:
-    """The derivative at `points` of fields given at all nodes, shape (nodes + 1, k); shape (points, k)."""
+    """Derivatives at points of k fields given at all nodes, (nodes + 1, k); shape (points, k)."""
     nodes, _ = gauss_lobatto(mesh.order)
     derivative = 2 * differentiation(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
-    for first, here, local in mesh.by_element(points):
+    for first, inside, local in mesh.by_element(points):
         changes = derivative @ values[first : first + mesh.order + 1] / mesh.lengths[first // mesh.order]
-        result[here] = interpolation(nodes, local) @ changes
+        result[inside] = interpolation(nodes, local) @ changes
     return result
 
 
 @lru_cache(maxsize=64)
 def assemble(elements: int, order: int) -> Pencil:
-    """The constant pieces on `elements` equal elements of order `order`."""
-    n, h = elements * order, 1 / elements
+    """The pencil on `elements` equal elements of order `order`."""
+    n = elements * order
+    h = 1 / elements
     x, w = gauss_lobatto(order)
     xg, wg = gauss(order)
     value = interpolation(x, xg)
@@ -150,8 +151,11 @@ def assemble(elements: int, order: int) -> Pencil:
         mass[local] += w * h / 2
         keep = local > 0
         y = local[keep] - 1
-        theta, s = n + y, 2 * n + np.arange(e * order, (e + 1) * order)
-        test, test_slope, weight = value[:, keep], slope[:, keep], wg * h / 2
+        theta = n + y
+        s = 2 * n + np.arange(e * order, (e + 1) * order)
+        test = value[:, keep]
+        test_slope = slope[:, keep]
+        weight = wg * h / 2
         entries += [
             (0, y, s, -test_slope.T * wg),
             (0, s, y, wg[:, None] * test_slope),
@@ -167,7 +171,10 @@ def assemble(elements: int, order: int) -> Pencil:
 
 
 def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
-    """Sums the element entries (piece, rows, columns, block) into one sorted coordinate pattern."""
+    """The `Pencil` from element entries (piece, rows, columns, block), summed into one sorted pattern.
+
+    mass: (nodes,). scale: scale of the unknowns, (unknowns,).
+    """
     size = 3 * elements * order
     diagonal = np.arange(size)
     key = [diagonal * size + diagonal]

@@ -1,28 +1,28 @@
 """The nonlinear rod on a mesh with its stresses as unknowns: its balance, compiled.
 
-Sec. III, second formulation, in the plane and in space: only the structure constants of `model.algebra`, the
-first argument `g`, tell the one from the other. The unknowns S are the stresses beyond those of the straight
-rod that a linear rod has, at every node but the tip, where they vanish. With the compliances C and the drags
-Gamma of each node, the assembled differentiation matrix D, the nodes' weights W and E0, the strain of the
+Sec. III, second formulation, in the plane and in space; the argument `g`, an algebra of `model.algebra`,
+makes the difference. The unknowns S are the stresses of a linear rod with the same strain, minus the stresses
+of the straight rod, at every node except the tip, where S = 0. With the compliances C and the drags Gamma of
+each node, the assembled differentiation matrix D, the weights W of the nodes, and the strain E0 of the
 straight rod under its force,
 
     E = E0 + C S,    Sigma = Sigma(1) + s(S),    Gamma V = D*_E Sigma = D s(S) + ad*_E Sigma,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
 
-The constitutive law is s(S), local at each node (`rodsweep.model.material.response`), and s(S) = S of a
-linear rod. The strain is affine in S for every law, so that the left side is constant and diagonal.
+The constitutive law is s(S), local at each node (`rodsweep.model.material.response`); s(S) = S for a linear
+rod. The strain is affine in S for every law, so the matrix W C of dS/dt is constant and diagonal.
 
-Nothing is divided by a stiffness, so that a compliance of 0 is one like others: its stress is then without a
-derivative. At the tip G is the reaction r, and -r is the tip's velocity: it converges twice as fast as V
-itself, and dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The tip's stress is essential, the clamp
-V(0) = 0 natural.
+A compliance of 0 is allowed, since no formula divides by it; the stress then has no time derivative. At the
+tip G is the reaction r, and -r is the velocity of the tip: -r converges twice as fast as V(1), and
+dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The condition for the tip's stress is essential, the
+clamp V(0) = 0 is natural.
 
-V is eliminated, but for components whose drag is so small that the division by it costs digits: these are
-further unknowns at all nodes, the tip's included, and W (D*_E Sigma - Gamma V) = 0 are their equations.
-States are flat: S, one component at every node after the other, then the components of V that are unknown.
+V is eliminated, except components whose drag is so small that division by the drag costs digits. These
+components are further unknowns at all nodes, tip included, with the equations W (D*_E Sigma - Gamma V) = 0.
+A state is flat: S1 at every node, S2 at every node, and so on, then the unknown components of V.
 
-`rodsweep.model.balance` states the balance without mesh, `mixed_form` with all of V as unknowns; the exact
-Jacobian is in `stress_jacobian`.
+`rodsweep.model.balance` has the balance without mesh, `mixed_form` has all of V as unknowns, `jacobian` has
+the exact Jacobian.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ from ..state_layout import stress_place, velocity_place
 
 @OverAlgebra
 def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """E and s(S) at all nodes of a state x, into E and S, (d, nodes + 1) both."""
+    """Writes E and s(S) of a state x, (unknowns,), at all nodes into E and S, both (d, nodes + 1)."""
     size = E.shape[1]
     for i in range(size):
         s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
@@ -52,7 +52,7 @@ def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
 
 @compiled
 def apply_law(S: Array, c: NodalRod) -> None:
-    """Replaces S at all nodes of a rod in the plane, (3, nodes + 1), by s(S)."""
+    """Replaces S by s(S) at all nodes, (3, nodes + 1), of a rod in the plane."""
     for i in range(S.shape[1]):
         at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
         S[0, i], S[2, i] = stress(c.law, at, S[0, i], S[2, i])
@@ -60,7 +60,7 @@ def apply_law(S: Array, c: NodalRod) -> None:
 
 @OverAlgebra
 def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """D*_E Sigma at all nodes into out, (d, nodes + 1), from the `fields` E and S."""
+    """Writes D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of `fields`."""
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
@@ -79,7 +79,7 @@ def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatri
 
 @OverAlgebra
 def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
-    """W D_E V, weakly, at all nodes, into G, from E and V; all (d, nodes + 1)."""
+    """Writes the weak form of W D_E V at all nodes into G, from E and V; all (d, nodes + 1)."""
     size = len(m.weights)
     for i in range(size):
         rate = [0.0 for _ in g.components]
@@ -104,7 +104,10 @@ def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
 
 @OverAlgebra
 def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """V and G at all nodes of a state x, (d, nodes + 1) both; what is known of V is taken from x."""
+    """Writes V and G of a state x, (unknowns,), at all nodes into V and G, both (d, nodes + 1).
+
+    Components of V that are unknowns come from x.
+    """
     size = len(m.weights)
     E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
     fields(g, x, E, S, c)
@@ -120,7 +123,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
 
 @OverAlgebra
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """W (D*_E Sigma - Gamma V) at all nodes, for each unknown V, into its places in out, (unknowns,)."""
+    """Writes the equations W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,)."""
     size = len(m.weights)
     E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
@@ -135,7 +138,10 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
 
 @compiled
 def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
-    """Derivative of s(S) along a change of the rod, at a state x in the plane, into dS, (3, nodes + 1)."""
+    """Writes the derivative of s(S) along a change of the rod into dS, (3, nodes + 1).
+
+    x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to a parameter.
+    """
     n = dS.shape[1] - 1
     for i in range(n + 1):
         q1, q3 = (x[stress_place(0, i, n)], x[stress_place(2, i, n)]) if i < n else (0.0, 0.0)
@@ -148,10 +154,11 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """The derivatives along a change of the rod, at the state x of which V is known, into out.
+    """Writes the derivatives along a change of the rod into out, (3, d, nodes + 1).
 
-    out, (3, d, nodes + 1): of D*_E Sigma - Gamma V at fixed V, of V and of G; what of V is an unknown does
-    not change.
+    x: state, (unknowns,). V: velocity at x, (d, nodes + 1). change: derivative of the rod `c` with respect to
+    a parameter. out[0]: derivative of D*_E Sigma - Gamma V at fixed V; out[1]: of V; out[2]: of G. Unknown
+    components of V are fixed.
     """
     size = len(m.weights)
     E, S, dS = np.empty((g.dimension, size)), np.empty((g.dimension, size)), np.zeros((g.dimension, size))

@@ -1,6 +1,6 @@
-"""One nonlinear rod on one mesh, in its stresses: every limit, k1 = inf, k2 = inf and gamma3 = 0, included.
+"""One nonlinear rod on one mesh with stresses as unknowns, for all limits: k1 = inf, k2 = inf, gamma3 = 0.
 
-The equations and the unknowns are `rodsweep.discretization.stress.balance`'s.
+Equations and unknowns are defined in `rodsweep.discretization.stress.balance`.
 """
 
 from dataclasses import dataclass
@@ -14,8 +14,9 @@ from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
 
 LEAST_ELIMINATED_DRAG = 1e-5
-"""Rotational drag from which Omega is eliminated: below, the division by it costs multipliers their digits,
-2e-9 at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
+"""Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers their
+digits (errors of 2e-9 at 1e-6, of 2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an unknown
+takes 2.4 times as long."""
 OMEGA = (2,)
 """Index of Omega among the components of V, as a tuple."""
 
@@ -24,9 +25,9 @@ OMEGA = (2,)
 class StressForm(RodOnMesh):
     """One rod on one mesh.
 
-    A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L of a linear rod with the same
-    strain, at every node but the tip, where they vanish, and Omega in 1/tau2 at all nodes where gamma3 is
-    small.
+    A state x has the shape (..., unknowns): n1 + F and n2 in k3/L^2, and m3 in k3/L, of a linear rod with the
+    same strain, at every node except the tip, where all three are 0; then, for small gamma3, Omega in 1/tau2
+    at all nodes.
     """
 
     @property
@@ -42,20 +43,20 @@ class StressForm(RodOnMesh):
         return self.layout.stresses(x)
 
     def change(self, name: str) -> NodalChange:
-        """Derivative of `nodal` by the parameter `name`; for a stiffness k, by 1/k."""
+        """Derivative of `nodal` with respect to the coordinate of a parameter, 1/k for a stiffness k."""
         return nodal_change(material_change_on(self.rod, name, self.mesh), self.mesh)
 
     @cached_property
     def mass(self) -> Array:
-        """The diagonal of W C, 0 for Omega, shape (unknowns,)."""
+        """Diagonal of the mass matrix W C, 0 for Omega, shape (unknowns,)."""
         return self.mass_of(self.nodal)
 
     def mass_of(self, rod: NodalRod | NodalChange) -> Array:
-        """`mass` for other compliances."""
+        """`mass` with the compliances of another rod, or of a change of the rod, (unknowns,)."""
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def size(self, x: Array) -> Array:
-        """sqrt of the energy of the stresses beyond the straight rod's, an amplitude of the motion, (...)."""
+        """Amplitude of states x: square root of x M x, with x = 0 for the straight rod; shape (...)."""
         size: Array = np.sqrt(x**2 @ self.mass)
         return size

@@ -1,15 +1,16 @@
 """The exact Jacobian of the rod on a mesh with its stresses as unknowns, compiled.
 
-With A_ac = sum_b s_abc E_b and B_cb = d(ad*_E Sigma)_c/dS_b at each node the derivative of G for a linear
-law, see `stress_balance`, consists of
+With A_ac = sum_b s_abc E_b and B_cb = d(ad*_E Sigma)_c/dS_b at each node, the derivative of G (see `balance`)
+for a linear law is
 
     J_ab(i, j) = [a = b] (-D^T W Gamma_a^-1 D)_ij + (-D^T W)_ij (B_ab/Gamma_a)_j + w_i (A_ab/Gamma_b)_i D_ij
                  + [i = j] w_i (sum_c A_ac B_cb/Gamma_c + d(ad_E V)_a/dS_b at fixed V).
 
-Blocks that vanish for every E are known from the algebra, the first argument `g`.
+The patterns of the algebra, the first argument `g`, show which blocks are 0 for every E.
 
-Another law has s(S) in place of S in Sigma alone. The derivative above has a part P by the stresses and a
-part by the strains; with the law's tangent T = ds/dS, local at each node, J becomes J - P + P T.
+Another law replaces S by s(S) in Sigma alone. The derivative above is the sum of a part P with respect to
+stresses and a part with respect to strains. With the tangent T = ds/dS of the law, local at each node, J
+becomes J - P + P T.
 """
 
 import numpy as np
@@ -29,10 +30,10 @@ from .balance import fields
 def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Write the Jacobian of the equations at x, with V already computed, into J, (unknowns, unknowns).
+    """Writes the Jacobian of the equations at x, (unknowns,), into J, (unknowns, unknowns).
 
-    Rows are equations, in the order of the unknowns: G at all nodes but the tip, then the balance of each V
-    that is unknown. tip, (d, unknowns): the derivative of the reaction.
+    V: velocity at x, (d, nodes + 1). Rows are equations, in the order of the unknowns: G at all nodes except
+    the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction.
     """
     size = len(m.weights)
     E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
@@ -41,14 +42,14 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     if c.law != LINEAR_LAW:
         P, tip_P = np.empty(J.shape), np.empty(tip.shape)
         _derivative(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
-        # Velocities that are unknown do not follow from the stresses: P has their columns as J has.
+        # Unknown velocities do not depend on the law, so their columns of P are not used.
         _by_law(x, J, P, c)
         _by_law(x, tip, tip_P, c)
 
 
 @compiled
 def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
-    """Adds P (T - 1) to J, both (rows, unknowns), with the tangent T of the law of a rod in the plane."""
+    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at x."""
     n = c.compliance.shape[1] - 1
     for i in range(n):
         p1, p3 = stress_place(0, i, n), stress_place(2, i, n)
@@ -70,9 +71,9 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Write the derivative by S of the equations of a linear law into J and tip.
+    """Writes the derivative with respect to S of the equations for a linear law into J and tip.
 
-    at: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: derivative of E by S, (d, nodes + 1).
+    at: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); 0 for the part P.
     """
     slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
     _velocity_slopes(g, at, slopes, compliance, c)
@@ -86,7 +87,7 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
 def _velocity_slopes(
     g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
-    """Write mobility B at all nodes into slopes, (d, d, nodes + 1), where B does not vanish."""
+    """Writes mobility B at all nodes into the nonzero blocks of slopes, (d, d, nodes + 1)."""
     E, S, _ = at
     for i in range(slopes.shape[2]):
         B = [[0.0 for _ in g.components] for _ in g.components]
@@ -110,7 +111,10 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Write the derivative of G by S into J and tip; slopes as in `_velocity_slopes`."""
+    """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
+
+    at, compliance: as for `_derivative`. slopes: result of `_velocity_slopes`.
+    """
     n = len(m.weights) - 1
     E, _, V = at
     for i in range(n + 1):
@@ -144,7 +148,10 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """Write the derivative of G by the k-th unknown velocity into J and tip; E: (d, nodes + 1)."""
+    """Writes the derivative of G with respect to the k-th unknown velocity into J and tip.
+
+    E: (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
+    """
     size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):
@@ -167,7 +174,7 @@ def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Write the rows of the balance of the k-th unknown velocity into J."""
+    """Writes the rows of the balance of the k-th unknown velocity into J, (unknowns, unknowns)."""
     size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
     E, S, _ = at
     first = velocity_place(k, 0, g.dimension, n)

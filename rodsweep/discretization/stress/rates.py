@@ -1,6 +1,6 @@
 """The rod on a mesh as an explicit differential equation, for finite stiffnesses, compiled.
 
-Its unknown is z = C^(1/2) S, the stresses of `stress_balance` in units of energy.
+The unknown is z = C^(1/2) S, with the stresses S of `balance`; z^2 is an energy density.
 """
 
 import numpy as np
@@ -15,9 +15,9 @@ from ..state_layout import stress_place
 
 @compiled_for_vectors
 def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Write dz/dt (1/tau2) of z = C^(1/2) S into out, both (unknowns,).
+    """Writes dz/dt, in units of z per tau2, into out; z, out: (unknowns,).
 
-    roots: square roots of C, (d, nodes + 1), positive.
+    roots: square roots of C, positive, (d, nodes + 1).
     """
     d, size = c.drag.shape
     V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(len(z))
@@ -30,7 +30,7 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
 
 @compiled_for_vectors
 def _unscale(z: Array, x: Array, roots: Array) -> None:
-    """Write the stresses S = C^(-1/2) z into x; x and z have shape (unknowns,)."""
+    """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,)."""
     d, n = roots.shape[0], roots.shape[1] - 1
     for a in range(d):
         for i in range(n):
@@ -40,7 +40,10 @@ def _unscale(z: Array, x: Array, roots: Array) -> None:
 
 @compiled_for_vectors
 def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """d(dz/dt)/dz into out, (unknowns, unknowns), as LAPACK and PETSc store it: out[column, row]."""
+    """Writes d(dz/dt)/dz into out, (unknowns, unknowns), column-major as in LAPACK: out[column, row].
+
+    z: (unknowns,). roots: square roots of C, positive, (d, nodes + 1).
+    """
     (d, size), unknowns = c.drag.shape, len(z)
     V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(unknowns)
     J, tip = np.empty((unknowns, unknowns)), np.empty((d, unknowns))
@@ -60,13 +63,13 @@ def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatric
 
 @compiled_for_vectors
 def rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """`rate` of each of the states, into out, both of shape (n, unknowns): one call for many."""
+    """Writes `rate` of n states into out; states, out: (n, unknowns)."""
     for i in range(len(states)):
         rate(states[i], out[i], roots, c, m)
 
 
 @compiled_for_vectors
 def rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """`rate_jacobian` of each of the states, shape (n, unknowns), into out, (n, unknowns, unknowns)."""
+    """Writes `rate_jacobian` of n states, (n, unknowns), into out, (n, unknowns, unknowns)."""
     for i in range(len(states)):
         rate_jacobian(states[i], out[i], roots, c, m)

@@ -1,6 +1,7 @@
-"""Position and velocity of the tip by strains and their rates, compiled; `mesh.configuration` has all nodes.
+"""Position and velocity of the tip from strains and strain rates, compiled.
 
-theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and the derivatives of both by the time.
+theta(1) = int Pi, r(1) = int R(theta) (h1, h2), and time derivatives. `mesh.configuration` computes positions
+of all nodes.
 """
 
 from functools import lru_cache
@@ -17,9 +18,9 @@ from ..elements.mesh import reconstruction
 class TipMatrices(NamedTuple):
     """Interpolation and quadrature on an element of unit length, with p + 1 nodes and g Gauss points.
 
-    values: interpolation from the nodes to the Gauss points; angles: integrals of nodal polynomials from the
-    element's start to the Gauss points; both (p + 1, g). weights: weights of the integral over the element
-    at the Gauss points, (g,); ends: weights of this integral at the nodes, (p + 1,). lengths: of the
+    values: interpolation from nodes to Gauss points, (p + 1, g). angles: integrals of nodal polynomials from
+    the element's start to the Gauss points, (p + 1, g). weights: Gauss weights of the integral over the
+    element, (g,). ends: weights of the same integral at the nodes, (p + 1,). lengths: lengths of the
     elements, (elements,).
     """
 
@@ -40,10 +41,10 @@ def tip_matrices(grid: Elements) -> TipMatrices:
 
 @compiled_for_vectors
 def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
-    """(x, y, theta) of the tip and its rate into tip and velocity, (states, 3), in L and rad.
+    """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative into velocity.
 
-    strains, rates: (h1, h2, Pi) at all nodes and their derivatives by the time, (3, states, nodes + 1); the
-    clamp is at 0 along e_x.
+    strains: (h1, h2, Pi) at all nodes, (3, states, nodes + 1). rates: time derivatives of strains, same
+    shape. tip, velocity: (states, 3). The rod is clamped at the origin along e_x.
     """
     size, points = len(m.ends), len(m.weights)
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
@@ -70,7 +71,10 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
 
 @compiled_for_vectors
 def _to_points(nodal: Array, m: TipMatrices, length: float, start: float, fields: Array) -> None:
-    """h1, h2 and `start` plus the integral of Pi at the Gauss points, (3, g), from the nodes, (3, p + 1)."""
+    """Writes h1, h2 and theta at the Gauss points of an element into fields, (3, g).
+
+    nodal: (h1, h2, Pi) at the nodes, (3, p + 1). theta is `start` plus the integral of Pi.
+    """
     fields[:2] = 0.0
     fields[2] = start
     for j in range(len(m.ends)):

@@ -1,4 +1,4 @@
-"""The arm beating: shapes that were solved once, and moved in the browser."""
+"""The beating arm: shapes over a period, solved once and animated in the browser."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from ..scales import PictureAxis
 from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of
 
 SECONDS = 2.0
-"""Time of one period on the screen."""
+"""Duration of one period on the screen."""
 ANIMATE = """
 const seconds = %s
 function draw(now) {
@@ -33,7 +33,7 @@ requestAnimationFrame(draw)
 
 
 class BeatingPicture:
-    """The arm through a period, slowed down, and the path of its tip."""
+    """The arm over a period, at a slow pace, and the path of its tip."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -43,17 +43,17 @@ class BeatingPicture:
         self.arm = empty_source(("x", "y"), "arm_source")
         self.path = empty_source(("x", "y"), "path_source")
         figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
-        figure.scatter("x", "y", visible=False, source=self.shapes)  # so that the source is on the page
+        figure.scatter("x", "y", visible=False, source=self.shapes)  # sends the source to the browser
         figure.line("x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm)
         figure.scatter([0], [0], marker="square", size=12, color=POINT)
         self.card = Card("beating", figure)
 
     def animation(self) -> CustomJS:
-        """What the browser runs once when the page is ready."""
+        """Code that the browser runs once when the page is ready."""
         return CustomJS(args={"shapes": self.shapes, "arm": self.arm}, code=ANIMATE % SECONDS)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws an answer of the task limit_cycle, or says that there is no cycle."""
+        """Draws an answer of the task limit_cycle, or shows a sentence if there is no cycle."""
         x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
         if not np.isfinite(x).all():
             self.stop()

@@ -66,5 +66,5 @@ class BranchPicture:
         self.card.reveal()
 
     def move_point(self, F: float) -> None:
-        """Moves the line of the point."""
+        """Moves the vertical line that marks the page's force."""
         self.point.location = F

@@ -1,4 +1,4 @@
-"""A picture of the page, or the sentence that stands in its place."""
+"""A picture of the page, or a sentence instead of the picture."""
 
 from collections.abc import Sequence
 from html import escape
@@ -10,17 +10,17 @@ from bokeh.plotting import figure
 from ...arrays import Array
 
 STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
-"""Colours that stand out on a white page and on a dark one."""
+"""Colours with enough contrast on white and dark pages."""
 TICKS = 5
-"""Labels along the lower axis, about."""
+"""Approximate number of labels along the lower axis."""
 PLAIN_DIGITS = 7
-"""Largest power of ten that labels write out."""
+"""Largest power of ten that labels show without an exponent."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """An empty figure as wide as its place."""
+    """An empty figure that fills the width of its column."""
     made = figure(
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
@@ -30,7 +30,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     made.toolbar.logo = None
     made.toolbar.active_drag = None
     made.min_border_right = 20
-    # The outermost half pixel of a canvas stays white, also on a dark page.
+    # The outermost half pixel of a canvas is white even on a dark page, so clip it.
     made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
     made.xaxis.ticker.desired_num_ticks = TICKS
     made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
@@ -38,17 +38,17 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A line across the whole height of a figure."""
+    """A vertical line over the full height of a figure."""
     return Span(location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5)
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
-    """A source with columns that are still empty."""
+    """A data source with empty columns `names`."""
     return ColumnDataSource({each: [] for each in names}, name=name)
 
 
 def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
-    """Smallest and largest of the values, (n,), with a margin; (-1, 1) without values."""
+    """Smallest and largest of values, (n,), with a relative margin; (-1, 1) without values."""
     if len(values) == 0:
         return -1.0, 1.0
     low, high = float(values.min()), float(values.max())
@@ -63,12 +63,12 @@ def ends(values: Array, margin: float = 0.08) -> dict[str, float]:
 
 
 def sentence_of(found: dict[str, Any]) -> str:
-    """Meaning of an answer's status, and what the solver adds."""
+    """Meaning of an answer's status, and the solver's message."""
     return "; ".join(filter(None, (found["sentence"], found["message"])))
 
 
 class Card:
-    """A figure that gives way to a sentence when there is nothing to draw."""
+    """A figure that can be replaced by a sentence."""
 
     def __init__(self, name: str, figure: figure):
         self.figure = figure
@@ -77,10 +77,12 @@ class Card:
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def say(self, sentence: str) -> None:
-        """Shows a sentence in place of the picture."""
+        """Shows a sentence instead of the figure."""
         self.message.text = escape(sentence)
-        self.message.visible, self.figure.visible = True, False
+        self.message.visible = True
+        self.figure.visible = False
 
     def reveal(self) -> None:
-        """Shows the picture."""
-        self.message.visible, self.figure.visible = False, True
+        """Shows the figure."""
+        self.message.visible = False
+        self.figure.visible = True

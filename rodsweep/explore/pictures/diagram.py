@@ -20,7 +20,7 @@ DEEPEST = 6
 
 
 class DiagramCell(NamedTuple):
-    """Points beside each other in a row that have the same number of unstable modes."""
+    """Neighbouring points of a row with equal numbers of unstable modes."""
 
     left: float
     right: float
@@ -30,7 +30,7 @@ class DiagramCell(NamedTuple):
 
 
 def edges(values: Array) -> Array:
-    """Edges between values on a logarithmic scale, (n + 1,) for (n,) increasing values above 0."""
+    """Edges, (n + 1,), of cells around n increasing positive values, at geometric means."""
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
@@ -83,7 +83,7 @@ class DiagramPicture:
 
     @property
     def is_drawn(self) -> bool:
-        """Whether there is a diagram to click on."""
+        """Whether the figure shows a diagram."""
         return len(self.cells.data["left"]) > 0
 
     def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
@@ -117,5 +117,5 @@ class DiagramPicture:
         }
 
     def move_point(self, x: float, y: float) -> None:
-        """Moves the mark of the point."""
+        """Moves the mark of the page's rod."""
         self.point.data = {"x": [x], "y": [y]}

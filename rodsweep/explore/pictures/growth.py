@@ -14,7 +14,7 @@ KINDS = {
     "hopf_reverse": ("a mode becomes stable", STABLE),
     "restabilization": ("stable again", STABLE),
 }
-"""Words and colour of each kind of threshold that the picture shows."""
+"""(label, colour) of each kind of threshold in the picture."""
 
 
 class GrowthPicture:
@@ -69,12 +69,12 @@ class GrowthPicture:
         self.card.figure.title.text = named(found, load)
 
     def move_point(self, F: float) -> None:
-        """Moves the line of the point."""
+        """Moves the thick line that marks the page's force."""
         self.point.location = F
 
 
 def named(found: dict[str, Any], load: PictureAxis) -> str:
-    """F*, F** and the restabilization, as far as they exist, in units of the load."""
+    """Labels of F*, F** and the restabilization, if they exist, in units of the load."""
     parts = [
         f"{symbol} = {load.factor * float(found[name]):.7g}"
         for symbol, name in (("F*", "F_onset"), ("F**", "F_hopf"), ("stable from", "F_restabilization"))

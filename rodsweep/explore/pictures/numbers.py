@@ -1,4 +1,4 @@
-"""The table of numbers: what the solvers found, to eight digits, with units."""
+"""The table of solved numbers, to eight digits, with units."""
 
 from html import escape
 from typing import Any
@@ -25,21 +25,22 @@ ROWS = {
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
     },
 }  # fmt: skip
-"""Rows of the table: meaning by variable, for each kind of question."""
+"""Rows of the table: label by variable, for each kind of question."""
 HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
-DIGITS = 8
+TABLE_DIGITS = 8
+"""Significant digits of a number."""
 SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
-"""Unit of the table, and its numbers for 1 in the SI unit."""
+"""(unit of the table, factor) by SI unit."""
 IN_SI = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
     "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
 }  # fmt: skip
-"""Variables of an arm in SI units, where the name is not that of the dimensionless variable with `_si`."""
+"""SI variable by dimensionless variable, unless the SI variable is the same name with `_si`."""
 
 
 class NumbersTable:
-    """Numbers of the latest answers."""
+    """The table of the latest answers."""
 
     def __init__(self) -> None:
         self.root = Div(name="numbers", sizing_mode="stretch_width", css_classes=["numbers"])
@@ -58,11 +59,11 @@ class NumbersTable:
 
 
 def written(value: Any, factor: float = 1.0) -> str:
-    """A number as the table shows it: the first of an array, "" if it is not finite or no count."""
+    """Text of the first number of an array, times `factor`; "" for a nonfinite number or negative count."""
     first = np.ravel(value)[0]
     if np.issubdtype(np.asarray(first).dtype, np.integer):
         return str(int(first)) if first >= 0 else ""
-    return f"{factor * float(first):.{DIGITS}g}" if np.isfinite(first) else ""
+    return f"{factor * float(first):.{TABLE_DIGITS}g}" if np.isfinite(first) else ""
 
 
 def _rows(kind: str, found: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ from .card import NEUTRAL, STABLE, UNSTABLE, Card, empty_source, ends, new_figur
 
 
 class SpectrumPicture:
-    """Eigenvalues; to the right of the line the straight state is unstable."""
+    """Eigenvalues in the complex plane; eigenvalues right of the dashed line are unstable."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -40,7 +40,7 @@ class SpectrumPicture:
 
 
 def count_of(found: dict[str, Any]) -> str:
-    """How many modes are unstable, and whether it is proved."""
+    """Number of unstable modes, and whether the number is certified; the status if it is not known."""
     count = int(found["unstable_count"])
     if count < 0:
         return found["sentence"]

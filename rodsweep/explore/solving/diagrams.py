@@ -1,4 +1,4 @@
-"""The diagram of a page: what a rod or an arm does over its load and a second parameter."""
+"""The diagram of a page: stability of a rod or an arm over the load and a second parameter."""
 
 from typing import Any
 
@@ -12,30 +12,34 @@ from ...model.units import in_si
 from ..state import LAWS, PageState, number
 
 Dataset = Any
-"""An xarray.Dataset, or an array of one."""
+"""An xarray.Dataset, or an array in one."""
 ROWS = 20
-"""Values of the second parameter; curves of boundaries are traced between them."""
+"""Number of values of the second parameter for uniform rods."""
 SLOW_ROWS = 8
-"""Values of the second parameter of rods whose thresholds take seconds each: those that are not uniform."""
+"""Number of values of the second parameter for other rods, whose thresholds take seconds each."""
 COLUMNS = 121
-"""Values of the load. They cost little: a row is solved from its crossings."""
+"""Number of values of the load. Columns cost little, because crossings determine a whole row."""
 ARM_ROWS = 12
+"""Number of values of the second parameter for arms in SI units."""
 ARM_SPAN = 2.0
-"""Ratio of the largest value of an arm's quantity to the present one: all arms must stay slender."""
+"""Ratio of the largest value of an arm's quantity to the present value; small, so that all arms are
+slender."""
 CRUSHED = -2
-"""Stored in `unstable_count` where the load crushes the rod."""
+"""Value of `unstable_count` for a load that crushes the rod."""
 SPAN = 10.0
-"""Ratio of the largest value of the second parameter to the present one, and of that to the smallest."""
+"""Ratio of the largest value of the second parameter to the present value, and of the present to the
+smallest."""
 TAPERS = (0.4, 1.6)
-"""Range of the taper, below which cones take minutes."""
+"""Range of the taper. Cones with a smaller taper take minutes."""
 
 
 def diagram(state: PageState) -> dict[str, Any]:
-    """Classes over a grid, or crossings of each row, whichever the rod has.
+    """The diagram around the point of a state, by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), -1 where it is not
-    known. curve_x, curve_y, curve_number, curve_kind: (curve points,). crossing_x, crossing_y,
-    crossing_kind: (crossings,).
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), -1 if not known.
+    curve_x, curve_y, curve_number, curve_kind: boundaries, (curve points,), empty for rods that are not
+    uniform and for arms. crossing_x, crossing_y, crossing_kind: crossings of the rows, (crossings,), empty
+    for uniform rods.
     """
     state.subject()
     if state.tab == "arm":
@@ -44,18 +48,18 @@ def diagram(state: PageState) -> dict[str, Any]:
 
 
 def uniform(state: PageState) -> bool:
-    """Whether the task phase_diagram solves these rods."""
+    """Whether all rods of the diagram are uniform and of linear material."""
     return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
 
 
 def span(state: PageState) -> np.ndarray:
-    """Values of the second parameter, (rows,), around that of the point."""
+    """Values of the second parameter, (rows,), around the present value."""
     rows = ROWS if uniform(state) else SLOW_ROWS
     if state.second == "taper":
         return np.linspace(*TAPERS, rows)
     value = number(state.rod[state.second])
     if not (0 < value < np.inf):
-        raise InputError(f"{state.second} = {value:g} is not in the middle of a finite range above 0")
+        raise InputError(f"{state.second} = {value:g} has no diagram; it must be finite and above 0")
     return np.geomspace(value / SPAN, value * SPAN, rows)
 
 
@@ -71,7 +75,7 @@ def _of_phases(state: PageState) -> dict[str, Any]:
 
 
 def of_phases(data: Dataset, second: str) -> dict[str, Any]:
-    """The diagram of the task phase_diagram over F and a second parameter."""
+    """The diagram from a result of the task phase_diagram over F and a second parameter."""
     counts = data["unstable_count"].transpose(second, "F").values
     crushed = data["class"].transpose(second, "F").values == _code(data["class"], "crushed")
     curves = _no_curves()
@@ -92,7 +96,7 @@ def of_phases(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def of_grid(data: Dataset, second: str) -> dict[str, Any]:
-    """The diagram of the task spectrum over F and a second parameter."""
+    """The diagram from a result of the task spectrum over F and a second parameter."""
     counts = data["unstable_count"].transpose(second, "F").values
     return {
         "x": data["F"].values,
@@ -128,18 +132,20 @@ def _of_arm(state: PageState) -> dict[str, Any]:
 
 
 def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
-    """The diagram of the task thresholds over a second parameter: crossings of each row.
+    """The diagram from a result of the task thresholds over a second parameter.
 
-    values: (rows,) of the second parameter. largest: largest load of the diagram.
-    name: variable of the load at crossings.
+    values: second parameter, (rows,). name: variable with the load at crossings. largest: largest load of the
+    diagram.
     """
-    at, after, kind = data[name].values, data["unstable_after"].values, words_of(data["crossing_kind"])
+    at = data[name].values
+    after = data["unstable_after"].values
+    kind = words_of(data["crossing_kind"])
     x = np.linspace(0, largest, COLUMNS)
     counts = np.zeros((len(values), COLUMNS), dtype=int)
     for row in range(len(values)):
-        for place, count in zip(at[row], after[row], strict=True):
-            if np.isfinite(place):
-                counts[row, x > place] = count
+        for load, count in zip(at[row], after[row], strict=True):
+            if np.isfinite(load):
+                counts[row, x > load] = count
     known = np.isfinite(at) & (at <= largest)
     rows = np.broadcast_to(values[:, None], at.shape)
     return {
@@ -158,13 +164,13 @@ def _no_crossings() -> dict[str, Any]:
 
 
 def _code(array: Dataset, word: str) -> int:
-    """Number that stands for a word."""
+    """The flag value of a word."""
     words = str(array.attrs["flag_meanings"]).split()
     return int(np.atleast_1d(array.attrs["flag_values"])[words.index(word)])
 
 
 def words_of(array: Dataset) -> Any:
-    """The words of an array of flags, in its shape."""
+    """The words of an array of flag values, in the shape of the array."""
     words = str(array.attrs["flag_meanings"]).split()
     by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), words, strict=True))
     return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)

@@ -1,4 +1,4 @@
-"""What the page asks, and how a solver's process answers: plain arrays, no object of a solver."""
+"""Questions of the page and the answers of a solver process, as plain arrays without objects of solvers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,28 +21,29 @@ from .diagrams import diagram, words_of
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
 MODES = 6
-"""Eigenvalues in the picture of the spectrum."""
+"""Number of eigenvalues in the picture of the spectrum."""
 SHAPES = 48
-"""Shapes of the arm over a period; the browser interpolates between them."""
-FORCES = 121
-"""Forces of the curve of growth rates."""
+"""Number of shapes of the arm over a period; the browser interpolates between shapes."""
+GROWTH_FORCES = 121
+"""Number of forces of the curve of growth rates."""
 BELOW_CRUSHING = 0.98
 """Largest force of a curve, as a fraction of the force that crushes the thinnest section."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """kind: a key of `ANSWERS`. state: the state of the page when it asked."""
+    """A question of a page. kind: a key of `ANSWERS`. state: state of the page when asked."""
 
     kind: str
     state: PageState
 
 
 class Reply(NamedTuple):
-    """Outcome of a question: "answer", "refused", "failed" or "cancelled".
+    """Reply of a solver process.
 
-    A process that has started sends "ready" unasked. content: variables by name of an answer, else the
-    sentence as `sentence`. seconds: time of the solve.
+    outcome: "answer", "refused", "failed" or "cancelled"; "ready" is sent once, when the process has started.
+    content: variables of an answer by name; for other outcomes a sentence by the name `sentence`. seconds:
+    time of the solve.
     """
 
     outcome: str
@@ -51,7 +52,7 @@ class Reply(NamedTuple):
 
 
 def variables(answer: Answer) -> Found:
-    """Everything that an answer holds."""
+    """All variables of an answer by name, with status, sentence, message and units."""
     found: Found = {str(name): array.values for name, array in answer.data.variables.items()}
     return found | {
         "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
@@ -75,9 +76,9 @@ def growth(state: PageState) -> Found:
     rod = rod_of(state.subject())
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
-    F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), FORCES)
+    F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), GROWTH_FORCES)
     data = sweep("spectrum", F=F, **keywords, certify=False)
-    rates = data["growth_rate"].values.reshape(FORCES, -1)
+    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1)
     return {"F": F, "growth_rate": rates, "unstable_count": data["unstable_count"].values.reshape(-1)}
 
 
@@ -89,8 +90,8 @@ def cycle(state: PageState) -> Found:
 def branch(state: PageState) -> Found:
     """Branches of cycles along F.
 
-    pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1, 0, or -1 where it
-    is not known. special: (F, y, kind, period) of each special point.
+    pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1 or 0, -1 if not
+    known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force())
     curves = curves_of(view_of(answer.whole, Path(answer.rod)), 0)
@@ -128,7 +129,7 @@ def straight_pieces(answer: Answer, stop: float) -> list[tuple[Array, Array, int
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
-    """Force that crushes the thinnest section of a rod of linear material: k1, or at a thin tip less."""
+    """Force that crushes the thinnest section of a rod of linear material: k1, less for a thin tip."""
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
 
 
@@ -143,5 +144,5 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
 
 
 def answer_to(question: Question) -> Found:
-    """The answer; InputError for bad values."""
+    """The answer to a question; InputError for invalid values."""
     return ANSWERS[question.kind](question.state)

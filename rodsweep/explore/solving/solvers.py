@@ -1,4 +1,4 @@
-"""The solvers of a page: one process for each kind of question, of which the newest is answered."""
+"""Solver processes: one for each group of questions. A new question of a kind replaces an older one."""
 
 import os
 import signal
@@ -19,26 +19,26 @@ from .questions import Question, Reply
 Key = tuple[str, str]
 """(session, kind): a new question replaces an older one of the same key."""
 Done = Callable[[Reply], None]
+"""Callback that receives the reply to a question."""
 GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram",
 }  # fmt: skip
-"""The process that answers each kind: what follows a slider never waits for what takes seconds."""
+"""Process group of each kind of question, so that fast questions never wait for slow ones."""
 NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10}
-"""How much the process of each group steps back for others: pictures that follow a slider come first."""
-STARTED_AGAIN = 0.1
-"""Seconds after which a cancellation that came while the process starts is tried again."""
-AT_ONCE = ("spectrum", "cycle", "thresholds")
-"""Groups whose processes start, and compile, before the page is opened."""
+"""Niceness of the process of each group: pictures that follow a slider have the highest priority."""
+INTERRUPT_RETRY = 0.1
+"""Seconds until a cancellation is repeated that came before the process was ready."""
+WARMED_UP = ("spectrum", "cycle", "thresholds")
+"""Kinds of questions solved once at the start, which starts their processes and loads compiled code."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Patience:
-    """How long a solver may take, in seconds, when a newer question waits.
+    """Time limits of a solver, in seconds, when a newer question waits.
 
-    interrupt: age at which the old question is cancelled. A question that is answered faster is worth its
-    answer: pictures then follow a slider that never rests. kill: time after which a solver that was cancelled
-    and does not answer is killed, and another is started.
+    interrupt: age at which the old question is cancelled. Faster answers are shown, so that pictures follow a
+    slider in motion. kill: time after which a cancelled solver that does not reply is killed and restarted.
     """
 
     interrupt: float = 0.3
@@ -46,29 +46,30 @@ class Patience:
 
 
 class SolverProcess:
-    """One process, which is started when it is first asked, and again when it was killed."""
+    """One solver process, started by the first question, and restarted after it was killed."""
 
     def __init__(self, patience: Patience | None = None, niceness: int = 0):
         self.patience, self.niceness = patience or Patience(), niceness
         self.waiting: dict[Key, tuple[Question, Done]] = {}
         self.asked: tuple[Key, Done] | None = None
         self.number = 0
-        """Number of questions asked so far; tells whether a timer still concerns the question asked."""
+        """Number of questions sent so far. Timers compare it, to act only on the question they were set
+        for."""
         self.since = 0.0
         self.starts = 0
         self.is_ready = False
-        """Whether the process has started; before, a signal would end it."""
+        """Whether the process handles signals; before, SIGINT would end the process."""
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection[Any, Any] | None = None
         self._life = -1
 
     @property
     def pid(self) -> int | None:
-        """Process id, None if no process runs."""
+        """Process id; None if no process runs."""
         return None if self._process is None else self._process.pid
 
     def ask(self, key: Key, question: Question, done: Done) -> None:
-        """Answers a question when the solver is free; an older question of the same key is dropped."""
+        """Queues a question; an older question of the same key is dropped or, if being solved, cancelled."""
         self.waiting.pop(key, None)
         self.waiting[key] = question, done
         if self.asked is None:
@@ -81,14 +82,14 @@ class SolverProcess:
             )
 
     def forget(self, session: str) -> None:
-        """Drops all questions of a session that ended."""
+        """Drops and cancels all questions of a session."""
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
         if self.asked is not None and self.asked[0][0] == session:
             self._interrupt(self.number)
 
     def drop(self, key: Key) -> None:
-        """Cancels the questions of a key."""
+        """Drops and cancels the questions of a key."""
         self.waiting.pop(key, None)
         if self.asked is not None and self.asked[0] == key:
             self._interrupt(self.number)
@@ -143,7 +144,7 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `number` if it is still being solved and a newer one of its key waits."""
+        """Cancels question `number` if it is still being solved and a newer question of its key waits."""
         if number == self.number and key in self.waiting:
             self._interrupt(number)
 
@@ -151,7 +152,7 @@ class SolverProcess:
         if self.asked is None or number != self.number or self._process is None:
             return
         if not self.is_ready:
-            IOLoop.current().call_later(STARTED_AGAIN, lambda: self._interrupt(number))
+            IOLoop.current().call_later(INTERRUPT_RETRY, lambda: self._interrupt(number))
             return
         self._process.send_signal(signal.SIGINT)
         IOLoop.current().call_later(self.patience.kill, lambda: self._kill(number))
@@ -181,12 +182,12 @@ class Solvers:
         self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Starts the processes of `AT_ONCE` and lets them solve once, which loads compiled code."""
-        for kind in AT_ONCE:
+        """Starts the processes of `WARMED_UP` with one question each, which loads compiled code."""
+        for kind in WARMED_UP:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
     def ask(self, session: str, question: Question, done: Done) -> None:
-        """Answers a question of a session."""
+        """Queues a question of a session; `done` receives the reply."""
         self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done)
 
     def drop(self, session: str, kind: str) -> None:

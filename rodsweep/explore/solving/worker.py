@@ -1,7 +1,8 @@
-"""The process of one solver: it reads questions from a pipe, and writes replies to it.
+"""The process of one solver, which reads questions from a pipe and writes replies.
 
-SIGINT cancels the question that is being answered. The process ends when its pipe closes, and in the middle
-of a solve when the process of the page ends: only that process held the other end of the second pipe.
+SIGINT cancels the question that is being answered. The process ends when the pipe closes. A second pipe,
+whose other end only the page's process holds, ends the process even during a solve when the page's process
+ends.
 """
 
 import os
@@ -16,35 +17,35 @@ from types import FrameType
 from ...errors import Refusal
 from .questions import Question, Reply, answer_to
 
-IMPORTED_AGAIN = 0.05
-"""Seconds after which a cancellation that came during an import is tried again."""
+IMPORT_RETRY = 0.05
+"""Seconds until a cancellation is repeated that came during an import."""
 
 
 class Cancellation:
-    """Handler of SIGINT that interrupts a solve, and nothing else of this process.
+    """Handler of SIGINT that interrupts only a solve.
 
-    A module that is being imported is left to finish: half imported, it would stay broken. SIGALRM then calls
-    the handler again.
+    An import in progress is not interrupted, because a partly imported module would stay broken. SIGALRM then
+    calls the handler again.
     """
 
     def __init__(self) -> None:
         self.is_solving = False
         self.is_due = False
-        """Whether the question that is being solved was cancelled."""
+        """Whether the question being solved was cancelled."""
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if not self.is_solving:
             return
         self.is_due = True
         if is_importing(frame):
-            signal.setitimer(signal.ITIMER_REAL, IMPORTED_AGAIN)
+            signal.setitimer(signal.ITIMER_REAL, IMPORT_RETRY)
             return
         self.is_solving = False
         raise KeyboardInterrupt
 
 
 def is_importing(frame: FrameType | None) -> bool:
-    """Whether a module is being imported at a place of the program."""
+    """Whether the call stack of a frame contains an import."""
     while frame is not None:
         if frame.f_code.co_filename.startswith("<frozen importlib"):
             return True
@@ -53,7 +54,7 @@ def is_importing(frame: FrameType | None) -> bool:
 
 
 def reply_to(question: Question, cancellation: Cancellation) -> Reply:
-    """The reply to one question. A bug is printed on standard error and replied as "failed"."""
+    """The reply to one question; "failed" for an unexpected exception, printed on standard error."""
     started = time.perf_counter()
     cancellation.is_due = False
     try:
@@ -62,28 +63,28 @@ def reply_to(question: Question, cancellation: Cancellation) -> Reply:
             outcome, content = "answer", answer_to(question)
         finally:
             cancellation.is_solving = False
-            signal.setitimer(signal.ITIMER_REAL, 0)  # or it would cancel the next question
+            signal.setitimer(signal.ITIMER_REAL, 0)  # a pending alarm would cancel the next question
     except KeyboardInterrupt:
         outcome, content = "cancelled", {}
     except Refusal as error:
         outcome, content = "refused", {"sentence": str(error)}
     except Exception as error:
-        if cancellation.is_due:  # a library made another exception of the interrupt
+        if cancellation.is_due:  # a library converted the interrupt to another exception
             outcome, content = "cancelled", {}
-        else:  # a bug: the page says it, and the next question is answered
+        else:  # a bug: the page shows a sentence, and the process lives on
             traceback.print_exc()
             outcome, content = "failed", {"sentence": f"this is a bug of rodsweep: {error!r}"}
     return Reply(outcome, content, time.perf_counter() - started)
 
 
 def end_with_parent(descriptor: int) -> None:
-    """Ends this process as soon as a pipe closes into which nobody writes."""
+    """Ends this process when the other end of a pipe closes; nobody writes to the pipe."""
     os.read(descriptor, 1)
     os._exit(0)
 
 
 def main() -> None:
-    """Arguments: descriptors of the pipe of questions, and of that which closes with the parent; niceness."""
+    """Runs the worker. Arguments: descriptor of the question pipe, of the parent's pipe, and niceness."""
     questions, life, niceness = (int(word) for word in sys.argv[1:4])
     os.nice(niceness)
     connection: Connection[Reply, Question] = Connection(questions)

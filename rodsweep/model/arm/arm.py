@@ -1,8 +1,8 @@
 """An arm in SI units as the rod of the paper: stiffness, drag and force without dimension.
 
-Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimensionless parameters of Sec. VI.
-Stiffnesses and drags are those of the base; `build` and `taper` say how they go on along the arm. Knows no
-mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
+Stiffness follows the paper's Sec. III, the force Sec. IV, scales and dimensionless parameters Sec. VI.
+Stiffnesses and drags are values at the base; `build` and `taper` give the variation along the arm.
+Quantities are given as text with a unit, or as numbers in SI. The module knows no mesh and no solver.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,16 +25,16 @@ from .shape import Shape, Station, cone, in_segments
 
 @dataclass(frozen=True, kw_only=True)
 class SlenderArm:
-    """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
+    """An arm in a viscous fluid, clamped at the base, with a pressure or a follower force on its tip.
 
-    Either a radius, or width and height, of which the height lies in the plane of motion, or segments, each
-    as "4 cm: radius 6 mm, young 80 kPa" from the base to the tip; young is then that of segments without one.
-    tip_radius: of a solid cone. inner_radius: of the bore of a tube, which is closed at the tip and filled
-    with the fluid at the pressure around. law, section: of the material, keys of
-    `rodsweep.model.material.laws.LAWS`. A pressure on the tip or a force there, of which positive ones push,
-    or no load; "1.2 of flutter" is a load that is known once the threshold is. density_difference: of the
-    arm's material over the fluid. drag: which member of its range, one of DRAGS, the arm has as a rod. Raises
-    InputError, naming the quantity.
+    Section: a radius, or width and height (the height lies in the plane of motion), or segments from the base
+    to the tip, each like "4 cm: radius 6 mm, young 80 kPa". `young` is the modulus of the arm and of segments
+    that state no modulus. tip_radius: tip radius of a solid cone. inner_radius: radius of a tube's bore;
+    the bore is closed at the tip and filled with the surrounding fluid at ambient pressure.
+    law, section: a key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or neither; positive
+    loads push towards the base; "1.2 of flutter" multiplies the flutter threshold. density_difference:
+    density of the arm's material minus density of the fluid. drag: a name in DRAGS, the estimate of drag that
+    the rod has. Raises InputError, naming the quantity.
     """
 
     length: Given | None = None
@@ -60,7 +60,7 @@ class SlenderArm:
     """The segments in SI units; empty without."""
 
     def __post_init__(self) -> None:
-        """Reads the units, and refuses what is no slender arm."""
+        """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
         numbers = {name: number_in_si(name, getattr(self, name)) for name in UNITS}
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**numbers))
@@ -73,11 +73,11 @@ class SlenderArm:
         refuse_crushed(self)
 
     def parameter(self, name: str) -> float:
-        """A parameter of the arm as a rod; the default of what no arm determines."""
+        """Value of a rod parameter; the neutral value of the table if an arm does not determine it."""
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
     def quoted(self, name: str) -> str:
-        """A quantity as it was given, for a sentence."""
+        """A quantity in the user's notation, like "length = '10 cm'", for messages."""
         return quoted(name, getattr(self, name))
 
     @cached_property
@@ -105,7 +105,7 @@ class SlenderArm:
 
     @property
     def isotropic(self) -> bool:
-        """Whether the arm moves alike in all planes."""
+        """Whether the arm is equally stiff in all planes through its axis."""
         return not isinstance(self.cross_section, Rectangle) or self.si.width == self.si.height
 
     @property
@@ -114,12 +114,12 @@ class SlenderArm:
         return self.shape.taper
 
     def build_with(self, drag: Drag) -> Build:
-        """Law and profile of the arm, with one of `drags`."""
+        """Law and profile of the arm as a rod, with the drag `drag`, an element of `drags`."""
         return Build(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
 
     @cached_property
     def build(self) -> Build:
-        """Law and profile of the arm as a rod."""
+        """Law and profile of the arm as a rod, with the drag `own_drag`."""
         return self.build_with(self.own_drag)
 
     @property
@@ -143,29 +143,30 @@ class SlenderArm:
         return None if self.load is None else share_of_flutter(getattr(self, self.load))
 
     def mass_at(self, station: Station) -> float:
-        """Mass per length at a station, of the material and of the fluid in its bore, in kg/m.
+        """Mass per length at a station, in kg/m: material plus fluid in the bore.
 
-        The material is as dense as the fluid where no difference is given.
+        Without a `density_difference` the material is as dense as the fluid.
         """
-        difference, fluid = self.si.density_difference, self.si.fluid_density
+        fluid = self.si.fluid_density
+        difference = self.si.density_difference
         density = fluid + (0.0 if isnan(difference) else difference)
         return density * station.section.area + fluid * station.section.bore_area
 
     @property
     def tip_force(self) -> float:
-        """The resultant of the pressure over the tip's face, p A, in N (Sec. IV).
+        """Follower force at the tip, in N: pressure times face area, p A, or the given force (Sec. IV).
 
-        Raises InputError for an arm without load, or with one relative to flutter, as `F` does.
+        Raises InputError for an arm without load and for a load relative to flutter, as `F` does.
         """
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
-            raise InputError(f"{self.quoted(self.load)} is no number yet; it takes the threshold of flutter")
+            raise InputError(f"{self.quoted(self.load)} has no value until the flutter threshold is solved")
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property
     def _loaded_area(self) -> float:
-        """Resultant over load: the area of the tip's face for a pressure, 1 for a force."""
+        """Tip force divided by load: face area of the tip, in m^2, for a pressure; 1 for a force."""
         return 1.0 if self.load == "force" else self.shape.tip.section.face_area
 
     @property
@@ -175,7 +176,7 @@ class SlenderArm:
 
     @property
     def load_scale(self) -> float:
-        """The load that makes F = 1: in N where the arm has a force, else a pressure, in Pa."""
+        """The load that makes F = 1: a force in N if the arm has a force, otherwise a pressure in Pa."""
         return self.force_scale if self.load == "force" else self.pressure_scale
 
     @property
@@ -185,55 +186,55 @@ class SlenderArm:
 
     @property
     def force_scale(self) -> float:
-        """k3/L^2, in N: the unit of F, k1 and k2; drag is not in it."""
+        """k3/L^2, in N: the unit of F, k1 and k2, independent of drag."""
         return self.bending_stiffness / self.si.length**2
 
     @property
     def k1(self) -> float:
-        """E A L^2/k3 = A L^2/I (Sec. III and VI): the same bits whatever Young's modulus."""
+        """k1 = E A L^2/k3 = A L^2/I (Sec. III and VI). Young's modulus cancels before rounding."""
         return self.cross_section.area * self.si.length**2 / self.cross_section.second_moment
 
     @property
     def k2(self) -> float:
-        """kappa G A L^2/k3, kappa G being the paper's effective G (Sec. III and VI; Cowper 1966)."""
+        """k2 = kappa G A L^2/k3; the paper's effective G is kappa G (Sec. III and VI; Cowper 1966)."""
         return self.cross_section.shear_coefficient(self.poisson) / (2 * (1 + self.poisson)) * self.k1
 
     @property
     def F(self) -> float:
-        """p A L^2/k3 (Sec. IV and VI); InputError where the load is not known."""
+        """F = p A L^2/k3 (Sec. IV and VI); InputError without a load or with a load relative to flutter."""
         return self.tip_force / self.force_scale
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """The drags of DRAGS at the base: the likeliest, then the corners of the range."""
+        """Drags at the base, in the order of DRAGS: the likeliest, then the corners of the range."""
         return self.shape.drags(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
-        """The drag at every station of the shape; drag: that at the base, one of `drags`."""
+        """The drag at every station of the shape; `drag` is the drag at the base, an element of `drags`."""
         place = self.drags.index(drag)
         return tuple(self.shape.drags(each, self.si.viscosity)[place] for each in self.shape.stations)
 
     @property
     def own_drag(self) -> Drag:
-        """The member of the range that the arm has as a rod."""
+        """Drag at the base that the arm has as a rod: the element of `drags` named `drag`."""
         return self.drags[DRAGS.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
-        """gamma3/(gamma2 L^2) (Sec. VI)."""
+        """Dimensionless gamma3/(gamma2 L^2) of the drag `drag` (Sec. VI)."""
         return drag.rotational / (drag.across * self.si.length**2)
 
     def tau2_with(self, drag: Drag) -> float:
-        """gamma2 L^4/k3, in s (Sec. VI)."""
+        """Unit of time gamma2 L^4/k3 with the drag `drag`, in s (Sec. VI)."""
         return drag.gamma2 * self.si.length**4 / self.bending_stiffness
 
     @property
     def gamma3(self) -> float:
-        """gamma3/(gamma2 L^2) (Sec. VI)."""
+        """Dimensionless gamma3/(gamma2 L^2) (Sec. VI)."""
         return self.gamma3_with(self.own_drag)
 
     @property
     def gamma1(self) -> float:
-        """gamma1/gamma2 (Sec. VI)."""
+        """Dimensionless gamma1/gamma2 (Sec. VI)."""
         return self.own_drag.axial / self.own_drag.across
 
     @property

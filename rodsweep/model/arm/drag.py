@@ -1,28 +1,29 @@
-"""Drag of a slender arm per length: what the literature gives for gamma1, gamma2, gamma3, and how it differs.
+"""Drag of a slender arm per length: estimates of gamma1, gamma2, gamma3 from the literature, and their range.
 
-The paper takes the local friction tensor as given (Sec. III). Translation is that of resistive-force theory,
-with a logarithm whose argument is known by factors only. eta is the viscosity, a the radius, L the length, in
-SI units.
+The paper takes the local friction tensor as given (Sec. III). Drag of translation is from resistive-force
+theory; the argument of its logarithm is known only up to a factor. Symbols: viscosity eta, radius a,
+length L, in SI units.
 """
 
 from dataclasses import dataclass
 from math import log, pi
 
 LEAST_SLENDERNESS = 10.0
-"""Lengths a radius below which the logarithms of slender-body theory mean nothing."""
+"""Smallest length over radius. The logarithms of slender-body theory are meaningless for shorter arms."""
 
 
 DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
-"""The members of `range_of_drag` by name, in its order: the likeliest, then the corners of the range. `least`
-and `most` have the least and the most drag of all kinds, the others the most of one kind and the least of the
-other."""
+"""Names of the estimates in `range_of_drag`, in order: the likeliest, then the corners of the range. `least`
+has the least translational and rotational drag, `most` the most; `most_rotational` combines the most
+rotational with the least translational drag, `most_translational` the reverse."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drag:
-    """Drag of an arm over its viscosity, in Pa s: along and across the axis without unit, rotational in m^2.
+    """Drag of an arm per length, stored as viscosity times geometric factors.
 
-    Their ratios, which are all that a rod feels, are the same bits whatever the viscosity.
+    viscosity: in Pa s. axial, across: factors along and across the axis, dimensionless. rotational: factor in
+    m^2. A rod depends only on ratios of drags; the viscosity cancels in these before rounding.
     """
 
     viscosity: float
@@ -32,17 +33,17 @@ class Drag:
 
     @property
     def gamma1(self) -> float:
-        """Force per length and velocity along the axis, in Pa s."""
+        """Axial drag force per length and per axial velocity, in Pa s."""
         return self.viscosity * self.axial
 
     @property
     def gamma2(self) -> float:
-        """Force per length and velocity across the axis, in Pa s."""
+        """Normal drag force per length and per normal velocity, in Pa s."""
         return self.viscosity * self.across
 
     @property
     def gamma3(self) -> float:
-        """Torque per length and angular velocity, in Pa s m^2."""
+        """Drag torque per length and per angular velocity, in Pa s m^2."""
         return self.viscosity * self.rotational
 
 
@@ -59,29 +60,30 @@ def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
 
 
 def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2) for helical waves of length L, about that of the fluttering mode (Lighthill 1976)."""
+    """(gamma1, gamma2) for helical waves of length L, near the wavelength of flutter (Lighthill 1976)."""
     logarithm = log(0.18 * slenderness)
     return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
 
 
 def least_rotational(viscosity: float, half_height: float) -> float:
-    """gamma3 = pi eta a^2: sections of a long cylinder that turn about a diameter.
+    """gamma3 = pi eta a^2: each section of a long cylinder turns about a diameter.
 
-    The velocity on its surface is axial, -Omega x2, and harmonic outside, where it falls as 1/r; the traction
-    eta Omega cos(phi) has this torque. For an ellipse a is half its height.
+    The surface velocity -Omega x2 is axial; the flow outside is harmonic and decays like 1/r, and its
+    traction eta Omega cos(phi) has the torque gamma3 Omega. For an ellipse, a is half the height.
     """
     return pi * viscosity * half_height**2
 
 
 def most_rotational(viscosity: float, half_height: float) -> float:
-    """gamma3 = 4 pi eta a^2: a cylinder that turns about its axis (Powers 2010), as if all dragged alike."""
+    """gamma3 = 4 pi eta a^2: drag of rotation about the cylinder's axis (Powers 2010), for all rotations."""
     return 4 * pi * viscosity * half_height**2
 
 
 def range_of_drag(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """The drags of DRAGS, which are equally good guesses of one arm: the likeliest first."""
+    """Estimates of the drag of one arm, in the order of DRAGS; the geometric mean gamma3 comes first."""
     slenderness = length / radius
-    least, most = (form(1.0, half_height) for form in (least_rotational, most_rotational))
+    least = least_rotational(1.0, half_height)
+    most = most_rotational(1.0, half_height)
     translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
     members = [(*cox(1.0, slenderness), (least * most) ** 0.5)]
     members += [(*translation, rotational) for translation in translations for rotational in (least, most)]

@@ -1,8 +1,8 @@
-"""What the model leaves out of an arm, as numbers: each neglected effect beside what the model keeps.
+"""Effects on an arm that the model neglects, each as a ratio to an effect that the model keeps.
 
-Of an arm that varies along its length each effect is that of the section where it is largest.
+An effect on an arm that varies along its length is evaluated at the section where the effect is largest.
 
-An effect has a limit beyond which the model does not apply; from a tenth of the limit on it is doubtful.
+The model does not apply beyond the limit of an effect, and is doubtful from a tenth of the limit on.
 Quantities are in SI units. Rates, forces and amplitudes are numbers or NumPy arrays that broadcast.
 Sentences about the effects belong to `rodsweep.verdict`.
 """
@@ -23,38 +23,37 @@ from .section import Tube
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
 DOUBTFUL_FROM = 0.1
-"""Fraction of a limit from which an effect makes numbers doubtful: ten times smaller than where they fail."""
+"""Fraction of its limit above which an effect makes results doubtful."""
 INERTIA_LIMIT = 0.1
-"""Phase, in radians, by which inertia may turn the drag. It lowers the flutter threshold of a filament by
-6.5 % at 0.1, as much as the range of drag, by 0.7 % at 0.01, and by 36 % at 1."""
+"""Limit of the phase lag of drag by inertia, in radians. Inertia lowers the flutter threshold of a filament
+by 6.5 % at a phase of 0.1, as much as the uncertainty of drag; by 0.7 % at 0.01; by 36 % at 1."""
 COMPRESSION_LIMIT = 0.1
-"""Fraction of its length that an arm may lose. Rubber stiffens by a quarter there, by 2 % at a tenth of
-it."""
+"""Limit of the relative axial compression. Rubber stiffens by a quarter at 0.1, by 2 % at 0.01."""
 WEIGHT_LIMIT = 0.1
-"""Weight less buoyancy over that under which an upright arm buckles. A level arm sags by a tenth of its
-length there, by a hundredth of it at a tenth of the weight."""
+"""Limit of weight minus buoyancy, over the weight that buckles the upright arm. A horizontal arm sags by a
+tenth of its length at 0.1, by a hundredth at 0.01."""
 WALL_LIMIT = 0.1
-"""Fraction of its bending stiffness that a tube may lose in wide beating, as its section flattens. A tube of
-infinite length buckles from a third of the stiffness lost on."""
+"""Limit of the fraction of bending stiffness that a tube loses in wide beating, as its section flattens. A
+tube of infinite length buckles after losing a third of its stiffness."""
 WIDE_CURVATURE = 6.0
-"""Largest curvature of a beating arm times its length over the tip's amplitude in lengths: 5.8 to 6.7 were
-found from 2 % to 50 % above flutter."""
+"""Largest curvature of a beating arm times its length, over the tip's amplitude in lengths. Cycles from 2 %
+to 50 % above flutter have 5.8 to 6.7."""
 REYNOLDS_LIMIT = 1.0
-"""Reynolds number of a wide motion, at which inertia of the flow past the section is as large as its drag."""
+"""Reynolds number of wide beating at which inertia of the flow past the section equals viscous drag."""
 SELF_BUCKLING = 7.837
-"""Weight in k3/L^2 at which an upright rod buckles under itself (Greenhill 1881)."""
+"""Weight in k3/L^2 at which an upright rod buckles under its own weight (Greenhill 1881)."""
 FLUTTER_WAVENUMBER = 4.694
-"""Wavenumber times length of the second bending shape of a clamped rod, as which an arm flutters."""
+"""Wavenumber times length of the second bending mode of a clamped rod, the approximate shape of flutter."""
 LEAST_S = 1e-6
-"""Frequency of the flow, in eta k^2/rho, below which rounding would hide its phase of 1e-6."""
+"""Smallest frequency of the flow, in eta k^2/rho: rounding error would hide the phase, 1e-6, of a smaller."""
 BISECTIONS = 60
-"""Halvings of an interval of ln s of width 20 to 30, down to rounding error."""
+"""Halvings that shrink an interval of ln s, 20 to 30 wide, to rounding error."""
 HALF_LENGTH = 0.5
-"""Amplitude of the tip over the length of the arm in wide beating."""
+"""Amplitude of the tip in wide beating, over the length of the arm."""
 
 
 class Validity(IntEnum):
-    """Whether the model applies where an effect is left out; its numbers are stored in result files."""
+    """Whether the model, which neglects an effect, applies. Result files store these integers."""
 
     applies = 0
     doubtful = 1
@@ -63,28 +62,25 @@ class Validity(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """One neglected effect: `value` beside the `limit` beyond which the model does not apply.
-
-    Arrays have the common shape of the rates, forces and amplitudes that they belong to.
-    """
+    """One neglected effect; arrays have the common shape of the motion's rates, forces and amplitudes."""
 
     name: str
     value: Array
-    """Ratio to what the model keeps, of the common shape of rates and forces; nan where nothing moves."""
+    """Ratio of the neglected effect to an effect of the model; nan for an arm at rest."""
     limit: float
     viscosity_factor: Array
-    """How many times as viscous a fluid brings the effect to its limit; inf where viscosity does not."""
+    """Viscosity at which `value` equals `limit`, over the fluid's; inf if no viscosity is enough."""
     of_cycles_only: bool = False
-    """Whether it concerns wide motion only, and no threshold."""
+    """Whether the effect changes cycles only, not thresholds."""
 
     @property
     def excess(self) -> Array:
-        """Value over limit, of any shape; above 1 the model does not apply."""
+        """Value over limit, of the shape of `value`; the model does not apply above 1."""
         return self.value / self.limit
 
     @property
     def validity(self) -> NDArray[np.int8]:
-        """`Validity` of the model under this effect alone, integers of any shape; applies at rest."""
+        """`Validity` under this effect alone, integers of the shape of `value`; `applies` at rest."""
         return (self.excess > DOUBTFUL_FROM).astype(np.int8) + (self.excess > 1.0)
 
 
@@ -96,12 +92,12 @@ def effects_of(
     drag: Drag | None = None,
     amplitude: ArrayLike = HALF_LENGTH,
 ) -> tuple[Effect, ...]:
-    """All neglected effects on an arm that moves.
+    """All neglected effects on a moving arm.
 
-    rate: of the motion, in rad/s; nan where nothing moves. F: follower force, in k3/L^2; nan without load.
-    drag: with which the arm moves so fast; by default the least of its range, with which effects of inertia
-    are largest. amplitude: of the tip, over the length. The effect of weight is left out where no density
-    difference is given, that of the wall where the arm has no bore. F is that of `weakest_load`.
+    rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `weakest_load` of the follower
+    force, in k3/L^2; nan without load. drag: the drag that gives `rate`; by default the least of the range,
+    which gives the largest inertia. amplitude: amplitude of the tip over the length. Weight is included if
+    the arm has a density difference, flattening of the wall if the arm has a bore.
     """
     drag = least_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
@@ -122,32 +118,32 @@ def effects_of(
 
 
 def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.int8]:
-    """`Validity` of thresholds and linear motion under all effects, or of cycles; integers of their shape."""
+    """Worst `Validity`, integers of the effects' shape; `of_cycles` includes effects on cycles only."""
     counted = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
     return np.maximum.reduce(list(counted))
 
 
 def least_drag(arm: SlenderArm) -> Drag:
-    """The drag of the arm's range with the least gamma2, with which it moves fastest."""
+    """The drag of the arm's range with the smallest gamma2, which gives the fastest motion."""
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
 def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
-    """Rate in rad/s of a frequency in rad/tau2 of any shape, with the least drag of the arm's range."""
+    """A frequency in rad/tau2, of any shape, in rad/s for the least drag of the arm's range."""
     return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
 
 
 def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase m omega/gamma2, of the shape of the rate, by which the arm's mass turns its drag."""
+    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass, of the shape of `rate`."""
     along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     value = max(arm.mass_at(station) / own.gamma2 for station, own in along) * rate
-    # The rate itself falls with viscosity, and so does its ratio to the drag.
+    # omega falls like 1/viscosity and gamma2 grows like it, so the value falls like 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)
     return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
 
 
 def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase, of the shape of the rate, by which the drag lags: the fluid has to be set moving."""
+    """Phase lag of the drag, caused by inertia of the fluid, of the shape of `rate`."""
     logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
     k = FLUTTER_WAVENUMBER / arm.si.length
     s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
@@ -160,15 +156,16 @@ def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 
 def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
-    """Phase by which a line of forces of wavenumber k lags in unsteady Stokes flow; s = rho omega/(eta k^2).
+    """Phase lag of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
+
+    s = rho omega/(eta k^2), any shape. logarithm: Lambda = 4 pi eta/gamma2.
 
     The mobility across the line is, with two-dimensional wave vectors q,
 
         int d^2q/(2 pi)^2 (q^2/2 + k^2)/(eta (q^2 + k^2) (q^2 + k^2 + i s k^2))
             = (Lambda - 1/2 - (1 - 1/(i s)) ln(1 + i s)/2)/(4 pi eta)
 
-    where the steady one is Lambda/(4 pi eta), Lambda = 4 pi eta/gamma2 being the logarithm of the drag. The
-    phase is 3 s/(4 Lambda) for small s, and has the shape of s.
+    and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
     z = 1j * np.maximum(np.asarray(s, float), LEAST_S)
     with np.errstate(invalid="ignore"):  # nan where nothing moves
@@ -177,7 +174,7 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 
 def _frequency_of_phase(phase: float, logarithm: float) -> float:
-    """The s at which `unsteady_phase` is as large as `phase`, below pi/2, by bisection of ln s."""
+    """The s at which `unsteady_phase` equals `phase` < pi/2, by bisection of ln s."""
     low, high = log(LEAST_S), 2 * logarithm  # there the real part of the mobility is -1/2
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
@@ -189,26 +186,26 @@ def _frequency_of_phase(phase: float, logarithm: float) -> float:
 
 
 def compression(arm: SlenderArm, F: Array) -> Effect:
-    """F/k1 of the shape of F, the fraction of its length that the arm loses, or gains where it is pulled."""
-    return _whatever_the_fluid("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
+    """Relative change of the arm's length by compression or tension, abs(F)/k1, of the shape of F."""
+    return _independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
 def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
-    """The force that would compress the base as F does the weakest section, of the shape of F.
+    """Force that compresses the base as much as F compresses the weakest section, of the shape of F.
 
-    nan for rubber: its own law says how it is compressed.
+    nan for rubber, whose constitutive law includes large compression.
     """
     share = arm.crushing_force / arm.k1
     return np.asarray(F, float) / share if share < inf else np.full(np.shape(F), np.nan)
 
 
 def weight(arm: SlenderArm, F: Array) -> Effect:
-    """Weight less buoyancy over that under which an upright arm buckles, of the shape of F."""
+    """Weight minus buoyancy, over the weight that buckles the upright arm, of the shape of F."""
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING * arm.force_scale)
     value = arm.shape.buckling_share(heaviness) if arm.shape.varies else uniform
-    return _whatever_the_fluid("weight", np.full(F.shape, value), WEIGHT_LIMIT)
+    return _independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
 def wall_effect(
@@ -218,21 +215,22 @@ def wall_effect(
     poisson: ArrayLike,
     amplitude: ArrayLike = HALF_LENGTH,
 ) -> Effect:
-    """Fraction of its bending stiffness that a beating tube loses, of the common shape of the quantities.
+    """Fraction of the bending stiffness that a beating tube loses, of the common shape of the arguments.
 
-    amplitude: of the tip, over the length.
-    A bent tube flattens by zeta = (1 - nu^2) (r^2/(R t))^2, R being the radius of curvature, r that of the
-    middle of the wall and t its thickness, and has 1 - 3 zeta/2 of its stiffness then (Brazier 1927).
+    length, radius, bore: in m. amplitude: amplitude of the tip over the length.
+    A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R t))^2, with the radius r of
+    the middle of the wall and the thickness t, and keeps 1 - 3 zeta/2 of its stiffness (Brazier 1927).
     """
     outer, inner, ratio = (np.asarray(x, float) for x in (radius, bore, poisson))
     curvature = WIDE_CURVATURE * np.asarray(amplitude, float) / np.asarray(length, float)
-    middle, thickness = (outer + inner) / 2, outer - inner
+    middle = (outer + inner) / 2
+    thickness = outer - inner
     value = 1.5 * (1 - ratio**2) * (curvature * middle**2 / thickness) ** 2
-    return _whatever_the_fluid("flattening of the wall", value, WALL_LIMIT, of_cycles_only=True)
+    return _independent_of_viscosity("flattening of the wall", value, WALL_LIMIT, of_cycles_only=True)
 
 
 def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
-    """rho U (2 a)/eta of a tip that moves by amplitude times L at the rate, of their shape."""
+    """rho U (2 a)/eta at the tip, whose speed U is rate times amplitude times L; of the shape of `rate`."""
     speed = rate * amplitude * arm.si.length
     value = arm.si.fluid_density * speed * 2 * arm.shape.drag_radius / arm.si.viscosity
     return Effect(
@@ -244,7 +242,7 @@ def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
     )
 
 
-def _whatever_the_fluid(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
-    """An effect on which viscosity has no influence."""
+def _independent_of_viscosity(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
+    """An effect that is independent of the viscosity of the fluid."""
     factor = np.where(value > limit, inf, 0.0)
     return Effect(name=name, value=value, limit=limit, viscosity_factor=factor, of_cycles_only=of_cycles_only)

@@ -1,6 +1,6 @@
-"""The quantities of an arm: one table of units, meanings and how they are written, and its derived lists.
+"""The quantities of an arm: one table of units, meanings and examples, and lists derived from the table.
 
-Configs, files, figures and the command take units and words from here. Knows no arm and no formula.
+Configs, files, figures and the command line read units and words here. Knows no arm and no formula.
 """
 
 from typing import NamedTuple
@@ -13,15 +13,15 @@ LOADS = ("pressure", "force")
 
 
 class Quantity(NamedTuple):
-    """A quantity of an arm: SI unit, meaning, and accepted notations of a quantity with a unit."""
+    """A quantity of an arm: SI unit, meaning, and an example with a unit, empty for a pure number."""
 
     unit: str
     meaning: str
     example: str = ""
     needed: bool = False
-    """Whether no arm is without it."""
+    """Whether every arm must have the quantity."""
     signed: bool = False
-    """Whether it may be 0 or negative."""
+    """Whether zero and negative values are allowed."""
 
 
 QUANTITIES = {
@@ -48,11 +48,11 @@ QUANTITIES = {
         for load in LOADS
     },
 }
-"""All quantities that may be given."""
+"""All quantities that a user may give, by name."""
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
-"""SI unit and accepted notations of each quantity with a unit."""
+"""(SI unit, example) of each quantity with a unit."""
 RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
-"""Loads in units of that at which the arm flutters first, with the likeliest drag."""
+"""Relative load to load. A relative load is divided by the load of first flutter with the likeliest drag."""
 SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
 """Quantities that define a round section, and quantities that define a rectangular section."""
 ARM_UNITS = {
@@ -60,17 +60,17 @@ ARM_UNITS = {
     "force_scale": Quantity("N", "unit of force, k3/L^2"),
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
-"""Units of time, force and pressure that an arm makes, by the names of its properties."""
+"""Units of time, force and pressure that an arm defines, by the property of `SlenderArm`."""
 SCALE_OF = {load: f"{load}_scale" for load in LOADS}
-"""The unit of a load, which makes F = 1."""
+"""Name of the load's unit, at which F = 1, by load."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
-"""All that a file says of an arm beside its parameters."""
+"""All variables of an arm in a result file, apart from its parameters as a rod."""
 
 
 def number_in_si(name: str, given: Given | None) -> float:
-    """A quantity of UNITS in SI; nan where it is not given, or relative to the threshold of flutter.
+    """Value in SI of a quantity of UNITS; nan for a missing quantity or a load relative to flutter.
 
-    InputError, naming the quantity, where it may not be so.
+    Raises InputError, naming the quantity, for an invalid value.
     """
     if given is None or (name in LOADS and share_of_flutter(given) is not None):
         return float("nan")
@@ -81,7 +81,7 @@ def number_in_si(name: str, given: Given | None) -> float:
 
 
 def quoted(name: str, given: Given) -> str:
-    """A quantity of UNITS as it was given, for a sentence."""
+    """A quantity of UNITS in the user's notation, like "length = '10 cm'", for messages."""
     if isinstance(given, str):
         return f"{name} = '{given}'"
     return f"{name} = {in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

@@ -1,4 +1,4 @@
-"""Sentences that refuse an arm: quantities that do not go together, or that make no slender arm."""
+"""Input checks of an arm: contradictory or missing quantities, and arms that are not slender."""
 
 from math import inf
 from numbers import Real
@@ -16,19 +16,22 @@ if TYPE_CHECKING:
     from .arm import SlenderArm
 
 CRUSHED_FROM = 1 - 1e-14
-"""Part of k1 from which on F is as large: what conversion of units leaves between them."""
+"""Fraction of the crushing force above which F counts as crushing: conversion of units rounds."""
 SAME_LENGTH = 1e-9
-"""Relative difference between a length and the sum of segments that rounding may leave."""
+"""Relative difference between a given length and the sum of the segments that counts as rounding error."""
 INCOMPRESSIBLE = 0.5
-"""Poisson's ratio of material that keeps its volume, as a section that swells does."""
+"""Poisson's ratio of incompressible material; a swelling section requires this ratio."""
 
 
 class NotSlender(InputError):
-    """The refusal of an arm that is too short for the drag of slender bodies."""
+    """The arm is too short for the drag of slender bodies."""
 
 
 def refuse_words(arm: "SlenderArm") -> None:
-    """InputError for Poisson's ratio, a drag or a law that is none, and for a law that contradicts it."""
+    """Raises InputError for an invalid Poisson's ratio, drag, law or section.
+
+    A swelling section with another Poisson's ratio than 0.5 is invalid too.
+    """
     ratio: Any = arm.poisson
     is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
     if not is_number or not -1 < ratio <= INCOMPRESSIBLE:
@@ -39,11 +42,10 @@ def refuse_words(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
     if arm.drag not in DRAGS:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
-    for name, word in (("law", arm.law), ("section", arm.section)):
+    texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))
+    for name, word, allowed in texts:
         if not isinstance(word, str):
-            raise InputError(
-                f"{name} = {word!r:.60} is no word, as linear and neo_hookean, fixed and swelling are"
-            )
+            raise InputError(f"{name} = {word!r:.60} is not a text; write {allowed}")
     try:
         law_of(arm.law, arm.section)
     except ValueError as error:
@@ -56,7 +58,7 @@ def refuse_words(arm: "SlenderArm") -> None:
 
 
 def refuse_other_sets(arm: "SlenderArm") -> None:
-    """InputError unless length, material, fluid and one shape are given, and at most one load."""
+    """Raises InputError unless length, material, fluid and one shape are given, and at most one load."""
     if arm.segments is not None:
         _refuse_beside_segments(arm)
     else:
@@ -75,7 +77,7 @@ def refuse_other_sets(arm: "SlenderArm") -> None:
 
 
 def _refuse_sections(arm: "SlenderArm") -> None:
-    """InputError unless there is one section, whose bore or tip fits."""
+    """Raises InputError unless one section is given, with a valid bore or tip radius if given."""
     sides = (arm.width, arm.height)
     for name, why in (("inner_radius", "a rectangle has no bore here"), ("tip_radius", "only cones taper")):
         if getattr(arm, name) is not None and arm.radius is None:
@@ -99,7 +101,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
 
 
 def _refuse_beside_segments(arm: "SlenderArm") -> None:
-    """InputError for a section beside segments, and for a length that is not theirs."""
+    """Raises InputError if segments come with a section or a length that differs from their sum."""
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
@@ -120,7 +122,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
 
 
 def refuse_misfits(arm: "SlenderArm") -> None:
-    """InputError for numbers beyond what is computed, NotSlender for a short arm."""
+    """Raises InputError for an arm without mass or with over- or underflow, NotSlender for a short arm."""
     if arm.si.density_difference <= -arm.si.fluid_density:
         given, least = arm.quoted("density_difference"), f"{-arm.si.fluid_density:.4g} kg/m^3"
         raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
@@ -143,7 +145,7 @@ def refuse_misfits(arm: "SlenderArm") -> None:
 
 
 def refuse_crushed(arm: "SlenderArm") -> None:
-    """InputError where the load is not below the one that crushes the arm at its weakest section."""
+    """Raises InputError for a load that crushes the arm at its weakest section."""
     loaded = arm.load
     if loaded is None or arm.share_of_flutter is not None or CRUSHED_FROM * arm.crushing_force > arm.F:
         return

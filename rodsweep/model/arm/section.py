@@ -8,7 +8,7 @@ from ...errors import InputError
 
 
 class NoWall(InputError):
-    """The refusal of an arm whose bore is as wide as itself."""
+    """The bore is at least as wide as the arm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Tube:
 
     @property
     def area(self) -> float:
-        """A = pi (a^2 - b^2), of the material, in m^2."""
+        """Area of the material, A = pi (a^2 - b^2), in m^2."""
         return pi * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
 
     @property
@@ -141,7 +141,7 @@ class Rectangle:
 
     @property
     def drag_radius(self) -> float:
-        """(w + h)/4, in m: that of the ellipse of the same sides in axial motion (Batchelor 1970)."""
+        """(w + h)/4, in m: drag radius of an ellipse with axes w and h in axial motion (Batchelor 1970)."""
         return (self.width + self.height) / 4
 
     def shear_coefficient(self, poisson: float) -> float:

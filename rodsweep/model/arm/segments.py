@@ -1,4 +1,4 @@
-"""Segments of an arm as people write them, "4 cm: radius 6 mm, young 80 kPa", and as numbers in SI."""
+"""Segments of an arm as users write them, "4 cm: radius 6 mm, young 80 kPa", and as numbers in SI."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -11,17 +11,17 @@ from .quantities import number_in_si, quoted
 from .section import Circle, NoWall, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
-"""Quantities of a segment. `young` is by default that of the arm."""
+"""Quantities of a segment. `young` defaults to Young's modulus of the arm."""
 EXAMPLE = "4 cm: radius 6 mm, young 80 kPa"
-"""A segment as it is written."""
+"""Text of a valid segment, for messages."""
 PART = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
-"""Name and quantity of one part of a segment, as "radius 6 mm"."""
+"""Matches name and quantity of one part of a segment, like "radius 6 mm"."""
 MAX_SEGMENTS = 100
-"""Largest number of segments of an arm: each ends an element of the mesh."""
+"""Largest number of segments of an arm. Every segment needs at least one element of the mesh."""
 
 
 class ArmSegment(NamedTuple):
-    """A uniform piece of an arm, in SI units; young is None where the arm's own applies."""
+    """A uniform piece of an arm, in SI units; young is None if the modulus of the arm applies."""
 
     length: float
     section: Circle | Tube
@@ -30,25 +30,25 @@ class ArmSegment(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WrittenSegment:
-    """A segment's quantities by name, as they were given."""
+    """A segment's quantities by name, in the user's notation."""
 
     given: Mapping[str, Given]
 
     def __str__(self) -> str:
-        """The segment as text, from which `written_segment` makes it again."""
+        """The segment as text that `written_segment` can read."""
         texts = {name: _text(name, value) for name, value in self.given.items()}
         length = texts.pop("length")
         return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"
 
 
 def segment_texts(given: Any) -> tuple[str, ...]:
-    """Every segment of an arm as text; InputError, beginning with "segments", for what is no segment."""
+    """Texts of all segments of an arm; InputError, beginning with "segments", for an invalid segment."""
     if isinstance(given, str | Mapping):
         given = [given]
     if hasattr(given, "tolist"):  # an array of texts
         given = given.tolist()
     if not isinstance(given, Sequence) or not given:
-        raise InputError(f"segments = {str(given):.60} is no list of segments; write each as in '{EXAMPLE}'")
+        raise InputError(f"segments = {str(given):.60} is not a list; write each segment as in '{EXAMPLE}'")
     if len(given) > MAX_SEGMENTS:
         raise InputError(f"segments: there are {len(given)}; an arm has at most {MAX_SEGMENTS}")
     written = [written_segment(number, each) for number, each in enumerate(given, 1)]
@@ -63,7 +63,10 @@ def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
 
 
 def written_segment(number: int, given: Any) -> WrittenSegment:
-    """A segment's quantities from its text or mapping; InputError for an unknown or a missing key."""
+    """A segment's quantities, from text or a mapping; InputError for an unknown or a missing key.
+
+    number: position of the segment from the base, from 1, for messages.
+    """
     where = f"segments, number {number}"
     found = dict(_mapping(where, given))
     for name in found:
@@ -81,13 +84,13 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
         return {str(name): value for name, value in given.items()}
     length, colon, parts = str(given).partition(":")
     if not isinstance(given, str) or not colon:
-        raise InputError(f"{where}: {str(given)!r:.60} is no segment; write it as in '{EXAMPLE}'")
+        raise InputError(f"{where}: {str(given)!r:.60} is not a segment; write it as in '{EXAMPLE}'")
     found: dict[str, Given] = {"length": length.strip()}
     for part in parts.split(","):
         name_and_value = PART.fullmatch(part)
         if name_and_value is None:
             raise InputError(
-                f"{where}: {part.strip()!r:.60} is no quantity; write a segment as in '{EXAMPLE}'"
+                f"{where}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE}'"
             )
         name = name_and_value[1].replace("-", "_").replace(" ", "_")
         if name in found:
@@ -97,8 +100,9 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
 
 
 def _segment(number: int, written: WrittenSegment) -> ArmSegment:
-    """The numbers of a segment in SI units; InputError for a quantity out of range, NoWall for a bore."""
-    given, where = written.given, f"segments, number {number}"
+    """A segment in SI units; InputError for a quantity out of range, NoWall for a bore that is too wide."""
+    given = written.given
+    where = f"segments, number {number}"
     try:
         length, radius, inner, young = (number_in_si(name, given.get(name)) for name in SEGMENT_KEYS)
     except InputError as error:

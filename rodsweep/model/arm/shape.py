@@ -1,7 +1,7 @@
-"""An arm along its length, in SI units: its sections and moduli, its taper, and the factors that follow.
+"""An arm along its length, in SI units: sections and moduli, taper, and factors of stiffness and drag.
 
-The drags are those of the local radius and of the length of the whole arm. Of a cone the parameter `taper`
-has all of this but the logarithms in the drags of translation, which its profile adds.
+Drags use the local radius and the length of the whole arm. The parameter `taper` of a cone implies all
+factors except the logarithms in the drags of translation; the profile of the cone adds these.
 """
 
 from collections.abc import Sequence
@@ -17,14 +17,14 @@ from .drag import Drag, range_of_drag
 from .section import Circle, Section, Tube
 
 BUCKLING_POINTS = 400
-"""Midpoints at which the weight that buckles an arm is computed: of a uniform arm its error is 5e-5."""
+"""Midpoints in the integrals for the buckling weight. The relative error is 5e-5 for a uniform arm."""
 RADIUS_STEP = 1.3
-"""Largest ratio of radii of a cone at neighbouring rows of its profile: the cubics between them have the
-logarithms of the drag to 3e-4 then, for tapers from 0.01 to 100."""
+"""Largest ratio of radii of a cone at neighbouring rows of its profile. The cubics between rows approximate
+the logarithms of the drag to 3e-4 for tapers from 0.01 to 100."""
 
 
 class Station(NamedTuple):
-    """A section of an arm. end: of its piece, in lengths from the base. young: in Pa."""
+    """A section of an arm. end: where its piece ends, from 0 at the base to 1 at the tip. young: in Pa."""
 
     end: float
     section: Section
@@ -35,8 +35,8 @@ class Station(NamedTuple):
 class Shape:
     """Sections along an arm of `length`, in m.
 
-    stations: the segments from the base to the tip; of a cone its base and its tip; of a uniform arm its only
-    section. taper: tip radius over base radius.
+    stations: the segments from the base to the tip, or base and tip of a cone, or the section of a uniform
+    arm. taper: tip radius over base radius of a cone; 1 for other arms.
     """
 
     length: float
@@ -45,7 +45,7 @@ class Shape:
 
     @property
     def base(self) -> Station:
-        """The section at the clamp, whose stiffness and drag are units."""
+        """The section at the clamp; its stiffness and drag define the dimensionless units."""
         return self.stations[0]
 
     @property
@@ -64,14 +64,15 @@ class Shape:
         return max(each.section.drag_radius for each in self.stations)
 
     def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
-        """The drags of DRAGS at a station."""
+        """Drags at a station, in the order of DRAGS; viscosity in Pa s."""
         section = station.section
         return range_of_drag(viscosity, self.length, section.drag_radius, section.half_height)
 
     def profile(self, poisson: float, drag: int) -> Profile | None:
-        """Factors of the segments, or of the logarithms of a cone, to the base; None where they are all 1.
+        """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
-        drag: place of the drag in DRAGS. ValueError where a factor is too large or too small.
+        The profile of a cone contains only the factors that the parameter `taper` does not imply. drag: index
+        in DRAGS. Raises ValueError for a factor that is too large or too small.
         """
         if not self.varies:
             return None
@@ -89,7 +90,7 @@ class Shape:
         return Profile(tuple(u), tuple(rows))
 
     def _logarithms(self, drag: int) -> Profile:
-        """Factors of gamma1 and gamma2 along a cone; `taper` has all other factors."""
+        """Factors of gamma1 and gamma2 along a cone; the parameter `taper` implies all other factors."""
         pieces = max(2, ceil(abs(log(self.taper)) / log(RADIUS_STEP)))
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
@@ -101,14 +102,15 @@ class Shape:
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
     def _factors(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """k1, k2, k3, gamma1, gamma2, gamma3 at a station over those at the base."""
+        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, relative to the base."""
         own, base = (np.array(self._of_station(each, poisson, drag)) for each in (station, self.base))
         with np.errstate(all="ignore"):
             return tuple((own / base).tolist())
 
     def _of_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """E A, kappa E A, E I, and the drags over viscosity."""
-        section, friction = station.section, self.drags(station, 1.0)[drag]
+        """E A, kappa E A, E I, and the axial, normal and rotational drag over viscosity, at a station."""
+        section = station.section
+        friction = self.drags(station, 1.0)[drag]
         stretch = station.young * section.area
         return (
             stretch,
@@ -120,10 +122,10 @@ class Shape:
         )
 
     def buckling_share(self, weight: float) -> float:
-        """Weight per volume, in N/m^3, over the one under which the upright arm buckles.
+        """The weight of the upright arm over its buckling weight. `weight`: weight per volume, in N/m^3.
 
-        theta' = m/(E I) and m' = -W theta, W(u) being the weight beyond u, have a solution with theta(0) = 0
-        and m(1) = 0 where 1 is an eigenvalue of theta -> int_0^u (1/(E I)) int_u^1 W theta.
+        theta' = m/(E I) and m' = -W theta, with the weight W(u) beyond u, have a solution with theta(0) = 0
+        and m(1) = 0 if 1 is an eigenvalue of theta -> int_0^u (1/(E I)) int_u^1 W theta.
         """
         h, area, stiffness = self._at_midpoints()
         beyond = np.tril(np.ones((len(h), len(h)))).T * (weight * area * h)
@@ -157,7 +159,7 @@ def cone(length: float, radius: float, tip_radius: float, young: float) -> Shape
 
 
 def in_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
-    """An arm of (length in m, section, young in Pa) from the base to the tip."""
+    """An arm made of pieces (length in m, section, young in Pa) from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in pieces])
     shares = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
     stations = [Station(u, section, young) for u, (_, section, young) in zip(shares, pieces, strict=True)]

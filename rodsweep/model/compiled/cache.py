@@ -1,10 +1,10 @@
-"""Compiled functions on disk: a file for each kernel and types of arguments, named by all that it is made of.
+"""Compiled functions on disk: one file for each kernel and argument types, named by a digest of the code.
 
-numba's own cache knows the source file of a function and nothing of what the function calls. Here the file's
-name holds the digest of the code (`rodsweep.model.compiled.digest`): editing a comment compiles nothing,
-editing a formula compiles its callers, and versions of the program share a directory.
+numba's own cache knows the source file of a function, but not the called functions. Here the digest covers
+the function and its callees (`rodsweep.model.compiled.digest`): editing a comment recompiles nothing, editing
+a formula recompiles its callers, and versions of the program can share a directory.
 
-A file that is damaged counts as absent, and one that cannot be written is done without.
+A damaged file counts as absent; a file that cannot be written is skipped.
 """
 
 import os
@@ -31,30 +31,30 @@ from ...watch import report
 from .digest import Part, digest, kernel_of, type_text
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
-"""Compiled code of one version is of no use to another."""
-SEAL = 32
-"""Bytes of SHA-256 at the start of a file, of what follows: it shows a file that was cut off."""
+"""Versions that are part of the digest, because compiled code is valid for one combination only."""
+DIGEST_BYTES = 32
+"""Length of the SHA-256 checksum at the start of a file; it reveals a truncated file."""
 _first_parts: dict[FunctionType, Part] = {}
-"""Description of each function at its first use, which is the state that numba compiled."""
+"""Description of each function at first use: the state of the code that numba compiled."""
 
 
 class KernelCache(_Cache):
-    """The cache of one function: what numba's dispatchers and C callbacks ask for compiled code."""
+    """The cache of one function, with the interface that numba's dispatchers and C callbacks expect."""
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
-        """`options`: numba's; `directories`: all are read, and the first that can be is written."""
+        """options: numba's compiler options. directories: all are read; the first writable one is written."""
         self._kernel = kernel_of(function, options)
         self._directories = tuple(directories)
 
     @property
     def cache_path(self) -> str | None:
-        """Cache file of the function, as numba reports it."""
+        """The directory that is written, as numba reports it; None if the cache is disabled."""
         return str(self._directories[0]) if self._directories else None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The compiled function for arguments `sig`, or None."""
-        report()  # a place to stop between two compilations of some seconds each
-        target_context.refresh()  # as numba's cache does: registers what a loaded function may refer to
+        """The compiled function for the signature `sig`; None if the cache has no valid file."""
+        report()  # lets a stop request end the run between two compilations of some seconds each
+        target_context.refresh()  # registers symbols that a loaded function may use, as numba's cache does
         name = self._name(sig, target_context.codegen(), _first_parts)
         for directory in self._directories:
             content = _read(directory / name)
@@ -63,12 +63,13 @@ class KernelCache(_Cache):
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keeps what was compiled, unless it holds addresses or a global value has changed meanwhile."""
+        """Writes compiled code, unless the code holds addresses or a global value has changed meanwhile."""
         name = self._name(sig, data.codegen, {})
         changed = name != self._name(sig, data.codegen, _first_parts)
         if data.library.has_dynamic_globals or data.lifted or changed:
             return
-        content, failures = dumps(data._reduce()), []
+        content = dumps(data._reduce())
+        failures = []
         for directory in self._directories:
             try:
                 _write(directory / name, content)
@@ -90,19 +91,19 @@ class KernelCache(_Cache):
         return f"{name}-{sha256(content.encode()).hexdigest()[:32]}.kernel"
 
     def enable(self) -> None:
-        """numba asks for it; a cache is always on."""
+        """Does nothing: the cache is always enabled. numba requires the method."""
 
     def disable(self) -> None:
-        """Keeps and loads nothing from now on."""
+        """Stops reading and writing files."""
         self._directories = ()
 
     def flush(self) -> None:
-        """Nothing is held back."""
+        """Does nothing: files are written at once. numba requires the method."""
 
 
 @cache
 def _warn_once(sentence: str) -> None:
-    """Python's own memory of warnings is emptied by numba at every compilation."""
+    """Warns once a process: numba resets Python's own record of shown warnings at every compilation."""
     warnings.warn(sentence, stacklevel=1)
 
 
@@ -111,12 +112,13 @@ def _read(path: Path) -> bytes | None:
         held = path.read_bytes()
     except OSError:
         return None
-    seal, content = held[:SEAL], held[SEAL:]
-    return content if sha256(content).digest() == seal else None
+    checksum = held[:DIGEST_BYTES]
+    content = held[DIGEST_BYTES:]
+    return content if sha256(content).digest() == checksum else None
 
 
 def _write(path: Path, content: bytes) -> None:
-    """All of it or nothing, whoever else writes the same file."""
+    """Writes a file atomically: other processes see the complete file or no file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{uuid4().hex}")
     try:

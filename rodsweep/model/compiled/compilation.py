@@ -1,7 +1,7 @@
-"""How scalar formulas are compiled: numba, cached on disk where the disk allows it.
+"""Compilation of scalar formulas by numba, cached on disk if a directory is writable.
 
-The formulas are evaluated point by point inside adaptive loops, where NumPy would spend its time
-on calls. The compiled functions take floats and complex numbers and no objects of ours.
+Adaptive loops evaluate the formulas point by point, where the overhead of NumPy calls would dominate.
+Compiled functions take floats, complex numbers, arrays and NamedTuples, but no other objects.
 """
 
 import os
@@ -35,24 +35,24 @@ def cache_directories() -> list[Path]:
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """`function` compiled by numba in nopython mode.
+    """Compiles `function` by numba in nopython mode.
 
-    Real division by zero gives inf or nan, complex division by zero raises ZeroDivisionError.
+    Real division by zero gives inf or nan; complex division by zero raises ZeroDivisionError.
     """
     return _compiled(function, fastmath=False)
 
 
 def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
-    """As `compiled`, with sums that may be added in any order, as a BLAS does: five times as fast.
+    """Compiles `function` like `compiled`, but allows sums in any order, as a BLAS does: five times as fast.
 
-    Infinities and nan are kept. Each function that calls it has its own copy inside: of copies beside it,
-    which add in other orders, a process would take the one that it happened to load first.
+    Infinities and nan are kept. The function is always inlined in its callers: a shared copy would be
+    the copy that a process happens to load first, and copies differ in the order of their sums.
     """
     return _compiled(function, fastmath={"reassoc", "contract", "nsz"}, forceinline=True)
 
 
 def c_callback(function: Callable, signature: Any) -> Any:
-    """`function` compiled at once into one that C can call; its `address` is a C function pointer."""
+    """Compiles `function` at once to a function that C can call; `address` is the C function pointer."""
     callback: Any = CFunc(function, numba.core.sigutils.normalize_signature(signature), locals={}, options={})
     callback._cache = KernelCache(function, {"signature": "C"}, cache_directories())
     callback.compile()

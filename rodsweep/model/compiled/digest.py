@@ -1,8 +1,8 @@
-"""What a compiled function is made of: its bytecode, and all that the bytecode refers to.
+"""Digest of a compiled function: its bytecode, the functions that it calls, the global values that it reads.
 
-numba puts into a compiled function the functions that it calls and the global values that it reads. `digest`
-is equal where all of these are, whatever the comments, docstrings and line numbers, and differs where one
-differs: compiled code is kept under it (`rodsweep.model.compiled.cache`).
+numba copies callees and global values into a compiled function, so a change of either needs a compilation.
+Comments, docstrings and line numbers do not change the digest. `rodsweep.model.compiled.cache` names
+files of compiled code by the digest.
 """
 
 import builtins
@@ -18,10 +18,11 @@ from numba import types
 from numba.core.dispatcher import Dispatcher
 
 VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
-"""Flags of a code object that change what is compiled."""
+"""Flags of a code object that change the compiled code: *args and **kwargs."""
 READS = ("LOAD_GLOBAL", "LOAD_NAME")
 """Instructions that read a global value."""
 PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
+"""Types whose repr is equal in every process."""
 
 
 class Part(NamedTuple):
@@ -47,7 +48,7 @@ def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
 
 
 def digest(kernel: Kernel, parts: Parts) -> str:
-    """Digest of a kernel and of all that it calls; `parts` remembers every function that was described."""
+    """SHA-256 of a kernel and all functions that it calls; `parts` caches the text of each function."""
     texts: dict[FunctionType, str] = {}
     due = [kernel]
     while due:
@@ -61,10 +62,10 @@ def digest(kernel: Kernel, parts: Parts) -> str:
 
 
 def type_text(numba_type: Any) -> str:
-    """The type of an argument with the names of its fields, which numba's own name of the type leaves out.
+    """Text of an argument's type, including names of fields, which numba's name of the type omits.
 
-    Compiled code refers to the class of a NamedTuple by its module, so that the text names the module too.
-    TypeError: the type belongs to a function, whose code this cannot tell.
+    The text names the module of a NamedTuple too, because compiled code refers to the class by its module.
+    Raises TypeError for a function type: the type does not determine the function's code.
     """
     if isinstance(numba_type, types.Callable):
         raise TypeError(f"kernels take no functions as arguments: {numba_type}")
@@ -77,7 +78,8 @@ def type_text(numba_type: Any) -> str:
 
 
 def _described(function: FunctionType, options: str) -> Part:
-    lines, values = [_name_of(function), options], _Values(function)
+    lines = [_name_of(function), options]
+    values = _Values(function)
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
     lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cells))
     for code in _code_objects(function.__code__):
@@ -87,7 +89,7 @@ def _described(function: FunctionType, options: str) -> Part:
             if name in function.__globals__:
                 lines.append(f"{name} = {values.text(function.__globals__[name])}")
             elif not hasattr(builtins, name):
-                raise NameError(f"{_name_of(function)} reads {name}, which its module has not")
+                raise NameError(f"{_name_of(function)} reads {name}, which its module does not define")
     return Part("\n".join(lines), values.called)
 
 
@@ -99,7 +101,7 @@ def _code_objects(code: CodeType) -> Iterator[CodeType]:
 
 
 def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list[str]:
-    """Bytecode with constants instead of their places, which a docstring shifts."""
+    """Bytecode with values of constants instead of their indices, which a docstring shifts."""
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
     lines.append(code.co_exceptiontable.hex())
@@ -111,19 +113,22 @@ def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list
 
 
 def _ordered(value: Any) -> Any:
-    """Sets have another order in each process."""
+    """A set as a sorted list, since the order of a set differs between processes; other values unchanged."""
     return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
 
 
 class _Values:
-    """Values that one function refers to, as text equal in every process; `called`: functions among them."""
+    """Converts values that one function refers to into text that is equal in every process.
+
+    called: the functions among the values.
+    """
 
     def __init__(self, user: FunctionType) -> None:
         self.user = user
         self.called: list[Kernel] = []
 
     def text(self, value: Any) -> str:
-        """Raises TypeError: values of this type have no text."""
+        """Text of a value; TypeError for a type without reproducible text."""
         if isinstance(value, PLAIN):
             return repr(value)
         if isinstance(value, Mapping):
@@ -135,7 +140,7 @@ class _Values:
         return _array_text(value) or self._object_text(value)
 
     def _object_text(self, value: Any) -> str:
-        if hasattr(value, "_defn"):  # an intrinsic of numba's
+        if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn
         if isinstance(value, Dispatcher):
             self.called.append(kernel_of(value.py_func, value.targetoptions))
@@ -146,14 +151,14 @@ class _Values:
             self.called.append(Kernel(value, ""))
         if isinstance(value, FunctionType | BuiltinFunctionType):
             return _name_of(value)
-        raise TypeError(f"{_name_of(self.user)}: there is no digest of {value!r}; import what it has by name")
+        raise TypeError(f"{_name_of(self.user)}: {value!r} has no digest; import the needed names from it")
 
     def _class_text(self, kind: type) -> str:
         fields = getattr(kind, "_fields", None)
         if fields is not None:
             return f"{_name_of(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"
         if self._is_ours(kind.__module__):
-            raise TypeError(f"{_name_of(self.user)}: {kind} is no NamedTuple")
+            raise TypeError(f"{_name_of(self.user)}: {kind} is not a NamedTuple")
         return _name_of(kind)
 
     def _is_ours(self, module: str) -> bool:
@@ -161,7 +166,7 @@ class _Values:
 
 
 def _array_text(value: Any) -> str | None:
-    """Arrays and types of NumPy and numba; None for anything else."""
+    """Text of an array or a type of NumPy or numba; None for other values."""
     if isinstance(value, np.ndarray | np.generic):
         return f"{_array_text(value.dtype)} {np.shape(value)} {value.tobytes().hex()}"
     if isinstance(value, np.dtype):

@@ -1,14 +1,14 @@
-"""Functions of an algebra: loops over its structure constants, written out before they are compiled.
+"""Functions of an algebra, whose loops over structure constants are unrolled before compilation.
 
-What is nonlinear in the rod is the same formula on se(2) and on se(3). As loops at run time it takes two to
-three times as long as written out by hand: a loop over 4 terms costs more than its products. So `OverAlgebra`
-writes it out, from the syntax tree of the function, for each algebra that it is asked for:
+The nonlinear terms of the rod have the same formula on se(2) and se(3). Loops at run time would take two to
+three times as long as unrolled code: a loop over 4 terms costs more than the products. `OverAlgebra`
+therefore unrolls the syntax tree of a function for each requested algebra:
 
-- a loop over something that the algebra alone determines, `for a in g.components`, becomes its turns,
-- a condition on such a thing becomes what it decides for, and a number of this kind a constant,
-- of a list with an item for each, `E = [... for a in g.components]`, each item becomes a variable of its own.
+- a loop over a value that the algebra determines, `for a in g.components`, becomes a sequence of statements,
+- a condition that the algebra determines becomes the chosen branch, and a number becomes a constant,
+- a list comprehension over the algebra, `E = [... for a in g.components]`, becomes one variable per item.
 
-Called as it is, with the algebra before the other arguments, the function is ordinary Python.
+A direct call, with the algebra as first argument, runs the function as ordinary Python.
 """
 
 import ast
@@ -25,11 +25,11 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 ALWAYS = {"range": range}
-"""What else a loop that is written out may use."""
+"""Names, apart from the algebra, whose values are known when a loop is unrolled."""
 
 
 class OverAlgebra(Generic[P, R]):
-    """A function whose first argument is an algebra; decorates it."""
+    """Decorator for a function whose first argument is an algebra."""
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
         self.function: Any = function
@@ -40,13 +40,13 @@ class OverAlgebra(Generic[P, R]):
         return result
 
     def of(self, g: Algebra) -> Callable[P, R]:
-        """The function for one algebra, without that argument, compiled as `compiled_for_vectors` does."""
+        """The function for the algebra `g`, without the first argument, unrolled and compiled."""
         if g not in self._compiled:
             self._compiled[g] = compiled_for_vectors(self.written_out(g))
         return self._compiled[g]
 
     def written_out(self, g: Algebra) -> Callable[P, R]:
-        """The function written out for one algebra, not compiled; callees of its kind are compiled."""
+        """The function unrolled for the algebra `g`, not compiled; its `OverAlgebra` callees are compiled."""
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
@@ -70,8 +70,11 @@ class OverAlgebra(Generic[P, R]):
 
 
 class _Shared(NamedTuple):
-    """State shared by the rewriting of one function. lists: names of lists whose items are variables; others:
-    rewritten functions of the same kind."""
+    """State shared by all writers of one function.
+
+    lists: names of lists whose items became variables. others: names of called `OverAlgebra` functions.
+    names: cache of the names that a node reads. code: cache of compiled expressions.
+    """
 
     lists: set[str]
     others: set[str]
@@ -80,7 +83,7 @@ class _Shared(NamedTuple):
 
 
 class _Writer(ast.NodeVisitor):
-    """Rewrites statements and expressions with the constants in `known`; the tree it reads is not changed."""
+    """Rewrites statements and expressions with the constants in `known`; the original tree is unchanged."""
 
     def __init__(self, known: Mapping[str, Any], shared: _Shared) -> None:
         self.known, self.shared = known, shared
@@ -103,7 +106,7 @@ class _Writer(ast.NodeVisitor):
             return self.generic_visit(node)
         leaves = ast.Break | ast.Continue | ast.Return
         if node.orelse or any(isinstance(part, leaves) for part in ast.walk(node)):
-            raise TypeError(f"line {node.lineno}: a loop that is written out is left at its end alone")
+            raise TypeError(f"line {node.lineno}: an unrolled loop has no break, continue, return or else")
         turns = [self._with(node.target, item)._all(node.body) for item in self._value(node.iter)]
         return [statement for turn in turns for statement in turn]
 
@@ -143,7 +146,7 @@ class _Writer(ast.NodeVisitor):
         return made
 
     def _with(self, target: ast.expr, item: Any) -> "_Writer":
-        """The writer of one turn of a loop."""
+        """The writer for one iteration of a loop, in which `target` has the value `item`."""
         return _Writer({**self.known, **_bound(target, item)}, self.shared)
 
     def _all(self, parts: Iterable[Any]) -> list[Any]:
@@ -166,7 +169,7 @@ class _Writer(ast.NodeVisitor):
         return names
 
     def _value(self, node: Any) -> Any:
-        """NameError: it is not known."""
+        """Value of an expression; NameError if a name is not in `known`."""
         code = self.shared.code.get(node)
         if code is None:
             code = self.shared.code[node] = compile(ast.Expression(node), "<known>", "eval")
@@ -174,7 +177,7 @@ class _Writer(ast.NodeVisitor):
 
 
 def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
-    """The names that one turn of a loop gives values to."""
+    """Values that the loop target gets in the iteration for `item`, by name."""
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
         return {name: value for part, inner in pairs for name, value in _bound(part, inner).items()}

@@ -1,1 +1,1 @@
-"""What a rod is made of along its length: constitutive laws, and profiles of stiffness and drag."""
+"""Material of a rod along its length: constitutive laws, and profiles of stiffness and drag."""

@@ -1,4 +1,4 @@
-"""Build of an arm: constitutive law and profile, and the coefficients along u that follow."""
+"""Build of an arm: constitutive law and profile, and the resulting coefficients along u."""
 
 import json
 from collections.abc import Mapping
@@ -13,13 +13,14 @@ from .laws import LAWS, LINEAR, Law, law_of
 from .profile import FACTORS, RADIUS_POWERS, Profile
 
 AREA_SAMPLES = 256
-"""Points between two rows of a profile at which the smallest factor is looked up, beside the rows."""
+"""Points between two rows of a profile at which the smallest factor is searched, in addition to the rows."""
 
 
 class LocalCoefficients(NamedTuple):
-    """Coefficients of the transverse operator at points of an arm, arrays of one shape.
+    """Coefficients of the transverse operator at points of an arm; all arrays have the shape of the points.
 
-    nu: stretch at rest; c2, c3: compliances of shear and bending; gamma2, gamma3: drags; g = nu + F c2.
+    nu: stretch of the straight state. c2, c3: compliances of shear and bending. gamma2, gamma3: drags.
+    g = nu + F c2.
     """
 
     nu: Array
@@ -31,9 +32,9 @@ class LocalCoefficients(NamedTuple):
 
 
 class Sections(NamedTuple):
-    """Cross-sections at points of an arm: compliance and drag, (3, points); nu, stretch at rest, (points,).
+    """Cross-sections at points of an arm: compliance and drag, (3, points); stretch nu at rest, (points,).
 
-    The same names hold the derivatives of these by a parameter.
+    `Build.section_changes` returns derivatives in the same fields.
     """
 
     compliance: Array
@@ -43,10 +44,10 @@ class Sections(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """Law and profile of an arm. Compares and hashes by its values.
+    """Law and profile of an arm, compared and hashed by value.
 
-    law, section: a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, or None. Raises
-    ValueError for an unknown law.
+    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, None for a
+    uniform arm. Raises ValueError for an unknown law.
     """
 
     law: str = LINEAR.law
@@ -68,13 +69,13 @@ class Build:
 
     @property
     def text(self) -> str:
-        """All that `from_text` needs to make the build again."""
+        """The build as JSON, for `from_text`."""
         profile = None if self.profile is None else [self.profile.u, self.profile.rows]
         return json.dumps([self.law, self.section, profile])
 
     @classmethod
     def from_text(cls, text: str) -> "Build":
-        """The build of a `text`."""
+        """The build whose `text` is given."""
         law, section, profile = json.loads(text)
         if profile is None:
             return cls(law, section)
@@ -93,15 +94,15 @@ class Build:
 
     @cached_property
     def breaks(self) -> Array:
-        """The u between which all coefficients are smooth, increasing, both ends included, (breaks,)."""
+        """Ends of the intervals of u on which coefficients are smooth, increasing from 0 to 1, (breaks,)."""
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
     def crushing_share(self, taper: float) -> float:
-        """The force that crushes the weakest section, in units of k1 at the base; inf if no force does."""
+        """Force that crushes the weakest section, in units of k1 at the base; inf if no force crushes it."""
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
     def least_drag_share(self, taper: float) -> float:
-        """The smallest rotational drag along the arm, in units of that at the base."""
+        """Smallest rotational drag along the arm, in units of the rotational drag at the base."""
         return _smallest_factor(self.profile, taper, "gamma3")
 
     def crushing_shares(self, tapers: Array) -> Array:
@@ -110,9 +111,9 @@ class Build:
         return np.array(shares).reshape(tapers.shape)
 
     def local(self, F: float, at_base: Mapping[str, float], u: Array) -> LocalCoefficients:
-        """Coefficients at points u, any shape (...,), under the force F; at_base: parameters at u = 0.
+        """Coefficients at points u, any shape (...,), under the force F.
 
-        No point may be a break of the profile.
+        at_base: parameters at u = 0, by name. No point may be a break of the profile.
         """
         factors = self._factors(at_base["taper"], u)
         law = self.constitutive_law
@@ -123,7 +124,10 @@ class Build:
         return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
 
     def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
-        """Cross-sections at points u, (points,), as of `local`; compliances those of the undeformed arm."""
+        """Cross-sections at points u, (points,), none a break; compliances are those of the undeformed arm.
+
+        F: tip force. at_base: parameters at u = 0, by name.
+        """
         factors = self._factors(at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
@@ -133,14 +137,15 @@ class Build:
     def section_changes(
         self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
-        """Derivatives of the sections `at` at points u, (points,), by a parameter.
+        """Derivatives of the sections `at` at points u, (points,), with respect to a parameter.
 
-        slopes: derivatives at the base of F, compliances and drags by the parameter, by name, and that of the
-        taper itself; a name that is missing does not change.
+        slopes: derivatives of F, taper, and the compliances and drags at the base with respect to the
+        parameter, by name; missing names have derivative 0.
         """
         factors = self._factors(taper, u)
         growth = slopes.get("taper", 0.0) * u / (1 - (1 - taper) * u)
-        compliance, drag = (np.zeros((3, *u.shape)) for _ in range(2))
+        compliance = np.zeros((3, *u.shape))
+        drag = np.zeros((3, *u.shape))
         for i, name in enumerate(("k1", "k2", "k3")):
             own = slopes.get(name, 0.0) / factors[name]
             compliance[i] = own - at.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
@@ -151,7 +156,7 @@ class Build:
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
     def _factors(self, taper: float, u: Array) -> dict[str, Array]:
-        """Factors of stiffnesses and drags at points u, (...,), by name, (...,) each."""
+        """Factors of stiffnesses and drags at points u, by name; all arrays have the shape of u, (...,)."""
         ones: Array = np.ones((len(FACTORS), *u.shape))
         factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))
         radius = 1 - (1 - taper) * u
@@ -162,7 +167,7 @@ class Build:
 
 @lru_cache(maxsize=1024)
 def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
-    """The smallest k1 or gamma3 along the arm, in units of that at the base."""
+    """Smallest value of k1 or gamma3 along the arm, in units of the value at the base; name: which one."""
     power = RADIUS_POWERS[name]
     ends = min(1.0, taper**power)
     if profile is None:
@@ -178,4 +183,4 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
 
 
 STANDARD = Build()
-"""Linear material that is the same all along the arm."""
+"""A uniform arm of linear material."""

@@ -1,12 +1,12 @@
 """Constitutive laws: the energy of a rod per reference length, its derivatives, and the straight state.
 
 A law is U(h1, h2, kappa) = k1 W(h1) + k2 h2^2/2 + k3 B(h1) kappa^2/2 with the stretch energy W and the
-bending factor B, where W'(1) = 0 and W''(1) = B(1) = 1: stiffnesses keep their meaning in the undeformed
+bending factor B. W'(1) = 0 and W''(1) = B(1) = 1, so k1, k2 and k3 are the stiffnesses of the undeformed
 rod. The stretch nu of a straight rod under the stress n1 = -F solves k1 W'(nu) = -F. The transverse linear
-problem contains the law through nu and B(nu) alone: kappa = 0 at rest, so that B' enters no linear term.
+problem depends on the law only through nu and B(nu): kappa = 0 at rest, so B' enters no linear term.
 
-Incompressible neo-Hookean rubber has two variants. The cross-section keeps its size, or it swells as the
-rod shortens: a fibre at the distance Y is stretched by h1 - Y h1^(-1/2) kappa.
+Incompressible neo-Hookean rubber has two variants. The cross-section is either fixed, or swells as the
+rod shortens, with the stretch h1 - Y h1^(-1/2) kappa of a fibre at the distance Y.
 """
 
 from collections.abc import Callable
@@ -18,8 +18,12 @@ import numpy as np
 Values = Any
 """A float, or an array of floats of any shape."""
 
-MAX_STEPS = 60
-"""Newton steps for the compression of a neo-Hookean rod; the iteration converges in at most eight."""
+MAX_COMPRESSION_STEPS = 60
+"""Maximum Newton steps for the compression of a neo-Hookean rod; the iteration converges in at most eight."""
+STEP_TOLERANCE = 1e-15
+"""Newton step, relative to nu, at which the iteration has converged to rounding error."""
+POLISHING_STEPS = 2
+"""Newton steps on e = 1 - nu, whose residual has no cancellation; each doubles the number of digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,10 +31,10 @@ class Law:
     """One constitutive law. All functions take and return floats or arrays.
 
     energy: W(h1). energy_over_square: W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1).
-    stiffness_slope, stiffness_curvature: its derivatives. bending: B(h1). bending_slope, bending_curvature:
-    its derivatives.
+    stiffness_slope, stiffness_curvature: W''' and W''''. bending: B(h1). bending_slope, bending_curvature:
+    B' and B''.
     shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
-    largest_load: the x at which the rod is crushed, inf where no force crushes it.
+    largest_load: the load x that crushes the rod; inf if no force crushes the rod.
     """
 
     law: str
@@ -49,17 +53,17 @@ class Law:
 
 
 def _neo_hookean_shortening(x: Values) -> Values:
-    """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Newton's method on nu, then on e where e is small."""
+    """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Newton's method on nu, then on e; x: floats of any shape."""
     x = np.asarray(x, dtype=float)
     # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0.
     nu = np.where(x > 0.5, 1 / np.sqrt(3 * np.maximum(x, 0.5)), np.where(x < 0, 1 - 3 * x, 1.0))
-    for _ in range(MAX_STEPS):
+    for _ in range(MAX_COMPRESSION_STEPS):
         step = (nu**3 + 3 * x * nu**2 - 1) / (3 * nu**2 + 6 * x * nu)
         nu = nu - step
-        if (np.abs(step) <= 1e-15 * nu).all():
+        if (np.abs(step) <= STEP_TOLERANCE * nu).all():
             break
     e = 1 - nu
-    for _ in range(2):  # the residual in e has no cancellation
+    for _ in range(POLISHING_STEPS):
         residual = 3 * x * (1 - e) ** 2 - 3 * e + 3 * e**2 - e**3
         e = e + residual / (3 * (1 - e) ** 2 + 6 * x * (1 - e))
     return e if e.ndim else float(e)
@@ -117,16 +121,16 @@ SWELLING = Law(
     shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
-"""All laws by name and section."""
+"""All laws by (law, section)."""
 
 
 def law_of(law: str, section: str) -> Law:
-    """The law of a name and a section; ValueError for a pair that is none."""
+    """The law for a name and a section; ValueError for an unknown pair."""
     if (law, section) not in LAWS:
         sections = [s for name, s in LAWS if name == law]
         if not sections:
             known = " or ".join(dict.fromkeys(name for name, _ in LAWS))
-            raise ValueError(f"law = {law} is none of the known laws; it must be {known}")
+            raise ValueError(f"law = {law} is not known; it must be {known}")
         known = " or ".join(sections)
         raise ValueError(f"section = {section} is not known for law = {law}; it must be {known}")
     return LAWS[law, section]

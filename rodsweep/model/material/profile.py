@@ -1,9 +1,9 @@
 """Profiles along the arm: factors of stiffnesses and drags as functions of the material coordinate u.
 
 A profile is a table. Between two rows each factor is a monotone cubic (Fritsch and Carlson, 1980), which
-stays between its end values; two rows at one u are a jump. A taper t multiplies the factors by those of a
-circular cone of radius r(u) = 1 - (1 - t) u: k1, k2 ~ r^2, k3 ~ r^4, gamma3 ~ r^2. The drags gamma1 and
-gamma2 of a cone vary only by a logarithm, which is neglected.
+stays between its end values; two rows at the same u are a jump. A taper t multiplies the factors by powers of
+the radius r(u) = 1 - (1 - t) u of a circular cone: k1, k2 ~ r^2, k3 ~ r^4, gamma3 ~ r^2. The logarithms in
+the drags gamma1 and gamma2 of a cone are not part of the taper.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ import numpy as np
 from ...arrays import Array
 
 FACTORS = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
-"""Columns of a profile beside u, in this order."""
+"""Columns of a profile after u, in order."""
 RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
-"""Power of the radius in each factor of a cone; 0 where none is given."""
+"""Power of the radius in each factor of a cone; missing factors have power 0."""
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A table of factors. Compares and hashes by its values.
+    """A table of factors along the arm, compared and hashed by value.
 
-    u: increasing from 0 to 1, a value twice at a jump. rows: the factors of `FACTORS` at each u, above 0.
-    Raises ValueError, in a sentence, for a table that is no profile.
+    u: increasing from 0 to 1, a value twice at a jump. rows: positive factors at each u, in the order of
+    `FACTORS`. Raises ValueError for an invalid table.
     """
 
     u: tuple[float, ...]
@@ -50,7 +50,7 @@ class Profile:
 
     @cached_property
     def breaks(self) -> Array:
-        """The u between which all factors are smooth, increasing, both ends included, (breaks,)."""
+        """Ends of the intervals of u on which all factors are smooth, increasing from 0 to 1, (breaks,)."""
         return np.unique(self.u)
 
     @cached_property
@@ -66,11 +66,11 @@ class Profile:
         return np.concatenate(pieces)
 
     def factors(self, u: Array) -> Array:
-        """The factors at points that are no break, shape (factors, *u.shape)."""
-        place = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.breaks) - 2)
-        h = np.diff(self.breaks)[place]
-        t = (u - self.breaks[place]) / h
-        y0, y1, d0, d1 = np.moveaxis(self._pieces[place], (-2, -1), (0, 1)).swapaxes(0, 1)
+        """The factors at points u, none of them a break, shape (factors, *u.shape)."""
+        piece = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.breaks) - 2)
+        h = np.diff(self.breaks)[piece]
+        t = (u - self.breaks[piece]) / h
+        y0, y1, d0, d1 = np.moveaxis(self._pieces[piece], (-2, -1), (0, 1)).swapaxes(0, 1)
         return (
             y0 * (1 + 2 * t) * (1 - t) ** 2
             + y1 * t**2 * (3 - 2 * t)
@@ -79,13 +79,17 @@ class Profile:
 
 
 def _monotone_slopes(u: Array, values: Array) -> Array:
-    """Slopes at rows, (rows, factors), that keep the cubics between them monotone."""
+    """Slopes of the factors at the rows, (rows, factors), for monotone cubics (Fritsch and Carlson, 1980).
+
+    u: (rows,). values: factors, (rows, factors).
+    """
     h = np.diff(u)[:, None]
     chords = np.diff(values, axis=0) / h
     slopes = np.zeros_like(values)
     if len(u) == 2:
         return np.repeat(chords, 2, axis=0)
-    w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
+    w1 = 2 * h[1:] + h[:-1]
+    w2 = h[1:] + 2 * h[:-1]
     same = chords[:-1] * chords[1:] > 0
     with np.errstate(divide="ignore", invalid="ignore"):
         inner = (w1 + w2) / (w1 / chords[:-1] + w2 / chords[1:])

@@ -1,12 +1,12 @@
-"""Stress of a rod by its strain, compiled, for every law: n1 and m3 from unknowns that stay regular.
+"""Compiled stress-strain relation of every law: n1 and m3 from unknowns that stay regular at c1 = 0.
 
-The unknowns q1, q2, q3 are the stresses, beyond those at rest, that a linear rod would need for the same
-strain: h1 = nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses beyond those at rest are
+The unknowns q1, q2, q3 are the stresses, minus the stresses at rest, of a linear rod with the same
+strain: h1 = nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses, minus the stresses at rest, are
 
     N(q1, q3) = q1 [W'(h1) - W'(nu)]/(h1 - nu) + B'(h1) c3 q3^2/2,     q2,     M(q1, q3) = B(h1) q3
 
-with the stretch energy W and the bending factor B of `laws`. Nothing is divided by a compliance, so that
-c1 = 0 is a value like others. A linear rod has N = q1 and M = q3.
+with the stretch energy W and the bending factor B of `laws`. No formula divides by a compliance, so c1 = 0
+is allowed. A linear rod has N = q1 and M = q3.
 """
 
 from typing import NamedTuple
@@ -27,14 +27,14 @@ class LocalSection(NamedTuple):
 
 
 class Stress(NamedTuple):
-    """N and M."""
+    """Axial force N and bending moment M, minus their values at rest."""
 
     N: float
     M: float
 
 
 class Tangent(NamedTuple):
-    """Derivatives of N and M by q1 and q3."""
+    """Derivatives of N and M: N1 = dN/dq1, N3 = dN/dq3, M1 = dM/dq1, M3 = dM/dq3."""
 
     N1: float
     N3: float
@@ -46,21 +46,23 @@ class Tangent(NamedTuple):
 def _bending(law: int, h: float) -> tuple[float, float, float]:
     """B, B' and B'' at h."""
     if law == SWELLING_SECTION:
-        a, b = 1 / h, 1 / h**4
+        a = 1 / h
+        b = 1 / h**4
         return (a + 2 * b) / 3, -(a + 8 * b) / (3 * h), (2 * a + 40 * b) / (3 * h * h)
     return 1.0, 0.0, 0.0
 
 
 @compiled
 def _secant(nu: float, h: float) -> float:
-    """[W'(h) - W'(nu)]/(h - nu) of the neo-Hookean law, without cancellation where h is close to nu."""
-    a, b = 1 / nu, 1 / h
+    """[W'(h) - W'(nu)]/(h - nu) of the neo-Hookean law, without cancellation for h close to nu."""
+    a = 1 / nu
+    b = 1 / h
     return (1 + a * b * (a + b)) / 3
 
 
 @compiled
 def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
-    """The stresses beyond those at rest."""
+    """N and M at the unknowns q1 and q3."""
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = at.nu + at.c1 * q1
@@ -70,7 +72,7 @@ def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
 
 @compiled
 def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses by the unknowns."""
+    """Derivatives of N and M with respect to the unknowns q1 and q3."""
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = at.nu + at.c1 * q1
@@ -82,12 +84,16 @@ def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
 
 @compiled
 def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
-    """Derivatives of the stresses along a change of the section, at fixed unknowns."""
+    """Derivatives of N and M with respect to a parameter, at fixed unknowns.
+
+    change: derivatives of the section `at` with respect to the parameter.
+    """
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)
     h = at.nu + at.c1 * q1
     moved = change.nu + change.c1 * q1
-    a, b = 1 / at.nu, 1 / h
+    a = 1 / at.nu
+    b = 1 / h
     secant_nu = -a * a * b * (2 * a + b) / 3
     secant_h = -a * b * b * (a + 2 * b) / 3
     _, B1, B2 = _bending(law, h)

@@ -11,7 +11,7 @@ STEPS = 20
 
 
 def in_the_dark(colour: str) -> str:
-    """The colour that replaces one of a light page; both are six hexadecimal digits."""
+    """The dark page's colour for a colour of the light page; both are six hexadecimal digits."""
     parts = [int(colour[place : place + 2], 16) for place in (0, 2, 4)]
     if len(set(parts)) == 1:
         parts = [round(INK + (PAPER - INK) * part / 255) for part in parts]

@@ -27,7 +27,7 @@ MAX_POINTS = 2500
 some 100 bytes on the page."""
 ALWAYS = 24
 """Number of points up to which a curve keeps all its texts."""
-DIGITS = 8
+POINTER_DIGITS = 8
 """Number of digits of a value under the pointer."""
 POINTS_PER_INCH = 72
 """Unit of matplotlib's SVG."""
@@ -209,4 +209,4 @@ def _text(names: tuple[str, str], at: Array) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{value:.{DIGITS}g}"
+    return f"{value:.{POINTER_DIGITS}g}"

@@ -12,7 +12,7 @@ from ..tables.contents import FIRST, POINTS
 
 MAX_ROWS = 60
 """Largest number of rows of a table on the page; `rodsweep export` writes all."""
-DIGITS = 6
+CELL_DIGITS = 6
 """Number of digits of a number in a table; the number under the pointer has all."""
 
 
@@ -85,7 +85,7 @@ def _cell(column: Column, text: str, value: float) -> Cell:
     is_number = column.values.dtype.kind == "f" and not column.words and not column.is_estimate
     if not text or not is_number:
         return Cell(text)
-    short = f"{value:.{DIGITS}g}"
+    short = f"{value:.{CELL_DIGITS}g}"
     return Cell(short, text) if len(short) < len(text) else Cell(text)
 
 

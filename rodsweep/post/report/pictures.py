@@ -1,4 +1,4 @@
-"""The figures of a result on its page: those of `rodsweep plot` that its content allows."""
+"""Figures on the page of a result: all figures of `rodsweep plot` that the content of the file allows."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,9 +14,9 @@ from ..figures.request import KINDS_OF_TASK, Shapes
 from .vector_picture import VectorPicture, vector_picture
 
 FILM = "animation"
-"""The kind of figure that is no single picture."""
+"""The kind of figure that consists of several pictures."""
 UNWRITTEN = Path("figure.svg")
-"""Name of a figure that goes into a page instead of a file; its ending chooses the kind of figure."""
+"""Name that requests a figure in SVG, which goes into the page, not into a file."""
 
 
 @dataclass(frozen=True, slots=True)

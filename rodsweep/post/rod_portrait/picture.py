@@ -14,7 +14,7 @@ from ...results.file.view import View
 from ..branch_curves import count_incomplete_branches, curves_of
 from ..figures import style
 from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
-from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST, clamp, force_arrow
+from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, clamp, force_arrow
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
 from ..summary.branch import coexistence, two_cycles
@@ -166,7 +166,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_title(force)
             _say(axes, f"no cycle: {status_meaning(view, str(outcomes(view)[0]))}", PANEL_WIDTH)
             continue
-        shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(v["shape_x"])))
+        shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(v["shape_x"])))
         clamp(axes, 1.0)
         for x, y, theta, shade in zip(v["shape_x"], v["shape_y"], v["shape_theta"], shades, strict=True):
             axes.plot(x, y, color=shade, lw=1.3)

@@ -145,7 +145,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def _all_stored(v: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Mask of the rows, of their shape, whose list of changes has all changes that there are."""
+    """Mask of the rows whose list of changes is complete: no change was left out, no interval is open."""
     stored = (v["crossing_kind"] > 0).sum(axis=-1)
     return (v["crossing_count"] == stored) & ~np.isfinite(v["open_from"])
 

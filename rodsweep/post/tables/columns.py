@@ -115,5 +115,5 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
 
 
 def tells_of_items(variable: Variable) -> bool:
-    """Whether a value of a variable shows that an item exists; valid values as fill values do not."""
+    """Whether values of a variable reveal missing items: its fill value must not be a valid value."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

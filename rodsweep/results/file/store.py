@@ -74,7 +74,7 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        """Creates the file, continues it, extends it, or refuses it; moves foreign journals away."""
+        """Creates, continues or extends the file, or refuses to; moves journals of other files away."""
         if fresh or not self.path.exists():
             self._create(fresh)
         else:

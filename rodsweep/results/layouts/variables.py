@@ -207,7 +207,7 @@ class Layout:
 
 
 def estimates_counts(config: Mapping[str, Any]) -> bool:
-    """Whether a resolved config has rods that vary along their length, so that counts are estimated."""
+    """Whether a resolved config has rods that vary along their length, for which counts are estimates."""
     parameters = config.get("parameters", {})
     arm, taper = parameters.get("arm", {}), parameters.get("taper")
     tapered = "tip_radius" in arm if taper is None else taper.get("values") != [1.0]
@@ -225,9 +225,9 @@ def has_covering(config: Mapping[str, Any]) -> bool:
 def confirmed(
     variables: tuple[Variable, ...], config: Mapping[str, Any], listed: str
 ) -> tuple[Variable, ...]:
-    """The variables, of which `certified` says what it means of a list where no covering proves it.
+    """The variables, with the meaning of `certified` changed if no covering proves lists complete.
 
-    listed: what the list has, such as "crossings".
+    listed: noun for the entries of the list, such as "crossings".
     """
     if has_covering(config):
         return variables
@@ -239,5 +239,5 @@ def confirmed(
 
 
 def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:
-    """The variables, of which one has another long name."""
+    """The variables, with another long name for the variable `name`."""
     return tuple(replace(v, long_name=meaning) if v.name == name else v for v in variables)

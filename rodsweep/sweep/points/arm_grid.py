@@ -69,7 +69,7 @@ def grid_of_arms(
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
-    """A quantity of arms along their dimension, NaN for those that no rod covers."""
+    """A quantity of arms along the dimension of arms; NaN for arms without a valid rod."""
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 

@@ -18,7 +18,7 @@ STRETCH_POINTS = 64
 """Largest number of points in a stretch."""
 SHORTEST_AXIS = 8
 """Least number of values on an axis; on a shorter axis neighbours are too far apart to help."""
-STRETCHES_AT_ONCE = 1 << 12
+STRETCHES_PER_BLOCK = 1 << 12
 """Number of stretches tested in a single array operation, to bound the memory."""
 
 
@@ -87,8 +87,8 @@ class Stretches:
             return [(0, self.count)]
         missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
-        for first in range(0, self.count, STRETCHES_AT_ONCE):
-            last = min(first + STRETCHES_AT_ONCE, self.count)
+        for first in range(0, self.count, STRETCHES_PER_BLOCK):
+            last = min(first + STRETCHES_PER_BLOCK, self.count)
             incomplete = self.missing_of((first, last), missing_points) > 0
             edges = first + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
@@ -99,8 +99,8 @@ class Stretches:
         missing_points = IndexSet(missing)
         number = 0
         for first, end in stretches:
-            for at in range(first, end, STRETCHES_AT_ONCE):
-                block = (at, min(at + STRETCHES_AT_ONCE, end))
+            for at in range(first, end, STRETCHES_PER_BLOCK):
+                block = (at, min(at + STRETCHES_PER_BLOCK, end))
                 number += int(self.missing_of(block, missing_points).sum())
         return number
 

@@ -22,7 +22,7 @@ from ...results.layouts.variables import Filled
 from ...sweep.points.lines import lines_over
 from ...sweep.points.points import Points
 
-POINTS_AT_ONCE = 1 << 13
+MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points whose eigenvalues are read together, which limits memory for large files."""
 
 
@@ -56,11 +56,11 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
 
 
 def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Lines of a grid, in groups of at most POINTS_AT_ONCE points."""
+    """Lines of a grid, in groups of at most MAX_POINTS_IN_MEMORY points."""
     along = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != along]
     widest = max(others, key=lambda axis: points.shape[axis])
-    step = max(1, POINTS_AT_ONCE * points.shape[widest] // prod(points.shape))
+    step = max(1, MAX_POINTS_IN_MEMORY * points.shape[widest] // prod(points.shape))
     for first in range(0, points.shape[widest], step):
         place: list[slice] = [slice(None)] * len(points.shape)
         place[widest] = slice(first, first + step)

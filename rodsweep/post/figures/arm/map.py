@@ -46,7 +46,8 @@ BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest number over the drags."""
 EMPTY_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
 """Look of cells with a rod but no number, such as a rod without flutter."""
-HATCH_COLOUR = "0.35"
+MAP_HATCH_COLOUR = "0.35"
+"""Grey of hatches and edges of covered cells."""
 
 
 def draw_arm_map(request: FigureRequest) -> str:
@@ -189,9 +190,9 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
     for chosen, label, look in empty:
         for i, j in np.argwhere(chosen if y else chosen[:, None]):
             corner = across[[i, i + 1]], up[[j, j + 1]]
-            axes.fill_between(corner[0], *corner[1], ec=HATCH_COLOUR, lw=0, zorder=3 if y else 0, **look)
+            axes.fill_between(corner[0], *corner[1], ec=MAP_HATCH_COLOUR, lw=0, zorder=3 if y else 0, **look)
         if chosen.any():
-            handles.append(Patch(label=label, ec=HATCH_COLOUR, lw=0.5, **look))
+            handles.append(Patch(label=label, ec=MAP_HATCH_COLOUR, lw=0.5, **look))
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
     return handles

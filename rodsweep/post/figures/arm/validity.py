@@ -13,7 +13,8 @@ from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
 HATCH = "////"
-HATCH_COLOUR = "0.6"
+VALIDITY_HATCH_COLOUR = "0.6"
+"""Grey of the hatch where the model does not apply."""
 
 
 def add_validity(figure: Figure, views: Sequence[View]) -> None:
@@ -71,7 +72,15 @@ def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
     low, high = sorted(limits)
     for i in np.flatnonzero(there):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, fc="none", ec=HATCH_COLOUR, hatch=HATCH, lw=0, zorder=0 if which == "x" else 3)
+        hatch(
+            left,
+            right,
+            fc="none",
+            ec=VALIDITY_HATCH_COLOUR,
+            hatch=HATCH,
+            lw=0,
+            zorder=0 if which == "x" else 3,
+        )
     axes.set(**{f"{which}lim": limits})
 
 
@@ -83,7 +92,7 @@ def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
             edges[0][[i, i + 1]],
             *edges[1][[j, j + 1]],
             fc="none",
-            ec=HATCH_COLOUR,
+            ec=VALIDITY_HATCH_COLOUR,
             hatch=HATCH,
             lw=0,
             zorder=3,

@@ -51,7 +51,8 @@ PANEL_POINTS = 250
 MARKER_SIZES = 1.0, 4.0
 """Smallest and largest size, in points, of the open marker of an unstable cycle; it takes half a cell if it
 can."""
-HATCH_COLOUR = "0.25"
+CYCLE_HATCH_COLOUR = "0.25"
+"""Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
 ROW_ENTRIES = 6
 """Largest number of legend entries in a single row."""
 QUANTITIES = (
@@ -130,7 +131,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
         if word in CYCLE_WORDS or not cells.any():
             continue
         colour, hatch = STATUS_LOOKS.get(word) or next(further)
-        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": HATCH_COLOUR}
+        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
         for row, (bottom, top) in zip(cells, _pairs(cell_edges(points.y)), strict=True):
             axes.broken_barh(_runs(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
@@ -141,7 +142,7 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
     """Marks the cells of unstable cycles with an open marker; returns the legend entry."""
     if not unstable.any():
         return []
-    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": HATCH_COLOUR, "ls": "", "mew": 0.6}
+    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
     row, column = np.nonzero(unstable)
     size = float(np.clip(PANEL_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
     axes.plot(points.x[column], points.y[row], ms=size, **look)

@@ -48,7 +48,7 @@ TEXT_HEIGHT = 1.4
 """Height of labels and headings above and below the panels, in inches."""
 NARROW_TEXT_HEIGHT = 2.0
 """The same height on a narrow page, where the colour bar lies below the panels."""
-LIGHTEST = 0.14
+LIGHTEST_ARM = 0.14
 """Fraction of the colour map left out: yellow, which is invisible on white."""
 
 
@@ -64,7 +64,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
-    colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(drawn))))
+    colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(drawn))))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
         clamp(axes, cycle.units.length)

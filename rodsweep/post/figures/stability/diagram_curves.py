@@ -35,7 +35,7 @@ ON_CURVE = 1e-3
 off."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
 """Legend entry and colour of curves of special points of cycles, by kind."""
-SAME_PLACE = 1e-6
+CHORD_ROUNDING = 1e-6
 """Relative rounding error of a point of a curve on its own chord."""
 NAME_SIZE = 8
 """Type size of a curve's symbol, in points."""
@@ -228,7 +228,7 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
         share = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
         crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
         at = np.where(crosses, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
-        parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + SAME_PLACE)])
+        parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)])
     return parts
 
 

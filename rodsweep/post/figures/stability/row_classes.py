@@ -19,7 +19,7 @@ UNDECIDED = {
 STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
 """Kinds of crossings at which the stability of the straight rod may change."""
 
-SAME_PLACE = 1e-9
+ON_A_CHANGE = 1e-9
 """Relative distance from a change below which a point lies on the change and belongs to neither side."""
 
 
@@ -39,7 +39,7 @@ def class_along_row(
         own = rows == view.axes[row][place]
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
-    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > SAME_PLACE * np.abs(x)
+    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > ON_A_CHANGE * np.abs(x)
     pixels = (edges[1:] + edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)

@@ -27,7 +27,7 @@ MAX_LINES = 6
 """Largest number of values of the second parameter whose lines have distinct colours."""
 DARKEST = 0.0
 """Start of the used part of the colour map."""
-LIGHTEST = 0.85
+LIGHTEST_SHADE = 0.85
 """End of the used part of the colour map; lighter colours are invisible on white."""
 INDISTINCT = 0.01
 """Distance of two lines, in units of the largest force, below which a single line is drawn."""
@@ -43,7 +43,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     axes = figure.subplots()
     table = _table(view, along, other)
     style.require(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
-    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST, len(table)))
+    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST_SHADE, len(table)))
     handles = []
     for values, shade in zip(table, shades, strict=True):
         for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):

@@ -18,7 +18,7 @@ from ..ranges import rounded
 from .arm import errors_in_si, load_of, own_unit, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
 
-DIGITS = 3
+ANSWER_DIGITS = 3
 """Largest number of digits in an answer; a larger error leaves fewer."""
 FAILED = "failed"
 """Status of a point about which nothing is stored."""
@@ -98,7 +98,7 @@ def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float 
     known = np.broadcast_to(errors, values.shape)[is_finite]
     factor, unit = own_unit(view, si, float(np.abs(finite).max()))
     ends = (int(finite.argmin()), int(finite.argmax()))
-    low, high = (rounded(factor * float(finite[i]), factor * float(known[i]), DIGITS) for i in ends)
+    low, high = (rounded(factor * float(finite[i]), factor * float(known[i]), ANSWER_DIGITS) for i in ends)
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
@@ -173,7 +173,7 @@ def _share(some: np.ndarray, rods: np.ndarray) -> str:
 
 
 def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> list[str]:
-    """Lines about loads at flutter, ends of the search, and frequencies at flutter, (n,) each."""
+    """Lines about flutter of n arms. hopf: loads; end: ends of the search; frequency: in Hz; (n,) each."""
     flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():

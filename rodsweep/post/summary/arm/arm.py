@@ -33,7 +33,7 @@ PREFIXED = ("J", "W")
 """Units with a prefix, such as mW."""
 SHORT_TIME = 0.1
 """Time, in s, below which times are given in ms or smaller units."""
-DIGITS = 3
+AXIS_DIGITS = 3
 """Number of digits of a quantity that identifies a point."""
 WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 """Words for quantities with an unclear name."""
@@ -87,7 +87,7 @@ def region_of_arms(view: View, mask: np.ndarray) -> str:
         column = view.listed.point_columns.get(name, np.ones(1)).ravel()
         if len(np.unique(column)) > 1:
             ends = sorted({float(column[chosen].min()), float(column[chosen].max())})
-            ranges.append(f"{name} {' to '.join(f'{end:.{DIGITS + 1}g}' for end in ends)}")
+            ranges.append(f"{name} {' to '.join(f'{end:.{AXIS_DIGITS + 1}g}' for end in ends)}")
     return ", ".join(filter(None, ranges))
 
 
@@ -100,8 +100,8 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     unit = _unit(view, name)
     si = ALL_QUANTITIES[name].unit
     factor = written_in(1.0, unit, si) if unit else 1.0
-    ends = [float(f"{factor * end:.{DIGITS}g}") for end in (values.min(), values.max())]
-    extent = " to ".join(f"{end:.{DIGITS + 1}g}" for end in sorted(set(ends)))
+    ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
+    extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:
         return f"{extent} of flutter"
     return f"{word(name)} {extent} {unit}".rstrip()

@@ -139,7 +139,9 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
         close = np.flatnonzero(np.diff(axis) <= SAME_VALUE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
-            raise InputError(f"the files have {name} = {values}, which differ by rounding only")
+            raise InputError(
+                f"the files have {name} = {values}, which differ by rounding only; make them equal"
+            )
         axes.append(axis)
     whole = Points(grids[0].names, tuple(axes), is_grid=True)
     covered = np.zeros(whole.shape, bool)
