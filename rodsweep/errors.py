@@ -34,3 +34,18 @@ class EnvironmentIncomplete(Refusal):
     """The machine lacks a component or a permission; the sentence names it."""
 
     exit_status = 3
+
+
+def not_importable(modules: str, reason: object) -> EnvironmentIncomplete:
+    """Refusal for modules that no package of PyPI needs to bring: the sentence says how to get them.
+
+    Modules of a distribution are compiled for its NumPy. Under another major version of NumPy their import
+    fails with a message about binary incompatibility.
+    """
+    remedy = (
+        "`make install` of a clone brings them; beside a wheel install them from Debian or conda, or by pip "
+        "install 'rodsweep[solvers]', which compiles PETSc"
+    )
+    if "binary incompatibility" in str(reason):
+        remedy = "they were compiled for another NumPy; on Debian 12 install numpy<2"
+    return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")
