@@ -1,7 +1,7 @@
 """Debian's PETSc and SLEPc on Python's search path.
 
-Debian keeps petsc4py and slepc4py beside each build of PETSc. Its own `.pth` files name /usr/lib/petsc, a link
-that only the packages for compiling make. The directories are found here without them.
+Debian keeps petsc4py and slepc4py beside each build of PETSc. Its own `.pth` files name /usr/lib/petsc, a
+link that only the packages for compiling make. This module finds the directories without the link.
 """
 
 import os
