@@ -23,6 +23,7 @@ from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
+from rodsweep.results.file.validation import FORMAT
 from rodsweep.results.layouts.arm import VALIDITY
 from rodsweep.results.layouts.phase_diagram import (
     CLASSES,
@@ -116,7 +117,7 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "6; see [which version reads what](#which-version-reads-what)",
+    "format": f"{FORMAT}; see [which version reads what](#which-version-reads-what)",
     "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
@@ -189,10 +190,11 @@ change back, and the file is whole again.
 Behind HDF5's own end lies a checksum of HDF5's structures, which other programs do not see: they are compared
 before HDF5 reads them. A program that opens the file for writing takes this checksum off, which is no fault.
 """
-VERSIONS = """
+VERSIONS = f"""
 ### Which version reads what
 
-The attribute `format` is a whole number, now 6, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now {FORMAT}, that grows when a variable is added or changes its
+meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
 - A file of a lower format, or without the attribute, is refused in one sentence that names the version and

@@ -115,7 +115,7 @@ def debian(directory: Path, release: str, name: str = "petsc") -> Path:
 
 
 def test_debians_newest_real_petsc_is_found(tmp_path, monkeypatch):
-    """Not PETSc for complex numbers or long indices, nor an earlier release that sorts later by its letters."""
+    """Not PETSc for complex numbers or long indices, nor an earlier release that sorts later as text."""
     monkeypatch.setattr(sys, "path", [])
     monkeypatch.setattr(sys, "path_importer_cache", {})
     monkeypatch.setattr(sys, "meta_path", [each for each in sys.meta_path if "Editable" not in str(each)])
