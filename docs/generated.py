@@ -25,8 +25,8 @@ number.
 """
 COMMANDS = """# Commands
 
-Every command of `rodsweep` with its options, as its help prints them. The [guide](guide.md) explains when to
-use which.
+Every command of `rodsweep` with its options, as its help prints them. The
+[how-to pages](howto/configs.md) explain when to use which.
 """
 
 

@@ -36,16 +36,19 @@ class EnvironmentIncomplete(Refusal):
     exit_status = 3
 
 
-def not_importable(modules: str, reason: object) -> EnvironmentIncomplete:
-    """Refusal for modules that no package of PyPI needs to bring: the sentence says how to get them.
+def not_importable(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
+    """Refusal for modules that a plain `pip install` leaves to the distribution: the sentence says how to get
+    them.
 
-    Modules of a distribution are compiled for its NumPy. Under another major version of NumPy their import
-    fails with a message about binary incompatibility.
+    extra: name of the optional dependencies that bring the modules from PyPI. Modules of a distribution are
+    compiled for its NumPy; under another major version their import fails with a message about binary
+    incompatibility.
     """
-    remedy = (
-        "`make install` of a clone brings them; beside a wheel install them from Debian or conda, or by pip "
-        "install 'rodsweep[solvers]', which compiles PETSc"
-    )
     if "binary incompatibility" in str(reason):
-        remedy = "they were compiled for another NumPy; on Debian 12 install numpy<2"
+        remedy = "compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
+    else:
+        remedy = (
+            "`make install` of a clone brings all modules; beside a wheel take Debian's or conda's, or "
+            f"pip install 'rodsweep[{extra}]'{', which compiles PETSc' if extra == 'solvers' else ''}"
+        )
     return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")

@@ -150,4 +150,4 @@ def test_modules_compiled_for_another_numpy_are_refused_in_a_sentence(command, m
     done = command.afresh("run", "c.yaml", patch=COMPILED_FOR_NUMPY_1.format(module=module))
     assert (done.returncode, done.stderr.count("\n")) == (3, 1)
     assert "cannot be imported (numpy.dtype size changed" in done.stderr
-    assert "on Debian 12 install numpy<2" in done.stderr
+    assert "on Debian 12 pip install 'rodsweep[debian12]'" in done.stderr

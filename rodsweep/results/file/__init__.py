@@ -5,4 +5,4 @@ from ...errors import not_importable
 try:
     import h5py  # noqa: F401 - the modules here import it; this one says why it is missing
 except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
-    raise not_importable("h5py", error) from error
+    raise not_importable("h5py", error, extra="files") from error
