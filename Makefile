@@ -39,28 +39,7 @@ demo: .venv/installed  ## compute configs/fig2c.yaml on two ranks and plot it, i
 	$(BIN)/rodsweep plot results/fig2c.h5 -o results/fig2c.png
 
 figures: .venv/installed  ## compute every config on two ranks and draw its figure: docs/*.png and results/*.pdf
-	mkdir -p results
-	for config in configs/*.yaml; do
-	  name=$$(basename $$config .yaml)
-	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
-	done
-	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability taper slender cone_cycles rubber_branch; do
-	  $$draw results/$$name.h5 -o results/$$name.pdf
-	  $$draw results/$$name.h5 -o docs/$$name.png
-	done
-	for end in results/fig3.pdf docs/fig3.png; do $$draw results/fig3.h5 --what lines -o $$end; done
-	$$draw results/fig2a.h5 results/fig2b.h5 results/fig2c.h5 results/fig2d.h5 -o results/fig2.pdf
-	for end in results/hysteresis.pdf docs/hysteresis.png; do
-	  $$draw results/hysteresis_up.h5 results/hysteresis_down.h5 -o $$end
-	done
-	run="$(BIN)/mpiexec -n 2 $(BIN)/rodsweep run configs/rubber.yaml --set material.section=fixed"
-	$$run -o results/rubber_fixed.h5
-	$$run --set material.law=linear -o results/rubber_linear.h5
-	laws="results/rubber_linear.h5 results/rubber_fixed.h5 results/rubber.h5"
-	for end in results/rubber.pdf docs/rubber.png; do $$draw $$laws -o $$end; done
-	$$draw results/fig5.h5 --what energy -o docs/energy.png
-	$$draw results/fig5.h5 -o docs/fig5.gif
+	$(BIN)/python docs/figures.py
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
