@@ -27,6 +27,7 @@ BESIDE = {
 """Words after `rodsweep run` of further runs that the figure of a config needs."""
 HYSTERESIS = [("hysteresis.png", "hysteresis_up.h5 hysteresis_down.h5")]
 DRAWN = {
+    "beating_arm": [("beating_arm.gif", "beating_arm.h5"), ("beating_arm.png", "beating_arm.h5")],
     "fig3": [("fig3.png", "fig3.h5 --what lines")],
     "fig5": [("fig5.png", "fig5.h5"), ("energy.png", "fig5.h5 --what energy"), ("fig5.gif", "fig5.h5")],
     "hysteresis_up": HYSTERESIS,
