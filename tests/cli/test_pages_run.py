@@ -1,4 +1,4 @@
-"""docs/tasks, docs/howto and docs/arm.md: each command of a page is run, and its output is that of the page.
+"""README.md, docs/tasks, docs/howto and docs/arm.md: each command of a page is run, and its output is that of the page.
 
 A page is run from top to bottom in a directory of its own, which has the configs of the clone.
 """
@@ -92,7 +92,9 @@ def run_page(command, page):
             assert missing(said, come) is None, (line, come)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}/{page.stem}")
+@pytest.mark.parametrize(
+    "page", [ROOT / "README.md", *PAGES], ids=lambda page: f"{page.parent.name}/{page.stem}"
+)
 def test_page_says_what_comes(command, monkeypatch, page):
     monkeypatch.chdir(command.directory)
     monkeypatch.setenv("MPLBACKEND", "agg")
