@@ -1,4 +1,4 @@
-"""README.md, docs/tasks, docs/howto and docs/arm.md: each command of a page is run, and its output is that of the page.
+"""README.md, docs/tasks, docs/howto, docs/arm.md: each command of a page is run; its output is the page's.
 
 A page is run from top to bottom in a directory of its own, which has the configs of the clone.
 """
