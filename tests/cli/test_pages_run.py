@@ -15,6 +15,10 @@ from conftest import ROOT
 DOCS = ROOT / "docs"
 PAGES = [*sorted((DOCS / "tasks").glob("*.md")), *sorted((DOCS / "howto").glob("*.md"))]
 CLUSTER = ROOT / "tests" / "cluster" / "test_slurm.py"
+BAD_INPUT = 2
+"""Exit status of a refused command."""
+REFUSED = re.compile("rodsweep: ")
+"""Start of the line with which a page says that a command is refused."""
 FILE_NAME = re.compile(r"# (\S+\.(?:yaml|csv))\n")
 """First line of a block that is a file."""
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -55,8 +59,11 @@ def typed(text):
         yield first, rest
 
 
-def output_of(command, line):
-    """The lines that a command of the page writes; `>`, `head` and `mpiexec` as a shell has them."""
+def output_of(command, line, status=0):
+    """The lines that a command of the page writes; `>`, `head` and `mpiexec` as a shell has them.
+
+    AssertionError if the command ends with another status.
+    """
     words = shlex.split(line)
     if words[0] == "head":
         return (command.directory / words[-1]).read_text().splitlines()[: int(words[2])]
@@ -66,12 +73,11 @@ def output_of(command, line):
     assert words[0] == "rodsweep"
     into = words[words.index(">") + 1] if ">" in words else ""
     done = command(*words[1 : words.index(">")] if into else words[1:], ranks=ranks)
-    refused = done.returncode != 0
-    assert done.returncode in (0, 2), done.stderr
+    assert done.returncode == status, done.stderr
     if into:
         command.write(into, done.stdout)
         return []
-    return [row.rstrip() for row in (done.stderr if refused else done.stdout).splitlines()]
+    return [row.rstrip() for row in (done.stderr if status else done.stdout).splitlines()]
 
 
 def run_page(command, page):
@@ -88,7 +94,7 @@ def run_page(command, page):
             assert missing(text.splitlines(), printed) is None, printed
             printed = None
         for line, said in typed(text) if language == "console" else ():
-            come = output_of(command, line)
+            come = output_of(command, line, BAD_INPUT if said[:1] and REFUSED.match(said[0]) else 0)
             assert missing(said, come) is None, (line, come)
 
 
