@@ -190,6 +190,12 @@ def test_gallery_and_commands_are_those_of_the_code():
         assert page.read_text() == text(), "write it anew: python docs/generated.py"
 
 
+def test_the_gallery_shows_every_picture_of_a_config():
+    shown = set(re.findall(r"\]\((\w+\.(?:png|gif))\)", (DOCS / "gallery.md").read_text()))
+    pictures = {path.name for ending in ("png", "gif") for path in DOCS.glob(f"*.{ending}")}
+    assert shown == {name for name in pictures if not name.startswith("bench_")}
+
+
 def test_reference_is_that_of_the_code():
     for page, text in reference().pages().items():
         assert page.read_text() == text, "write it anew: python docs/reference.py"
