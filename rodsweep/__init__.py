@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .api.sweeping import sweep
     from .errors import EnvironmentIncomplete, InputError
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 __all__ = [
     "Answer",
     "Arm",

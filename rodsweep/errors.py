@@ -34,3 +34,21 @@ class EnvironmentIncomplete(Refusal):
     """The machine lacks a component or a permission; the sentence names it."""
 
     exit_status = 3
+
+
+def not_importable(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
+    """Refusal for modules that a plain `pip install` leaves to the distribution: the sentence says how to get
+    them.
+
+    extra: name of the optional dependencies that bring the modules from PyPI. Modules of a distribution are
+    compiled for its NumPy; under another major version their import fails with a message about binary
+    incompatibility.
+    """
+    if "binary incompatibility" in str(reason):
+        remedy = "compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
+    else:
+        remedy = (
+            "`make install` of a clone brings all modules; beside a wheel take Debian's or conda's, or "
+            f"pip install 'rodsweep[{extra}]'{', which compiles PETSc' if extra == 'solvers' else ''}"
+        )
+    return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")

@@ -27,6 +27,7 @@ RANK = ROOT / "tests" / "faults" / "rank.py"
 
 LONGEST = (
     "test_slurm",
+    "test_pages_run",
     "test_bad_files",
     "test_branch_task",
     "test_figure_layout",

@@ -48,7 +48,7 @@ def script(name):
 
 
 def reference():
-    """The script that writes docs/file-format.md."""
+    """The script that writes docs/file-format.md and the tables of the tasks' pages."""
     return script("reference")
 
 
@@ -190,8 +190,15 @@ def test_gallery_and_commands_are_those_of_the_code():
         assert page.read_text() == text(), "write it anew: python docs/generated.py"
 
 
+def test_the_gallery_shows_every_picture_of_a_config():
+    shown = set(re.findall(r"\]\((\w+\.(?:png|gif))\)", (DOCS / "gallery.md").read_text()))
+    pictures = {path.name for ending in ("png", "gif") for path in DOCS.glob(f"*.{ending}")}
+    assert shown == {name for name in pictures if not name.startswith("bench_")}
+
+
 def test_reference_is_that_of_the_code():
-    assert reference().PAGE.read_text() == reference().text(), "write it anew: python docs/reference.py"
+    for page, text in reference().pages().items():
+        assert page.read_text() == text, "write it anew: python docs/reference.py"
 
 
 @pytest.mark.parametrize("task", CONFIGS)
@@ -238,7 +245,7 @@ def test_python_page_prints_what_it_says(tmp_path, monkeypatch, capsys):
 def test_bibtex_says_what_the_citation_file_says():
     cited = parse((ROOT / "CITATION.cff").read_text(), "CITATION.cff")
     (paper,) = cited["references"]
-    (block,) = blocks(DOCS / "guide.md", "bibtex")
+    (block,) = blocks(DOCS / "citing.md", "bibtex")
     fields = [dict(re.findall(r"(\w+) += \{+(.*?)\}+,?\n", entry)) for entry in block.split("\n\n")]
     assert [fields[0][name] for name in ("title", "journal", "doi")] == [
         paper[name] for name in ("title", "journal", "doi")

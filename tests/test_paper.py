@@ -155,6 +155,21 @@ def test_figure_5(command):
     assert command("plot", "fig5.h5", "--what", "energy", "-o", "energy.png").returncode == 0
 
 
+def test_beating_arm(command):
+    """By collocation, and by time integration alone; the config states 17.7890 s and 6.46957 cm too."""
+    of_period, seconds, of_height, centimetres = stated("beating_arm")[-4:]
+    for method, accuracy in (("collocation", "1e-6"), ("integration", "1e-5")):
+        overrides = f"limit_cycle.method={method}", "limit_cycle.shapes=8", f"accuracy={accuracy}"
+        with run(command, "beating_arm", *overrides) as file:
+            period, y, period_si, y_si = (
+                file[name][...].item() for name in ("period", "tip_y_max", "period_si", "tip_y_max_si")
+            )
+            assert [period, y] == pytest.approx([of_period, of_height], rel=2 * float(accuracy))
+            assert [period_si, 100 * y_si] == pytest.approx([seconds, centimetres], rel=2 * float(accuracy))
+            assert file["status"][...].item() == 0
+        (command.directory / "beating_arm.h5").unlink()
+
+
 def test_figure_6(command):
     hopf = stated("fig6")[0]
     forces = f"parameters.F=[27, {hopf + 0.01}, {hopf + 0.04}]"

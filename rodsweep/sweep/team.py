@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal
+from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal, not_importable
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -24,9 +24,7 @@ class Team:
         try:
             from mpi4py import MPI
         except ImportError as error:
-            raise EnvironmentIncomplete(
-                f"mpi4py cannot be imported ({error}); `make install` provides it"
-            ) from error
+            raise not_importable("mpi4py", error) from error
         self.MPI = MPI
         self.comm = MPI.COMM_WORLD.Dup()
         self.rank: int = self.comm.Get_rank()

@@ -8,6 +8,7 @@ from ranks import kill, ranks_in, wait_for_end
 from ruamel.yaml import YAML
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
+from rodsweep import __version__
 from rodsweep.api.dataset import open_result
 from rodsweep.config.document.reading import canonical, validated
 from rodsweep.errors import InputError
@@ -301,7 +302,7 @@ def test_earlier_format_is_refused_in_a_sentence(command, words):
     before = path.read_bytes()
     refused = command(*words)
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-    assert "was written by an earlier rodsweep (0.1.0, commit" in refused.stderr
+    assert f"was written by an earlier rodsweep ({__version__}, commit" in refused.stderr
     assert path.read_bytes() == before
     with pytest.raises(InputError, match="was written by an earlier"):
         open_result(path)

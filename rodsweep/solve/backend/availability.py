@@ -1,9 +1,9 @@
 """Check that PETSc can solve here, without starting PETSc: the start is collective over all ranks."""
 
 import os
-from importlib.util import find_spec
 
-from ...errors import EnvironmentIncomplete, InputError
+from ...errors import EnvironmentIncomplete, InputError, not_importable
+from .debian import add_debian_modules, is_found
 
 
 def require_directory() -> None:
@@ -25,13 +25,7 @@ def require_solvers() -> None:
             "NUMBA_DISABLE_JIT is set: PETSc calls compiled formulas, which Python cannot replace; unset it"
         )
     require_directory()
+    add_debian_modules()
     for name in ("petsc4py", "slepc4py"):
-        try:
-            found = find_spec(name) is not None
-        except (ImportError, ValueError):
-            found = False
-        if not found:
-            raise EnvironmentIncomplete(
-                f"{name} cannot be imported; `make install` provides it, or set PETSC_DIR and SLEPC_DIR to "
-                "where PETSc and SLEPc are installed"
-            )
+        if not is_found(name):
+            raise not_importable(name, "not found")

@@ -2,8 +2,10 @@
 
 from functools import cache
 
-from ...errors import EnvironmentIncomplete
+from ...errors import not_importable
+from .debian import add_debian_modules
 
+add_debian_modules()
 try:
     import petsc4py
     import slepc4py
@@ -13,11 +15,8 @@ try:
     slepc4py.init(["rodsweep"])
     from petsc4py import PETSc
     from slepc4py import SLEPc
-except ImportError as error:
-    raise EnvironmentIncomplete(
-        f"petsc4py and slepc4py cannot be imported ({error}); `make install` provides them, or set "
-        "PETSC_DIR and SLEPC_DIR to where they are installed"
-    ) from error
+except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
+    raise not_importable("petsc4py and slepc4py", error) from error
 
 __all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options", "sparse_package", "versions"]
 

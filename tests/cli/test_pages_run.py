@@ -1,4 +1,7 @@
-"""docs/tasks.md from top to bottom: what it says is typed is typed, and what comes is what it says."""
+"""README.md, docs/tasks, docs/howto, docs/arm.md: each command of a page is run; its output is the page's.
+
+A page is run from top to bottom in a directory of its own, which has the configs of the clone.
+"""
 
 import re
 import shlex
@@ -9,7 +12,15 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-PAGE = ROOT / "docs" / "tasks.md"
+DOCS = ROOT / "docs"
+PAGES = [*sorted((DOCS / "tasks").glob("*.md")), *sorted((DOCS / "howto").glob("*.md"))]
+CLUSTER = ROOT / "tests" / "cluster" / "test_slurm.py"
+BAD_INPUT = 2
+"""Exit status of a refused command."""
+REFUSED = re.compile("rodsweep: ")
+"""Start of the line with which a page says that a command is refused."""
+FILE_NAME = re.compile(r"# (\S+\.(?:yaml|csv))\n")
+"""First line of a block that is a file."""
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
@@ -48,38 +59,68 @@ def typed(text):
         yield first, rest
 
 
-def output_of(command, line):
-    """The lines that a command of the page writes; `>` and `head` as a shell has them."""
+def output_of(command, line, status=0):
+    """The lines that a command of the page writes; `>`, `head` and `mpiexec` as a shell has them.
+
+    AssertionError if the command ends with another status.
+    """
     words = shlex.split(line)
     if words[0] == "head":
         return (command.directory / words[-1]).read_text().splitlines()[: int(words[2])]
+    ranks = 0
+    if words[:2] == ["mpiexec", "-n"]:
+        ranks, words = int(words[2]), words[3:]
     assert words[0] == "rodsweep"
     into = words[words.index(">") + 1] if ">" in words else ""
-    done = command(*words[1 : words.index(">")] if into else words[1:])
-    refused = done.returncode != 0
-    assert done.returncode in (0, 2), done.stderr
+    done = command(*words[1 : words.index(">")] if into else words[1:], ranks=ranks)
+    assert done.returncode == status, done.stderr
     if into:
         command.write(into, done.stdout)
         return []
-    return [row.rstrip() for row in (done.stderr if refused else done.stdout).splitlines()]
+    return [row.rstrip() for row in (done.stderr if status else done.stdout).splitlines()]
 
 
-def test_page_says_what_comes(command, monkeypatch):
-    monkeypatch.chdir(command.directory)
+def run_page(command, page):
+    """Runs the blocks of a page from top to bottom; AssertionError for the first that does not hold."""
     names, printed = {}, None
-    for language, text in BLOCK.findall(PAGE.read_text()):
-        if language == "yaml":
-            command.write(text.split("\n")[0].removeprefix("# "), text)
+    for language, text in BLOCK.findall(page.read_text()):
+        if file := FILE_NAME.match(text):
+            command.write(file[1], text if language == "yaml" else text[file.end() :])
         elif language == "python":
             with redirect_stdout(StringIO()) as stream:
-                exec(compile(text, PAGE.name, "exec"), names)
+                exec(compile(text, page.name, "exec"), names)
             printed = stream.getvalue().splitlines()
         elif language == "text" and printed is not None:
-            assert missing(text.splitlines(), printed) is None
+            assert missing(text.splitlines(), printed) is None, printed
             printed = None
         for line, said in typed(text) if language == "console" else ():
-            come = output_of(command, line)
+            come = output_of(command, line, BAD_INPUT if said[:1] and REFUSED.match(said[0]) else 0)
             assert missing(said, come) is None, (line, come)
+
+
+@pytest.mark.parametrize(
+    "page", [ROOT / "README.md", *PAGES], ids=lambda page: f"{page.parent.name}/{page.stem}"
+)
+def test_page_says_what_comes(command, monkeypatch, page):
+    monkeypatch.chdir(command.directory)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    (command.directory / "configs").symlink_to(ROOT / "configs")
+    run_page(command, page)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}/{page.stem}")
+def test_every_command_of_a_page_is_run(page):
+    """In a block of the console; commands for Slurm are run by the tests of the cluster."""
+    text = page.read_text()
+    outside = re.sub(r"^```console\n.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+    commands = [
+        line.strip()
+        for line in outside.splitlines()
+        if re.match(r"(\s*|array=\$\()(rodsweep|mpiexec|sbatch) ", line)
+    ]
+    for line in commands:
+        (script,) = re.findall(r"jobs/\w+\.sh", line)
+        assert script in CLUSTER.read_text()
 
 
 def test_a_line_that_does_not_come_is_seen():
