@@ -894,6 +894,8 @@ def _state_sentences(view, page, fine, row):
     where = {
         r"straight rod and cycle both stable": (both, np.broadcast_to(v["F"], states.shape)[states == 3])
     }
+    own = view.variables["stable_states"] == 4  # a smaller accuracy may decide them
+    where["stable states undecided"] = own.any(axis=1), np.broadcast_to(v["F"], own.shape)[own]
     for words, kind in CHANGES_OF_CYCLES.items():
         where[words] = (kinds == kind).any(axis=1), at[kinds == kind]
     for words, (there, places) in where.items():
