@@ -16,6 +16,8 @@ DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
 """The members of `range_of_drag` by name, in its order: the likeliest, then the corners of the range. `least`
 and `most` have the least and the most drag of all kinds, the others the most of one kind and the least of the
 other."""
+RANGE_OF_DRAG = "range"
+"""Word for all members of DRAGS."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
