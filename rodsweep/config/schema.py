@@ -49,10 +49,14 @@ class Config(Strict):
     @property
     def names(self) -> tuple[str, ...]:
         """Parameters of a point of the sweep: what the task needs, and what the config adds."""
+        return (*self.taken_of_a_rod({}), *self.added)
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """Optional parameters that the config gives, by name or by the shape of its arm."""
         arm = self.parameters.arm
         made = () if arm is None else arm.tapering
-        given = (n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_axes or n in made)
-        return (*self.taken_of_a_rod({}), *given)
+        return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_axes or n in made)
 
     @property
     def build(self) -> Build:

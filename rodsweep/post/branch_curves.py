@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..model.floquet import least_outside
 from ..model.parameters import PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
@@ -131,17 +132,23 @@ def curves_of(view: View, rod: int) -> list[StoredBranch]:
             for is_cycle, i in order
         ]
         at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
-        counts = [int(v["unstable_multipliers"][i]) if is_cycle else None for is_cycle, i in order]
+        counts = [_least_outside(v, i) if is_cycle else None for is_cycle, i in order]
         is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
         stable = stability_of_pieces(counts)
         curves.append(StoredBranch(at, y, period, stable, is_cycle, _special_points(v, special)))
     return curves
 
 
+def _least_outside(v: dict[str, Array], place: int) -> int:
+    """Least number of multipliers of a stored cycle outside the circle, -1 if its stability is undecided."""
+    multiplier, error = (float(v[name][place]) for name in ("multiplier", "multiplier_error"))
+    return least_outside(int(v["unstable_multipliers"][place]), multiplier, error)
+
+
 def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
     """Stability of the pieces between n vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown.
 
-    counts: number of unstable multipliers at each vertex, -1 if undecided, None at a special point.
+    counts: least number of unstable multipliers at each vertex, -1 if undecided, None at a special point.
     """
     stable = [-1] * (len(counts) - 1)
     special = [i for i, count in enumerate(counts) if count is None]

@@ -18,6 +18,7 @@ from ruamel.yaml import YAML
 
 import rodsweep as rs
 from rodsweep.api import options
+from rodsweep.api.answers.option_words import in_python
 from rodsweep.api.asking import job_from, tree_of, yaml_of
 from rodsweep.cli import commands
 from rodsweep.config.schema import Config
@@ -423,7 +424,10 @@ def test_a_branch_and_the_criticality_of_one_rod_are_drawn():
         ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest, all"),
         ({"at": {"k1": 100}}, "has no point there; it has k1 = 200"),
         ({"at": 3}, "at is not allowed; give numbers by parameter"),
-        ({"points": 3}, "--point is for results of limit_cycle"),
+        ({"points": 3}, "points is for results of limit_cycle"),
+        ({"what": "maps"}, 'what="maps" is for results of limit_cycle'),
+        ({"output": "f.xyz"}, "output f.xyz: the name must end in .png"),
+        ({"at": {"k1": 100}}, 'at={"k1": 100}: spectrum has no point there'),
     ],
 )
 def test_choices_of_a_figure_that_there_are_not_are_refused(choice, sentence):
@@ -433,6 +437,25 @@ def test_choices_of_a_figure_that_there_are_not_are_refused(choice, sentence):
     assert sentence in str(refusal.value)
     with pytest.raises(rs.InputError, match="nothing to draw; give a Dataset"):
         rs.plot(rs.Rod(F=1, k1=200, k2=1e4, gamma3=1e-4))
+
+
+@pytest.mark.parametrize(
+    ("command", "python"),
+    [
+        (
+            "choose lines with --at, such as --at k1=150, or",
+            'choose lines with at, such as at={"k1": 150}, or',
+        ),
+        ("lines with --at, such as --at 'length=12 cm'", 'lines with at, such as at={"length": "12 cm"}'),
+        ("--at k1=-2e-05: c.h5 has no point", 'at={"k1": -2e-05}: c.h5 has no point'),
+        ("k2 vary; --at k2=VALUE selects", 'k2 vary; at={"k2": "VALUE"} selects'),
+        ("(--what map: all)", '(what="map": all)'),
+        ("--point 3: c.h5 has the points 1 to 2", "points=3: c.h5 has the points 1 to 2"),
+        ("of 5 cycles (--point chooses others)", "of 5 cycles (points chooses others)"),
+    ],
+)
+def test_sentences_of_the_command_are_in_the_words_of_python(command, python):
+    assert in_python(command) == python
 
 
 def test_choices_of_a_figure_are_those_of_the_command():

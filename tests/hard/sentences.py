@@ -354,6 +354,10 @@ def modes_sentences(view, page, keywords, fine):
     exact = [v[f"{name}_real"] + 1j * v[f"{name}_imag"] for name in MODE_FIELDS]
     off = [np.abs(a - b).max(axis=-1) / np.abs(b).max(axis=-1) for a, b in zip(fields, exact, strict=True)]
     found += at_most(page, "^error of the modes, relative: worst NUMBER", float(np.nanmax(off)))
+    unknown = ~np.isfinite(view.variables["mode_error"]).all(axis=-1)
+    found += counts(
+        page, "^error of the modes,.*; not known at NUMBER of NUMBER", unknown.sum(), unknown.size
+    )
     return found + spectrum_sentences(view, page, keywords, fine)
 
 
@@ -894,6 +898,8 @@ def _state_sentences(view, page, fine, row):
     where = {
         r"straight rod and cycle both stable": (both, np.broadcast_to(v["F"], states.shape)[states == 3])
     }
+    own = view.variables["stable_states"] == 4  # a smaller accuracy may decide them
+    where["stable states undecided"] = own.any(axis=1), np.broadcast_to(v["F"], own.shape)[own]
     for words, kind in CHANGES_OF_CYCLES.items():
         where[words] = (kinds == kind).any(axis=1), at[kinds == kind]
     for words, (there, places) in where.items():

@@ -116,4 +116,6 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     assert "flutter on the rows k1 = 200; on none of k1 = 100" in told(view)
     classes = np.asarray(view.variables["class"]).copy()
     classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
-    assert "on none of" not in told(changed(view, **{"class": classes}))
+    shown = told(changed(view, **{"class": classes}))
+    assert "on none of" not in shown
+    assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown

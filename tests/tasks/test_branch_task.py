@@ -12,6 +12,7 @@ from test_paper import run, stated
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
+from rodsweep.model.floquet import least_outside
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import curves_of, intersection, stability_of_pieces, straight_ranges, union
 from rodsweep.post.figures import draw
@@ -130,6 +131,22 @@ def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_point
         (None,): [],
     }
     assert {counts: stability_of_pieces(list(counts)).tolist() for counts in pieces} == pieces
+
+
+@pytest.mark.parametrize(
+    ("multiplier", "error", "outside"),
+    [
+        (0.999, 2e-3, -1),
+        (1.001, 2e-3, -1),
+        (1.003, 2e-3, 1),
+        (2.8e13, 1.9e13, 1),
+        (1.4e16, 3e16, 1),
+        (9.0, 99.0, -1),
+    ],
+)
+def test_a_cycle_is_unstable_if_its_largest_multiplier_lies_outside_for_certain(multiplier, error, outside):
+    assert least_outside(-1, multiplier, error) == outside
+    assert least_outside(2, multiplier, error) == 2
 
 
 def test_ranges_are_joined_and_intersected():

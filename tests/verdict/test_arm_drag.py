@@ -254,3 +254,8 @@ def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]
     assert subprocess.run(argv, capture_output=True, text=True, check=True).stdout.endswith("[]\n")
+
+
+def test_the_range_of_drag_is_no_drag_of_one_arm():
+    with pytest.raises(rs.InputError, match="drag = 'range' is an axis of sweeps"):
+        rs.Arm(**SILICONE, drag="range").k1  # noqa: B018

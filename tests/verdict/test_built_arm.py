@@ -128,6 +128,26 @@ def test_cycles_of_an_arm_are_those_of_its_rod(shape):
     assert found.period_si == pytest.approx(rod.period * arm.tau2, rel=1e-9)
 
 
+TASKS_OF_HOPF_POINTS = {
+    "thresholds": ({"F_max": 30.0}, "F_hopf"),
+    "criticality": ({"F_max": 30.0}, "crossing_F"),
+    "branch": ({"stop": 30.0, "accuracy": 1e-3}, "special_at"),
+}
+
+
+@pytest.mark.parametrize("task", TASKS_OF_HOPF_POINTS)
+@pytest.mark.parametrize("tips", ["3 mm", ["3 mm", "4 mm"]])
+def test_every_task_has_the_hopf_points_of_the_cone(task, tips):
+    """Branches were those of the uniform arm."""
+    options, name = TASKS_OF_HOPF_POINTS[task]
+    data = rs.sweep(task, arm=CONE | {"tip_radius": tips}, **options, progress=False)
+    found = data[name].values.reshape(np.size(tips), -1)[:, 0]
+    alone = [
+        rs.Arm(**CONE | {"tip_radius": tip}).thresholds(F_max=30.0).F_hopf for tip in np.atleast_1d(tips)
+    ]
+    assert found == pytest.approx(alone, rel=1e-9)
+
+
 def test_another_arm_replaces_the_shape():
     cone = rs.Arm(**CONE)
     assert cone.replace(segments=CAST).tip_radius is None

@@ -20,6 +20,7 @@ from ...solve.exclusive import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
 from ..dataset import file_path
 from .answer import Answer
+from .option_words import in_python, refusing_in_python
 from .tabling import view_for
 
 EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
@@ -59,6 +60,7 @@ class Picture:
     """The rendered figure, PNG, or GIF for an animation."""
 
     @one_at_a_time
+    @refusing_in_python
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg) and returns a sentence about it."""
         return draw(self.views, Path(path), **self.choices)
@@ -86,6 +88,7 @@ class Picture:
 
 @one_at_a_time
 @in_sentences(EXAMPLE)
+@refusing_in_python
 def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
@@ -118,7 +121,7 @@ def plot(
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]
-        picture = Picture(views, choices, shown, path.read_bytes())
+        picture = Picture(views, choices, in_python(shown), path.read_bytes())
     if output is not None:
         picture.save(file_path(output, EXAMPLE))
     return picture

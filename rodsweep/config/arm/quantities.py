@@ -6,13 +6,10 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ...errors import InputError
-from ...model.arm.drag import DRAGS
+from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
 from ...model.arm.quantities import RELATIVE, UNITS
 from ...model.units import in_si, share_of_flutter, split, written_in
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
-
-RANGE = "range"
-"""Word for all members of DRAGS."""
 
 
 def as_quantities(value: Any, info: ValidationInfo) -> Axis:
@@ -93,10 +90,10 @@ def as_drags(value: Any) -> Axis:
     """Names of drags (one, a list, or "range") as an Axis of their indices in DRAGS; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
-    names = list(DRAGS) if value == RANGE else value if isinstance(value, list | tuple) else [value]
+    names = list(DRAGS) if value == RANGE_OF_DRAG else value if isinstance(value, list | tuple) else [value]
     if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
         raise ValueError(
-            f"{short(value)} is no drag; write {RANGE}, one of {', '.join(DRAGS)}, or a list of these"
+            f"{short(value)} is no drag; write {RANGE_OF_DRAG}, one of {', '.join(DRAGS)}, or a list of these"
         )
     return Axis(values=tuple(float(place) for place in sorted({DRAGS.index(name) for name in names})))
 
@@ -119,7 +116,7 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":
             names = drags_written(axis.array().tolist())
-            words.append(f"drag {RANGE if len(names) == len(DRAGS) else ' and '.join(names)}")
+            words.append(f"drag {RANGE_OF_DRAG if len(names) == len(DRAGS) else ' and '.join(names)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{written_in(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
@@ -158,6 +155,6 @@ Drags = Annotated[
     Axis,
     BeforeValidator(as_drags),
     WithJsonSchema(
-        {"anyOf": [{"enum": [RANGE, *DRAGS]}, {"type": "array", "items": NAMED_DRAG, "minItems": 1}]}
+        {"anyOf": [{"enum": [RANGE_OF_DRAG, *DRAGS]}, {"type": "array", "items": NAMED_DRAG, "minItems": 1}]}
     ),
 ]

@@ -16,6 +16,8 @@ DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
 """Names of the estimates in `range_of_drag`, in order: the likeliest, then the corners of the range. `least`
 has the least translational and rotational drag, `most` the most; `most_rotational` combines the most
 rotational with the least translational drag, `most_translational` the reverse."""
+RANGE_OF_DRAG = "range"
+"""Word for all members of DRAGS."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,7 @@ from ...errors import InputError
 from ..material.laws import law_of
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
 from ..units import unit_of, written_in
-from .drag import DRAGS, LEAST_SLENDERNESS
+from .drag import DRAGS, LEAST_SLENDERNESS, RANGE_OF_DRAG
 from .quantities import QUANTITIES, SECTION_SIDES, UNITS
 from .section import NoWall
 
@@ -40,6 +40,11 @@ def refuse_words(arm: "SlenderArm") -> None:
         except ValueError:  # an integer of thousands of digits
             text = "an integer too large to be shown"
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
+    if arm.drag == RANGE_OF_DRAG:
+        raise InputError(
+            f"drag = {arm.drag!r} is an axis of sweeps; an arm has one of {', '.join(DRAGS)}, and its report "
+            "states the range"
+        )
     if arm.drag not in DRAGS:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
     texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))

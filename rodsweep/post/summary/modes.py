@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...wording import counted
+from ...wording import counted, some_of
 from .errors import errors_of, span_of
 from .ranges import NONE, span
 from .spectrum import (
@@ -33,7 +33,9 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
         details = [leading_line(view, done), *unknowns]
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
-        trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")
+        unknown = int((~np.isfinite(errors)).any(axis=-1).sum())
+        where = f"; not known at {some_of(unknown, len(errors), 'point')}" if unknown else ""
+        trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
     return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm)
 
 

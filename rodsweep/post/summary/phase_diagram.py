@@ -22,6 +22,10 @@ UNDECIDED = next(value for value, word in CLASSES if word == "undecided")
 """Number of the class undecided."""
 BOTH = next(value for value, word in STABLE_STATES if word == "both")
 """Number of the stable states where straight rod and cycle are both stable."""
+STATES_UNDECIDED = next(value for value, word in STABLE_STATES if word == "undecided")
+"""Number of the undecided stable states."""
+STATES_NAMED = {"straight rod and cycle both stable": BOTH, "stable states undecided": STATES_UNDECIDED}
+"""Stable states whose places `show` states, by their words."""
 CHANGES_OF_CYCLES = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
@@ -85,9 +89,10 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     shares = ((100 * float((found == value).mean()), word) for value, word in STABLE_STATES)
     parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
     lines = [f"stable states, of the grid: {parts}"]
-    both = (states == BOTH) & done[..., np.newaxis]
-    places = np.broadcast_to(v[line], both.shape)[both]
-    found_on = {"straight rod and cycle both stable": (both.any(axis=-1), places)}
+    found_on = {}
+    for words, number in STATES_NAMED.items():
+        there = (states == number) & done[..., np.newaxis]
+        found_on[words] = there.any(axis=-1), np.broadcast_to(v[line], there.shape)[there]
     for kind, words in CHANGES_OF_CYCLES.items():
         of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
         found_on[words] = of_kind.any(axis=-1), at[of_kind]
@@ -136,6 +141,11 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
                 least = "at least " * bool(unknown.any())
                 text += f"; again on {least}{int(again.any(axis=-1).sum())}, {line} = {later}"
             lines.append(text)
+    undecided = (v["class"] == UNDECIDED) & done[..., np.newaxis]
+    if undecided.any():
+        rows, places = undecided.any(axis=-1), np.broadcast_to(v[line], undecided.shape)[undecided]
+        on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(places)}"
+        lines.append(f"undecided: {on_rows}, {row} = {span(of_row[rows])}")
     flutters = (v["class"] == FLUTTER).any(axis=-1)
     never = ~flutters & (v["class"] != UNDECIDED).all(axis=-1)
     if (done & never).any() and (done & flutters).any():

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...model.floquet import least_outside
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement import MULTIPLIER_FACTOR
 from ..orbit.measures import Measures
@@ -44,6 +45,11 @@ class BranchPoint:
             multiplier=cycle.largest_multiplier,
             unstable=-1 if undecided else int((beyond > 0).sum()),
         )
+
+    @property
+    def least_outside(self) -> int:
+        """Least number of multipliers outside the circle; 0: stable, -1: stability not known."""
+        return least_outside(self.unstable, self.multiplier, self.errors.multiplier_error)
 
 
 def _margin(point: ArcPoint) -> float:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.rod import Rod
+from ...wording import counted
 from ..changes.rows import DiagramRow, Motion, RowRequest, solve_row
 from ..changes.thresholds import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -46,9 +47,9 @@ class CoexistenceStatus(PointStatus):
     )
     special_undecided = (
         7,
-        "the branches are complete, but a special point misses the requested accuracy or contradicts the "
-        "multipliers beside it; parts of a branch with contradictory multipliers are undecided; a smaller "
-        "number for the accuracy may decide them",
+        "the branches are complete, but a special point misses the requested accuracy, or a stable state is "
+        "undecided because the multipliers of cycles disagree between two special points or are 1 within their "
+        "errors; a smaller number for the accuracy may decide it",
     )
     special_full = 8, "there are more special points on the branches of the row than the file holds"
 
@@ -85,17 +86,19 @@ def solve_coexistence(
     """
     row = solve_row(rod, request)
     branches = row_branches(rod, request, special, workspace)
-    status, message = _judged(row, branches, special)
     cycles = cycles_at(request.values, branches, request.certify)
     forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
+    states = stable_states(row.motion, cycles)
+    undecided = request.values[(states == Stable.undecided) & (row.motion != Motion.undecided)]
+    status, message = _judged(row, branches, special, undecided)
     return CoexistenceRow(
         row=row,
-        stable_states=stable_states(row.motion, cycles),
+        stable_states=states,
         special=special_of(branches),
         status=status,
-        message=message,
+        message="; ".join(filter(None, [message, _undecided(request.name, undecided)])),
         seconds=row.seconds + branches.seconds,
     )
 
@@ -121,8 +124,21 @@ def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
     return tuple(point for curve in branches.curves for point in curve.special)
 
 
-def _judged(row: DiagramRow, branches: BranchesOfRod, special: int) -> tuple[CoexistenceStatus, str]:
-    """(status, message); problems of the stability changes take precedence."""
+def _undecided(name: str, values: Array) -> str:
+    """Message on places of a row whose stable states the cycles leave undecided; may be empty. values: (n,)."""
+    if not len(values):
+        return ""
+    places = counted(len(values), "place")
+    return f"the stable states are undecided at {places}, {name} = {values[0]:.9g} to {values[-1]:.9g}"
+
+
+def _judged(
+    row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
+) -> tuple[CoexistenceStatus, str]:
+    """(status, message); problems of the stability changes take precedence.
+
+    undecided: values of the parameter whose stable states the cycles leave undecided, (n,).
+    """
     message = "; ".join(filter(None, [row.message, branches.message]))
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
@@ -130,8 +146,9 @@ def _judged(row: DiagramRow, branches: BranchesOfRod, special: int) -> tuple[Coe
         return CoexistenceStatus.special_full, message
     if branches.status is BranchStatus.special_undecided:
         return CoexistenceStatus.special_undecided, message
-    stopped = branches.status is not BranchStatus.ok
-    return (CoexistenceStatus.branches_stopped if stopped else CoexistenceStatus.ok), message
+    if branches.status is not BranchStatus.ok:
+        return CoexistenceStatus.branches_stopped, message
+    return (CoexistenceStatus.special_undecided if len(undecided) else CoexistenceStatus.ok), message
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +183,7 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
     """Parts of a branch between consecutive special points."""
     stretches = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
-        signs = {point.unstable for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
+        signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
         stable = 1 if signs == {0} else 0 if signs and 0 not in signs else -1
         low, high = sorted((one, other), key=lambda point: point.at)
         within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error

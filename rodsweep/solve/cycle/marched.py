@@ -42,6 +42,7 @@ from .transient.returns import (
     repetition,
     section_crossings,
     until_returns,
+    why_not_settled,
 )
 
 LOCAL_TOLERANCE = 0.01
@@ -166,8 +167,7 @@ class _Marching:
             # A geometric sequence of distances has distance/(1 - rate) left to its limit.
             if distance <= SETTLED_DISTANCE * self.request.accuracy * (1 - rate):
                 return _Settled(z, turns, step)
-        why = f"{self.waited} returns of the tip, the last at a relative distance of {last:.1e}"
-        raise _Ended(MarchedStatus.not_settled, why)
+        raise _Ended(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
 
     def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
         """A complete run; raises _Ended if the run fails or leaves the model."""

@@ -125,5 +125,8 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     culprit, error = max(errors.items(), key=lambda item: item[1])
     if error <= request.accuracy:
         return result
-    message = f"the error of the {culprit} is {error:.0e}"
+    is_known = np.isfinite(error)
+    message = (
+        f"the error of the {culprit} is {error:.0e}" if is_known else f"no digit of the {culprit} is known"
+    )
     return replace(result, status=SpectrumStatus.accuracy_not_reached, message=message)

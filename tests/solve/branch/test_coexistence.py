@@ -89,6 +89,30 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
     ]
 
 
+def test_cycles_whose_multipliers_are_lost_to_rounding_but_for_their_size_are_unstable():
+    """From the sixth Hopf point of a rod, at F = 98.698, with multipliers of 1e13 to 1e16."""
+    rod = Rod(F=0.0, k1=1844.51, k2=7.75717, gamma3=0.3, gamma1=0.602896)
+    row = solve_coexistence(rod, replace(request([95, 100, 103]), cycle_accuracy=6e-4), 64)
+    assert row.status == CoexistenceStatus.ok
+    assert row.stable_states.tolist() == [Stable.neither_known] * 3
+
+
+def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(monkeypatch):
+    real = coexistence.solve_branches
+
+    def on_the_circle(rod, asked, workspace):
+        branches = real(rod, asked, workspace)
+        (curve,) = branches.curves
+        curve.points[:] = [replace(point, unstable=-1, multiplier=1.0) for point in curve.points]
+        return branches
+
+    monkeypatch.setattr(coexistence, "solve_branches", on_the_circle)
+    row = solve_coexistence(FIG_2C, request([40, 60, 70]), 64)
+    assert row.stable_states.tolist() == [Stable.straight, Stable.undecided, Stable.undecided]
+    assert row.status == CoexistenceStatus.special_undecided
+    assert "undecided at 2 places, F = 60 to 70" in row.message
+
+
 def test_a_list_of_special_points_that_is_full_is_told():
     row = solve_coexistence(FIG_2C, request([40, 60, 70]), 1)
     assert row.status == CoexistenceStatus.special_full

@@ -1,5 +1,6 @@
 """Cycles by time integration alone: against those of collocation, and how points end that have none."""
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -83,6 +84,16 @@ def test_a_motion_beside_the_hopf_point_is_not_called_a_cycle_before_it_has_sett
     found = solve_by_integration(rod, request(1e-6, most_periods=60))
     assert found.status == MarchedStatus.not_settled
     assert "returns of the tip, the last at a relative distance of" in found.message
+
+
+def test_a_tip_that_does_not_return_has_a_reason_in_words():
+    """A pull beyond the shear stiffness bends the rod for good."""
+    rod = Rod(F=-20.0, k1=150.0, k2=10.0, gamma3=0.0)
+    found = solve_by_integration(rod, request(1e-3, most_periods=20))
+    assert found.status == MarchedStatus.not_settled
+    assert re.fullmatch(
+        r"the tip passes theta = 0 \d times? in all, so that no period is seen", found.message
+    )
 
 
 def test_a_crushed_rod_leaves_the_model():

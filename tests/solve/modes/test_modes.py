@@ -760,7 +760,7 @@ def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypat
     assert (np.isnan(result.vectors.right).all(axis=(0, 2)) == still_tips).all()
     assert np.isfinite(result.vectors.left).all()
     assert result.status == SpectrumStatus.accuracy_not_reached
-    assert result.message == "the error of the modes is inf"
+    assert result.message == "no digit of the modes is known"
 
 
 def test_of_a_pair_only_one_vector_is_computed(monkeypatch):

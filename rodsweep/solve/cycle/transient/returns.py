@@ -4,13 +4,14 @@ A motion is integrated from return to return. A cycle is near where the states a
 """
 
 from collections.abc import Sequence
-from math import inf
+from math import inf, isfinite, isnan
 from operator import mul
 
 import numpy as np
 
 from ....arrays import Array
 from ....discretization.beam import Beam
+from ....wording import counted
 from ...motion.integrator import Ending, RunLimit, Trajectory
 
 STRAIGHT_SIZE = 1e-6
@@ -101,3 +102,16 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
     enough = max(2 * min(found)[0], SAME_RETURN)
     return next((m, distance) for distance, m in found if distance <= enough)
+
+
+def why_not_settled(waited: int, returns: int, last: float) -> str:
+    """The reason why a motion has not settled after the time of `waited` returns.
+
+    returns: how many are known. last: relative distance of the last of them from an earlier one, not finite
+    if there are too few, or if the motion has decayed.
+    """
+    if isfinite(last):
+        return f"{waited} returns of the tip, the last at a relative distance of {last:.1e}"
+    if isnan(last):
+        return f"the tip passes theta = 0 {counted(returns, 'time')} in all, so that no period is seen"
+    return "its deflection has decayed to rounding error, but the straight rod is not stable"
