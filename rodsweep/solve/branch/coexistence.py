@@ -48,8 +48,8 @@ class CoexistenceStatus(PointStatus):
     special_undecided = (
         7,
         "the branches are complete, but a special point misses the requested accuracy, or a stable state is "
-        "undecided because the multipliers of cycles disagree between two special points or are 1 within their "
-        "errors; a smaller number for the accuracy may decide it",
+        "undecided because the multipliers of cycles disagree between two special points or are 1 within "
+        "their errors; a smaller number for the accuracy may decide it",
     )
     special_full = 8, "there are more special points on the branches of the row than the file holds"
 
@@ -125,7 +125,7 @@ def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
 
 
 def _undecided(name: str, values: Array) -> str:
-    """Message on places of a row whose stable states the cycles leave undecided; may be empty. values: (n,)."""
+    """Message on values whose stable states the cycles of a row leave undecided; may be empty. values: (n,)."""
     if not len(values):
         return ""
     places = counted(len(values), "place")
