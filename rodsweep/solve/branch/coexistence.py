@@ -125,7 +125,7 @@ def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
 
 
 def _undecided(name: str, values: Array) -> str:
-    """Message on values whose stable states the cycles of a row leave undecided; may be empty. values: (n,)."""
+    """Message on values at which the cycles leave the stable states undecided; may be empty. values: (n,)."""
     if not len(values):
         return ""
     places = counted(len(values), "place")
