@@ -58,12 +58,19 @@ def _noise_by_roots(
     squares: (M, P^2, u, v). apart: u - v. of_u, of_v: functions of the roots. results: (s, d). blurs:
     exp(-S), rounding errors of M and P^2. Errors are in units of a relative rounding error.
     """
-    M, square, u, v = modulus(squares[0]), modulus(squares[1]), modulus(squares[2]), modulus(squares[3])
+    M = modulus(squares[0])
+    square = modulus(squares[1])
+    u = modulus(squares[2])
+    v = modulus(squares[3])
     s = modulus(results[0])
     d = modulus(results[1])
     one, blur_M, blur_square = blurs
-    c1, f1, g1 = modulus(of_u.cosh), modulus(of_u.sinhc), modulus(of_u.slope)
-    c2, f2, g2 = modulus(of_v.cosh), modulus(of_v.sinhc), modulus(of_v.slope)
+    c1 = modulus(of_u.cosh)
+    f1 = modulus(of_u.sinhc)
+    g1 = modulus(of_u.slope)
+    c2 = modulus(of_v.cosh)
+    f2 = modulus(of_v.sinhc)
+    g2 = modulus(of_v.slope)
     per_root = 1 / modulus(apart)
     blur_u = (u * blur_M + blur_square) * per_root + u
     blur_v = (v * blur_M + blur_square) * per_root + v
@@ -235,7 +242,8 @@ def by_series(
         three = plus * three + last
         four = minus * four + three
         last = pair
-        power_plus, power_minus = plus * power_plus, minus * power_minus
+        power_plus = plus * power_plus
+        power_minus = minus * power_minus
         pair = minus * pair + power_plus
         s += factor * (power_plus + power_minus)
     noise_s = size * (1 + blur_M / 10 + blur_square / 80)

@@ -28,10 +28,15 @@ class PageContents:
     """
 
     def __init__(self, changed: Changed, loaded: Callable[[str], None]):
-        widgets, texts = sheet("widgets.css"), sheet("text.css")
+        widgets = sheet("widgets.css")
+        texts = sheet("text.css")
         self.controls = Controls(changed, widgets)
-        self.spectrum, self.mode, self.growth = SpectrumPicture(), ModePicture(), GrowthPicture()
-        self.beating, self.branches, self.diagram = BeatingPicture(), BranchPicture(), DiagramPicture()
+        self.spectrum = SpectrumPicture()
+        self.mode = ModePicture()
+        self.growth = GrowthPicture()
+        self.beating = BeatingPicture()
+        self.branches = BranchPicture()
+        self.diagram = DiagramPicture()
         self.numbers = NumbersTable()
         self.working = Div(name="working", css_classes=["working"], stylesheets=[texts])
         self.sharing = Sharing(self.cards, loaded)
@@ -77,8 +82,10 @@ class PageContents:
         at = F * load_axis(state).factor
         self.growth.move_point(at)
         self.branches.move_point(at)
-        load, second = SCALES[state.tab][state.load], SCALES[state.tab][state.second]
-        x, y = load.value(state.values[state.load]), second.value(state.values[state.second])
+        load = SCALES[state.tab][state.load]
+        second = SCALES[state.tab][state.second]
+        x = load.value(state.values[state.load])
+        y = second.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.sharing.show(state)

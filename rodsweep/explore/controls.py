@@ -19,7 +19,8 @@ class Field:
     """A text field with a slider. A change of either calls `changed(name, text)`."""
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
-        self.scale, self.changed = scale, changed
+        self.scale = scale
+        self.changed = changed
         start, end = scale.ends
         self.text = TextInput(
             title=scale.label, name=f"{scale.name}_field", sizing_mode="stretch_width", stylesheets=sheets

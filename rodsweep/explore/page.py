@@ -35,7 +35,9 @@ class Page:
     def __init__(
         self, document: Document, solvers: Solvers, state: PageState, stored: dict[str, Any] | None = None
     ):
-        self.document, self.solvers, self.state = document, solvers, state
+        self.document = document
+        self.solvers = solvers
+        self.state = state
         self.session = f"page-{id(self)}"
         self.is_open = True
         self.solving: set[str] = set()
@@ -168,7 +170,8 @@ class Page:
         if event.x is None or event.y is None or event.y <= 0:
             return
         scales = SCALES[self.state.tab]
-        load, second = self.state.load, self.state.second
+        load = self.state.load
+        second = self.state.second
         self.change({load: scales[load].text(event.x), second: scales[second].text(event.y)})
 
     def _move_load(self, event: Tap) -> None:

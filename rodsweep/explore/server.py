@@ -44,7 +44,8 @@ class ExploreServer:
     """
 
     def __init__(self, state: PageState, stored: dict[str, Any] | None = None, port: int = 0):
-        self.state, self.stored = state, stored
+        self.state = state
+        self.stored = stored
         sockets = _bound(port)
         self.port: int = sockets[0].getsockname()[1]
         self.solvers = Solvers()

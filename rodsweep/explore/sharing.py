@@ -33,7 +33,8 @@ class Sharing:
     def __init__(self, cards: Sequence[Card], loaded: Callable[[str], None]):
         self._loaded = loaded
         self._state = PageState()
-        widgets, texts = sheet("widgets.css"), sheet("text.css")
+        widgets = sheet("widgets.css")
+        texts = sheet("text.css")
         self.address, self.yaml, self.python = (
             Div(name=name, tags=[""], sizing_mode="stretch_width", stylesheets=[texts])
             for name in ("address", "yaml", "python")

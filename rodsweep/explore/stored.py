@@ -65,7 +65,8 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
         )
     texts = dict(ARM)
     for name in ARM.keys() & given.keys():
-        scale, values = SCALES["arm"][name], given[name].array()
+        scale = SCALES["arm"][name]
+        values = given[name].array()
         texts[name] = scale.text(scale.factor * float(values[len(values) // 2]))
     return PageState(tab="arm", arm=texts, law=_law(config, path))
 

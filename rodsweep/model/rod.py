@@ -43,7 +43,8 @@ class Coefficients(NamedTuple):
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
     """The coefficients for parameter values by name: floats, or arrays (n,) for n rods. Checks no range."""
     own = scaled(values)
-    F, k1 = own["F"], own["k1"]
+    F = own["F"]
+    k1 = own["k1"]
     return Coefficients(F, _compression(F, k1), 1 / own["k2"], own["gamma3"])
 
 

@@ -72,7 +72,8 @@ def report_on(arm: SlenderArm) -> ArmReport:
     planes = with_load(planes_of(arm))
     first = planes.first
     assessment = Assessment(first.arm, first.found)
-    checks, applies = checks_of(assessment), assessment.of_verdict < Validity.does_not_apply
+    checks = checks_of(assessment)
+    applies = assessment.of_verdict < Validity.does_not_apply
     above = tuple(check for check in checks if applies and check.doubts_the_verdict)
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:

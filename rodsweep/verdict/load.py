@@ -39,7 +39,8 @@ class Load:
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
-        given, si = getattr(arm, self.name), UNITS[self.name][0]
+        given = getattr(arm, self.name)
+        si = UNITS[self.name][0]
         self.unit = (
             unit_of(given, si) if given is not None else compact(FLUTTER_ABOUT * arm.load_scale, si)[1]
         )

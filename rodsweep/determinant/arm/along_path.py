@@ -57,7 +57,10 @@ class ArmAlongPath:
         for _ in range(2 * MAX_NEWTON_STEPS):
             here = self.determinant(p)
             value = here.value(complex(x, 0.0))
-            D, D_w, S, noise = value.D.real, value.D_w.real, value.S, value.noise
+            D = value.D.real
+            D_w = value.D_w.real
+            S = value.S
+            noise = value.noise
             D_ww = second_derivative(complex(x, 0.0), S, here).real
             stencil, k = self._stencil(p, JACOBIAN_STEP * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]

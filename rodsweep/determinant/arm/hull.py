@@ -56,7 +56,8 @@ class Hull(NamedTuple):
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """(max Re w, max |Im w|) of the eigenvalues with Re w >= -depth, depth >= 0."""
-        a, b = self.a, 1 - self.c
+        a = self.a
+        b = 1 - self.c
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
         pad = 0.01 * depth + 1e-6
@@ -85,7 +86,8 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
         support = a * a * (1 + T) * (1 + T) / (4 * (b - c * T))
         distance = (w.real + T * w.imag - support) / size
         if distance > best:
-            best, normal = distance, complex(1 / size, T / size)
+            best = distance
+            normal = complex(1 / size, T / size)
     return best, normal
 
 

@@ -121,7 +121,8 @@ def _inverse_of_moments(F: float, local: Array, h: float, Q: Array) -> Array:
 
     local: coefficients at the Gauss points, (6, stages). Q: integrals of `gauss_method`, (stages, stages).
     """
-    c3, g = local[2], local[5]
+    c3 = local[2]
+    g = local[5]
     stages = len(Q)
     system = np.zeros((stages, stages))
     for i in range(stages):

@@ -31,7 +31,8 @@ Mask = NDArray[np.bool_]
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
     """D'' exp(-S) at w, by a central difference of D'; real for real w."""
     h = SECOND_STEP * abs(w)
-    after, before = determinant.value(w + h), determinant.value(w - h)
+    after = determinant.value(w + h)
+    before = determinant.value(w - h)
     second = (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
     return complex(second.real, 0.0) if w.imag == 0 else second
 
@@ -79,7 +80,8 @@ def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, co
     """
     D, D_w, S, _ = determinant.value(middle)
     if middle.imag == 0:
-        D, D_w = complex(D.real, 0.0), complex(D_w.real, 0.0)
+        D = complex(D.real, 0.0)
+        D_w = complex(D_w.real, 0.0)
     second = second_derivative(middle, S, determinant)
     if second == 0:
         return middle, middle
@@ -103,10 +105,13 @@ def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: flo
         guess = complex(first[i])
         wave[i] = determinant.wave_number(guess)
         if wave[i] <= most_waves:
-            error[i], length[i] = root_error(guess, determinant), determinant.length(guess)
+            error[i] = root_error(guess, determinant)
+            length[i] = determinant.length(guess)
     near = inside & (wave <= most_waves) & (error <= CLOSE_ROOTS * length)
     chosen = np.flatnonzero(near)
-    start, error, length = first[chosen], error[chosen], length[chosen]
+    start = first[chosen]
+    error = error[chosen]
+    length = length[chosen]
     w, moved = _separated(start, error, determinant)
     stands = moved | (error <= A_ROOT * length)
     _refine(w, start, moved, stands, determinant)

@@ -30,7 +30,8 @@ def _applied(polynomial: Array, z: complex, Q: Complex, T: Complex, out_Q: Compl
             out_Q[i, k] = 0.0
             out_T[i, k] = 0.0
         for j in range(4):
-            value, slope = complex(polynomial[terms - 1, i, j]), 0j
+            value = complex(polynomial[terms - 1, i, j])
+            slope = 0j
             for n in range(terms - 2, -1, -1):
                 slope = slope * z + value
                 value = value * z + polynomial[n, i, j]

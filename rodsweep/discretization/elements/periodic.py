@@ -66,7 +66,10 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
             factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
             if factor == 0:
                 continue
-            S, iS, D, iD = 0.0, 0.0, 0.0, 0.0
+            S = 0.0
+            iS = 0.0
+            D = 0.0
+            iD = 0.0
             for j in range(nodes):
                 S += cos[j] * f[a, j]
                 iS -= sin[j] * f[a, j]
@@ -127,7 +130,8 @@ def sampled_columns(c: Complex, count: int) -> Array:
             sin[k] = turns[1, at[k]]
             at[k] += steps[k] if at[k] + steps[k] < count else steps[k] - count
         for a in range(columns):
-            same, other = 0.0, 0.0
+            same = 0.0
+            other = 0.0
             for k in range(odd):
                 same += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
             for k in range(odd, harmonics):

@@ -36,7 +36,8 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
         if np.abs(step).max() < NODE_TOLERANCE:
             break
     x = (x - x[::-1]) / 2
-    x[0], x[-1] = -1.0, 1.0
+    x[0] = -1.0
+    x[-1] = 1.0
     return x, 2 / (p * (p + 1) * _legendre_pair(p, x)[0] ** 2)
 
 

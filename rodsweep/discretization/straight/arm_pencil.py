@@ -136,7 +136,9 @@ class ArmPencil:
 
         Entries of the clamp have an index beyond the pattern.
         """
-        n, size, y = self.nodes, self.unknowns, self._y
+        n = self.nodes
+        size = self.unknowns
+        y = self._y
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.elements, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]

@@ -51,7 +51,8 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     """Smallest and largest of values, (n,), with a relative margin; (-1, 1) without values."""
     if len(values) == 0:
         return -1.0, 1.0
-    low, high = float(values.min()), float(values.max())
+    low = float(values.min())
+    high = float(values.max())
     pad = margin * ((high - low) or abs(high) or 1.0)
     return low - pad, high + pad
 

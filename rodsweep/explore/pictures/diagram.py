@@ -41,7 +41,8 @@ def edges(values: Array) -> Array:
 def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Cells of a grid; x: (columns,), y: (rows,), counts: (rows, columns)."""
     sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
-    levels, found = edges(y), []
+    levels = edges(y)
+    found = []
     for row, line in enumerate(counts):
         start = 0
         for count, group in groupby(map(int, line)):
@@ -88,7 +89,8 @@ class DiagramPicture:
 
     def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
         """Draws an answer to the question `diagram`, in the units of the scales."""
-        x, y = found["x"] * load.factor, found["y"] * second.factor
+        x = found["x"] * load.factor
+        y = found["y"] * second.factor
         grid = cells(x, y, found["unstable_count"])
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [shade(cell.unstable) for cell in grid]
@@ -104,7 +106,8 @@ class DiagramPicture:
         figure = self.card.figure
         figure.x_range.update(start=float(x[0]), end=float(x[-1]))
         figure.y_range.update(start=float(grid[0].bottom), end=float(grid[-1].top))
-        figure.xaxis.axis_label, figure.yaxis.axis_label = load.label, second.label
+        figure.xaxis.axis_label = load.label
+        figure.yaxis.axis_label = second.label
         self.card.reveal()
 
     def _show_curves(self, found: dict[str, Any]) -> None:

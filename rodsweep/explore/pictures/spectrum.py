@@ -24,12 +24,14 @@ class SpectrumPicture:
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws an answer of the task spectrum."""
-        growth, frequency = found["growth_rate"], found["frequency"]
+        growth = found["growth_rate"]
+        frequency = found["frequency"]
         known = np.isfinite(growth)
         if not known.any():
             self.card.say(sentence_of(found))
             return
-        growth, frequency = growth[known], frequency[known]
+        growth = growth[known]
+        frequency = frequency[known]
         colours = np.where(growth > 0, UNSTABLE, STABLE)
         self.source.data = {"growth": growth, "frequency": frequency, "colour": colours}
         figure = self.card.figure
@@ -66,7 +68,8 @@ class ModePicture:
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws the leading mode of an answer of the task spectrum."""
-        real, imaginary = found["Y_real"][0], found["Y_imag"][0]
+        real = found["Y_real"][0]
+        imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():
             self.card.say(sentence_of(found))
             return

@@ -49,7 +49,8 @@ class SolverProcess:
     """One solver process, started by the first question, and restarted after it was killed."""
 
     def __init__(self, patience: Patience | None = None, niceness: int = 0):
-        self.patience, self.niceness = patience or Patience(), niceness
+        self.patience = patience or Patience()
+        self.niceness = niceness
         self.waiting: dict[Key, tuple[Question, Done]] = {}
         self.asked: tuple[Key, Done] | None = None
         self.number = 0
@@ -123,7 +124,8 @@ class SolverProcess:
         question, done = self.waiting.pop(key)
         self.start()
         assert self._connection is not None
-        self.asked, self.since = (key, done), time.monotonic()
+        self.asked = (key, done)
+        self.since = time.monotonic()
         self.number += 1
         self._connection.send(question)
 
@@ -137,7 +139,8 @@ class SolverProcess:
         if reply.outcome == "ready":
             self.is_ready = True
             return
-        asked, self.asked = self.asked, None
+        asked = self.asked
+        self.asked = None
         if asked is not None and reply.outcome != "cancelled":
             asked[1](reply)
         if self.asked is None:

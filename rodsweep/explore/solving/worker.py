@@ -60,20 +60,25 @@ def reply_to(question: Question, cancellation: Cancellation) -> Reply:
     try:
         try:
             cancellation.is_solving = True
-            outcome, content = "answer", answer_to(question)
+            outcome = "answer"
+            content = answer_to(question)
         finally:
             cancellation.is_solving = False
             signal.setitimer(signal.ITIMER_REAL, 0)  # a pending alarm would cancel the next question
     except KeyboardInterrupt:
-        outcome, content = "cancelled", {}
+        outcome = "cancelled"
+        content = {}
     except Refusal as error:
-        outcome, content = "refused", {"sentence": str(error)}
+        outcome = "refused"
+        content = {"sentence": str(error)}
     except Exception as error:
         if cancellation.is_due:  # a library converted the interrupt to another exception
-            outcome, content = "cancelled", {}
+            outcome = "cancelled"
+            content = {}
         else:  # a bug: the page shows a sentence, and the process lives on
             traceback.print_exc()
-            outcome, content = "failed", {"sentence": f"this is a bug of rodsweep: {error!r}"}
+            outcome = "failed"
+            content = {"sentence": f"this is a bug of rodsweep: {error!r}"}
     return Reply(outcome, content, time.perf_counter() - started)
 
 

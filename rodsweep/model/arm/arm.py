@@ -68,7 +68,8 @@ class SlenderArm:
         object.__setattr__(self, "pieces", segments_of(texts or ()))
         refuse_words(self)
         refuse_other_sets(self)
-        self.si.length, self.si.young = self.shape.length, self.shape.base.young
+        self.si.length = self.shape.length
+        self.si.young = self.shape.base.young
         refuse_misfits(self)
         refuse_crushed(self)
 

@@ -79,7 +79,8 @@ class Shape:
         if self.taper != 1:
             return self._logarithms(drag)
         ends = [0.0, *(each.end for each in self.stations)]
-        u, rows = list[float](), list[tuple[float, ...]]()
+        u = list[float]()
+        rows = list[tuple[float, ...]]()
         for start, station in zip(ends, self.stations, strict=False):
             row = self._factors(station, poisson, drag)
             if rows and rows[-1] == row:
@@ -94,7 +95,8 @@ class Shape:
         pieces = max(2, ceil(abs(log(self.taper)) / log(RADIUS_STEP)))
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
-        base, rows = self.drags(self.base, 1.0)[drag], list[tuple[float, ...]]()
+        base = self.drags(self.base, 1.0)[drag]
+        rows = list[tuple[float, ...]]()
         for radius in (radii * self.base.section.drag_radius).tolist():
             own = range_of_drag(1.0, self.length, radius, radius)[drag]
             factors = {"gamma1": own.axial / base.axial, "gamma2": own.across / base.across}

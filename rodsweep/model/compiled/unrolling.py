@@ -51,7 +51,8 @@ class OverAlgebra(Generic[P, R]):
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
         first = definition.args.args.pop(0).arg
-        definition.decorator_list, definition.returns = [], None
+        definition.decorator_list = []
+        definition.returns = None
         for argument in definition.args.args:
             argument.annotation = None
         namespace = {"__name__": self.function.__module__}
@@ -86,7 +87,8 @@ class _Writer(ast.NodeVisitor):
     """Rewrites statements and expressions with the constants in `known`; the original tree is unchanged."""
 
     def __init__(self, known: Mapping[str, Any], shared: _Shared) -> None:
-        self.known, self.shared = known, shared
+        self.known = known
+        self.shared = shared
 
     def visit(self, node: ast.AST) -> Any:
         reads = isinstance(node, ast.expr) and not isinstance(getattr(node, "ctx", None), ast.Store)
@@ -121,11 +123,13 @@ class _Writer(ast.NodeVisitor):
         return self.visit(node.body if self._value(node.test) else node.orelse)
 
     def visit_Assign(self, node: ast.Assign) -> Any:
-        target, value = node.targets[0], node.value
+        target = node.targets[0]
+        value = node.value
         if not (isinstance(value, ast.ListComp) and isinstance(target, ast.Name)):
             return self.generic_visit(node)
         self.shared.lists.add(target.id)
-        loop, written = value.generators[0], []
+        loop = value.generators[0]
+        written = []
         for place, item in enumerate(self._value(loop.iter)):
             name = ast.copy_location(ast.Name(f"{target.id}_{place}", ast.Store()), target)
             one = ast.copy_location(ast.Assign([name], value.elt), node)

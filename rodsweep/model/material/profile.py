@@ -56,7 +56,8 @@ class Profile:
     @cached_property
     def _pieces(self) -> Array:
         """Values and slopes at both ends of each piece, (pieces, factors, 4)."""
-        u, rows = np.array(self.u), np.array(self.rows)
+        u = np.array(self.u)
+        rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
         pieces = []
         for part in np.split(np.arange(len(u)), jumps):
