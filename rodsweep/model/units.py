@@ -2,7 +2,7 @@
 
 import math
 import re
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +20,8 @@ OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/
 TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 LONGEST_UNIT = 40
 """Characters of a unit."""
+KEPT_UNITS = 1000
+"""Number of conversions that are remembered; a config has some ten."""
 COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units that users often write with different blanks or capital letters."""
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
@@ -93,7 +95,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
     from pint.errors import PintError
 
     try:
-        return float(units.Quantity(1.0, written).to(unit).magnitude)
+        return _ratio(written, unit)
     except PintError as error:
         known = "from" in str(error)  # "Cannot convert from ..."
         why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
@@ -104,6 +106,12 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         raise InputError(
             f"{subject} has the unit '{written}', which is not understood; write {allowed}"
         ) from error
+
+
+@lru_cache(KEPT_UNITS)
+def _ratio(written: str, unit: str) -> float:
+    """How many `unit` one `written` is; else raises what pint raises. All points of a sweep ask the same."""
+    return float(registry().Quantity(1.0, written).to(unit).magnitude)
 
 
 def _meant(written: str, unit: str) -> str:

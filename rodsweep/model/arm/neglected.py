@@ -47,8 +47,9 @@ FLUTTER_WAVENUMBER = 4.694
 """Wavenumber times length of the second bending shape of a clamped rod, as which an arm flutters."""
 LEAST_S = 1e-6
 """Frequency of the flow, in eta k^2/rho, below which rounding would hide its phase of 1e-6."""
-BISECTIONS = 60
-"""Halvings of an interval of ln s of width 20 to 30, down to rounding error."""
+SECTIONS, SECTIONINGS = 64, 10
+"""Parts into which an interval of ln s of width 20 to 30 is cut, and how often: 2^60 parts, down to rounding
+error, by few calls on arrays."""
 HALF_LENGTH = 0.5
 """Amplitude of the tip over the length of the arm in wide beating."""
 
@@ -177,14 +178,12 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 
 def _frequency_of_phase(phase: float, logarithm: float) -> float:
-    """The s at which `unsteady_phase` is as large as `phase`, below pi/2, by bisection of ln s."""
+    """The s at which `unsteady_phase` is as large as `phase`, below pi/2, by sections of ln s."""
     low, high = log(LEAST_S), 2 * logarithm  # there the real part of the mobility is -1/2
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        if unsteady_phase(exp(middle), logarithm) < phase:
-            low = middle
-        else:
-            high = middle
+    for _ in range(SECTIONINGS):
+        edges = np.linspace(low, high, SECTIONS + 1)
+        below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
+        low, high = float(edges[below]), float(edges[below + 1])
     return exp(high)
 
 
