@@ -64,6 +64,12 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     return found
 
 
+def _of_flutter(record: Record) -> ArmMotion:
+    """Motion at the onset of flutter, which is stored even if the list of crossings has no room for it."""
+    frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
+    return ArmMotion(np.abs(frequency), F)
+
+
 def _of_cycle(record: Record) -> ArmMotion:
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
@@ -77,7 +83,7 @@ def _of_branches(record: Record) -> ArmMotion:
 MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
     "spectrum": _of_modes,
     "modes": _of_modes,
-    "thresholds": _of_hopf_point("crossing_F"),
+    "thresholds": _of_flutter,
     "criticality": _of_hopf_point("crossing_F"),
     "phase_diagram": _of_hopf_point("crossing_at"),
     "limit_cycle": _of_cycle,
