@@ -1,5 +1,6 @@
 """The command `arm`: prints the numbers and the verdict of an arm in SI units."""
 
+import re
 from typing import Any
 
 from rich.console import Console
@@ -23,13 +24,20 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
     try:
         report = report_on(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
     except InputError as error:
-        raise InputError(f"--{_as_option(str(error))}") from None
+        raise InputError(_as_options(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)
     for line, kind in report.lines():
         console.print(line, markup=False, style=STYLES.get(kind, ""))
 
 
-def _as_option(sentence: str) -> str:
-    """A sentence that begins with a quantity's name, with the name of the option instead."""
-    name = next((name for name in (*UNITS, "segments") if sentence.startswith(name)), "")
-    return name.replace("_", "-").replace("segments", "segment") + sentence[len(name) :]
+NAMES = "|".join((*UNITS, "segments"))
+NAMED = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
+"""A quantity at the beginning of a sentence, or the second of two that are given."""
+
+
+def _as_options(sentence: str) -> str:
+    """A sentence with the names of options in place of those of quantities."""
+    named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence).replace(
+        "--segments", "--segment"
+    )
+    return named if named.startswith("--") else f"--{named}"

@@ -160,8 +160,8 @@ class PhaseDiagramConfig(LinearConfig):
         long, names = self.plane, words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
         if len(long) != 2:
             raise ValueError(
-                f"parameters has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-                f"phase diagram needs exactly two of {names}"
+                f"parameters has {len(long)} {'axis' if len(long) == 1 else 'axes'} with more than one value "
+                f"({', '.join(long) or 'none'}); a phase diagram needs exactly two of {names}"
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):

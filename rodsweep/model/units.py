@@ -2,7 +2,7 @@
 
 import math
 import re
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +22,8 @@ TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 """Matches the start of a power of a power, which pint would evaluate."""
 LONGEST_UNIT = 40
 """Largest number of characters of a unit."""
+KEPT_UNITS = 1000
+"""Number of conversions that are remembered; a config has some ten."""
 COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units to suggest for a text that differs in blanks or capital letters."""
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
@@ -102,7 +104,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
     from pint.errors import PintError
 
     try:
-        return float(units.Quantity(1.0, written).to(unit).magnitude)
+        return _ratio(written, unit)
     except PintError as error:
         known = "from" in str(error)  # "Cannot convert from ..."
         why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
@@ -113,6 +115,12 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         raise InputError(
             f"{subject} has the unit '{written}', which is not understood; write {allowed}"
         ) from error
+
+
+@lru_cache(KEPT_UNITS)
+def _ratio(written: str, unit: str) -> float:
+    """Number of `unit` in one `written`, cached for the points of a sweep; raises the errors of pint."""
+    return float(registry().Quantity(1.0, written).to(unit).magnitude)
 
 
 def _meant(written: str, unit: str) -> str:

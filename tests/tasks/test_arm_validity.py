@@ -47,6 +47,14 @@ def test_each_point_has_the_worst_of_what_is_left_out():
     assert set(data.model_applies.values.tolist()) == {Validity.doubtful, Validity.does_not_apply}
 
 
+def test_a_short_list_of_crossings_hides_no_effect():
+    """The onset alone was in the list, and the arm was judged at rest."""
+    arm = SILICONE | {"length": "10 cm"}
+    short, whole = (rs.sweep("thresholds", arm=arm, crossings=count, progress=False) for count in (1, 8))
+    for name in ("model_applies", "neglected_effect", "neglected_excess"):
+        assert short[name].item() == whole[name].item()
+
+
 @pytest.mark.parametrize(
     ("task", "more"),
     [("spectrum", {"modes": 4}), ("modes", {"nodes": 9}), ("limit_cycle", {"accuracy": 1e-3})],

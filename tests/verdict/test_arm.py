@@ -252,7 +252,7 @@ def test_command_prints_verdict_numbers_and_checks(command):
         (["--radius", "5 foo"], "--radius = '5 foo' has the unknown unit 'foo'"),
         (["--fluid-density", "1"], "--fluid-density = '1' has no unit"),
         (["--poisson", "2"], "--poisson = 2.0 is not"),
-        (["--force", "1 N"], "--pressure = '2 kPa' and force = '1 N' are both given"),
+        (["--force", "1 N"], "--pressure = '2 kPa' and --force = '1 N' are both given"),
     ],
 )
 def test_command_refuses_in_one_sentence(command, words, sentence):

@@ -225,13 +225,6 @@ class ArmSection(Strict):
         for values in product(*(self.given[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
-    def arm_at(self, number: int) -> SlenderArm:
-        """Arm of one section, without load; `number` counts in row-major order of the section's axes."""
-        axes = {name: axis.array() for name, axis in self.given.items() if name in SECTION}
-        places = np.unravel_index(number, [len(column) for column in axes.values()])
-        values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
-        return self.made(values)
-
     def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
         """Arm with the given values of its quantities, with its load or without; ValueError for invalid
         values.

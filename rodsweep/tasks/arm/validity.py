@@ -64,6 +64,12 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     return found
 
 
+def _of_flutter(record: Record) -> ArmMotion:
+    """Motion at the onset of flutter, which is stored even if the list of crossings has no room for it."""
+    frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
+    return ArmMotion(np.abs(frequency), F)
+
+
 def _of_cycle(record: Record) -> ArmMotion:
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
@@ -77,7 +83,7 @@ def _of_branches(record: Record) -> ArmMotion:
 MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
     "spectrum": _of_modes,
     "modes": _of_modes,
-    "thresholds": _of_hopf_point("crossing_F"),
+    "thresholds": _of_flutter,
     "criticality": _of_hopf_point("crossing_F"),
     "phase_diagram": _of_hopf_point("crossing_at"),
     "limit_cycle": _of_cycle,
@@ -96,7 +102,7 @@ class ArmValidity:
         sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
-        self.arm = lru_cache(ARMS_KEPT)(self.section.arm_at)
+        self.arm = lru_cache(ARMS_KEPT)(_arm_of_number(self.section))
 
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
         """The variables of VALIDITY for a point, or for n points of one arm; records (n, ...), result
@@ -169,3 +175,18 @@ class ArmValidity:
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])
+
+
+def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
+    """Function from a number to the arm of one of the sections, without load.
+
+    Numbers count in row-major order of the section's axes, which are made once: a point must not take the
+    time of an axis.
+    """
+    axes = {name: axis.array() for name, axis in section.given.items() if name in SECTION}
+
+    def arm(number: int) -> SlenderArm:
+        places = np.unravel_index(number, [len(column) for column in axes.values()])
+        return section.made({name: float(axes[name][i]) for name, i in zip(axes, places, strict=True)})
+
+    return arm
