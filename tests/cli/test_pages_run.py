@@ -25,8 +25,13 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
 
+ERROR = re.compile(r" \(\+- [^)]*\)")
+"""An error estimate beside a number, of which rounding decides."""
+
+
 def alike(said, come):
     """Whether a line is as the page says, but for the last digits; `...` at its end stands for more."""
+    said, come = ERROR.sub("", said), ERROR.sub("", come)
     begins = said.removesuffix("...")
     words = [" ".join(NUMBER.sub("#", text).split()) for text in (begins, come)]
     if not (words[1].startswith(words[0]) if begins != said else words[0] == words[1]):
@@ -131,6 +136,8 @@ def test_a_line_that_does_not_come_is_seen():
     assert missing(["...", "b 3", "..."], come) == "b 3"
     assert missing(["a...", "b 2.0...", "c"], come) is None
     assert missing(["a...", "b 3...", "c"], come) == "b 3..."
+    assert missing(["a 1 (+- 2e-13)"], ["a 1 (+- 3e-13)"]) is None
+    assert missing(["a 2 (+- 2e-13)"], ["a 1 (+- 2e-13)"]) == "a 2 (+- 2e-13)"
     assert missing(["a 1"], come) == "nothing, but there is 'b 2.0001'"
 
 
