@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 
 from ...arrays import Array
-from ...model.compiled.compilation import compiled
+from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.material.build import LocalCoefficients
 
 STAGES = 12
@@ -43,14 +43,14 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 
 def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: float) -> Array:
-    """The coefficients of Phi in powers of w/W, shape (elements, terms, 4, 4).
+    """The coefficients of Phi in powers of w/W, shape (elements, terms, 16): each Phi column by column.
 
-    local: at the Gauss points, each (elements, stages). lengths: of the elements, in L, (elements,).
+    local: at the Gauss points, each (elements, STAGES). lengths: of the elements, in L, (elements,).
     """
-    method = gauss_method(local.nu.shape[1])[1:]
-    terms = np.zeros((len(lengths), MAX_TERMS, 4, 4))
+    _, integrals, weights = gauss_method(STAGES)
+    terms = np.zeros((len(lengths), MAX_TERMS, 16))
     coefficients = np.ascontiguousarray(np.moveaxis(np.array(local), 0, 1))
-    most = _fill_terms((F, W), coefficients, lengths, method, terms)
+    most = _fill_terms((F, W), coefficients, lengths, (np.ascontiguousarray(integrals.T), weights), terms)
     return np.ascontiguousarray(terms[:, :most])
 
 
@@ -58,125 +58,157 @@ def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: f
 def _fill_terms(
     load: tuple[float, float], coefficients: Array, lengths: Array, method: tuple[Array, Array], terms: Array
 ) -> int:
-    """Fills the terms of all elements, (elements, MAX_TERMS, 4, 4); returns how many are needed at most.
+    """Fills the terms of all elements, (elements, MAX_TERMS, 16); returns how many are needed at most.
 
-    load: (F, W). coefficients: in the order of `LocalCoefficients`, (elements, 6, stages). method: integrals
-    and weights of `gauss_method`.
+    load: (F, W). coefficients: in the order of `LocalCoefficients`, (elements, 6, STAGES). method: transposed
+    integrals and weights of `gauss_method`.
     """
     most = 1
     for e in range(len(lengths)):
-        most = max(most, _fill_element(load, coefficients[e], lengths[e], method, terms[e]))
+        h = lengths[e]
+        scaled = h * method[0], h * method[1]
+        most = max(most, _fill_element(load, coefficients[e], scaled, terms[e]))
     return most
 
 
 @compiled
 def _fill_element(
-    load: tuple[float, float], local: Array, h: float, method: tuple[Array, Array], terms: Array
+    load: tuple[float, float], local: Array, method: tuple[Array, Array], terms: Array
 ) -> int:
-    """Fills the terms of one element, (MAX_TERMS, 4, 4); returns how many are needed."""
+    """Fills the terms of one element, (MAX_TERMS, 16); returns how many are needed.
+
+    method: transposed integrals, (STAGES, STAGES), and weights, (STAGES,), times the length of the element.
+    Functions along the element have the shape (4, STAGES): one row for each initial value.
+    """
     F, W = load
     Q, weights = method
     nu, c2, c3, gamma2, gamma3, g = local[0], local[1], local[2], local[3], local[4], local[5]
-    inverse = _inverse_of_moments(F, local, h, Q)
-    stages = len(weights)
-    y, theta, largest = np.zeros((stages, 4)), np.zeros((stages, 4)), 0.0
+    inverse = _inverse_of_moments(F, c3, g, Q)
+    along = np.zeros((10, 4, STAGES))
+    y, theta, push, turn, m = along[0], along[1], along[2], along[3], along[4]
+    s, rise, slopes, loads, moments = along[5], along[6], along[7], along[8], along[9]
+    largest = 0.0
     for n in range(terms.shape[0]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
-        loads, moments = _scaled(W * gamma2, y), _scaled(W * gamma3, theta)
-        push, turn = _integrated(Q, h, loads, 2, start), _integrated(Q, h, moments, 3, start)
-        m = _product(inverse, turn - _integrated(Q, h, _scaled(g, push), 0, 0.0))
-        slopes = _scaled(c3, m)
-        s = push + _integrated(Q, h, F * slopes, 0, 0.0)
-        loads += F * slopes
-        moments -= _scaled(g, s)
-        theta = _integrated(Q, h, slopes, 1, start)
-        rise = _scaled(nu, theta) + _scaled(c2, s)
-        y = _integrated(Q, h, rise, 0, start)
-        size = 0.0
-        for column in range(4):
-            terms[n, 0, column] = h * (weights * rise[:, column]).sum()
-            terms[n, 1, column] = h * (weights * slopes[:, column]).sum()
-            terms[n, 2, column] = h * (weights * loads[:, column]).sum()
-            terms[n, 3, column] = h * (weights * moments[:, column]).sum()
-            terms[n, column, column] += start
-            size = max(size, np.abs(terms[n, :, column]).max())
+        for k in range(4):
+            for i in range(STAGES):
+                loads[k, i] = W * gamma2[i] * y[k, i]
+                moments[k, i] = W * gamma3[i] * theta[k, i]
+        _integrate(Q, loads, 2, start, push)
+        for k in range(4):
+            for i in range(STAGES):
+                s[k, i] = moments[k, i] - g[i] * push[k, i]
+        _integrate(Q, s, 3, start, turn)
+        _integrate(inverse, turn, 0, 0.0, m)
+        for k in range(4):
+            for i in range(STAGES):
+                slopes[k, i] = c3[i] * m[k, i]
+        _integrate(Q, slopes, 1, start, theta)
+        _shear_and_rise((F, start), local, (push, theta, slopes), (s, rise, loads, moments))
+        _integrate(Q, rise, 0, start, y)
+        size = _end_values(weights, (rise, slopes, loads, moments), start, terms[n])
         largest = size if n == 0 else largest
         if size <= NEGLIGIBLE * largest:
             return n + 1
     return len(terms)
 
 
+@compiled_for_vectors
+def _integrate(Q: Array, values: Array, column: int, start: float, out: Array) -> None:
+    """out = the integrals of values, both (4, STAGES), to each stage, plus a start value in one row.
+
+    Q: transposed integrals, (STAGES, STAGES).
+    """
+    for k in range(4):
+        for i in range(STAGES):
+            out[k, i] = start if k == column else 0.0
+        for j in range(STAGES):
+            for i in range(STAGES):
+                out[k, i] += values[k, j] * Q[j, i]
+
+
+@compiled_for_vectors
+def _shear_and_rise(
+    load: tuple[float, float],
+    local: Array,
+    known: tuple[Array, Array, Array],
+    rates: tuple[Array, Array, Array, Array],
+) -> None:
+    """Fills s and y', and completes s' and m', (4, STAGES) all.
+
+    load: (F, start value of theta in its row). known: s without the part by bending, theta, theta'. rates: s,
+    y', and s' and m' as far as they come from the term before.
+    """
+    F, start = load
+    push, theta, slopes = known
+    s, rise, loads, moments = rates
+    for k in range(4):
+        own = start if k == 1 else 0.0
+        for i in range(STAGES):
+            s[k, i] = push[k, i] + F * (theta[k, i] - own)
+            rise[k, i] = local[0, i] * theta[k, i] + local[1, i] * s[k, i]
+            loads[k, i] += F * slopes[k, i]
+            moments[k, i] -= local[5, i] * s[k, i]
+
+
+@compiled_for_vectors
+def _end_values(
+    weights: Array, rates: tuple[Array, Array, Array, Array], start: float, term: Array
+) -> float:
+    """Fills one term, (16,), from the rates (y', theta', s', m'), (4, STAGES); returns its largest entry."""
+    size = 0.0
+    for row in range(4):
+        values = rates[row]
+        for k in range(4):
+            total = start if k == row else 0.0
+            for i in range(STAGES):
+                total += weights[i] * values[k, i]
+            term[4 * k + row] = total
+            size = max(size, abs(total))
+    return size
+
+
 @compiled
-def _inverse_of_moments(F: float, local: Array, h: float, Q: Array) -> Array:
-    """The inverse of 1 + h Q g h Q F c3, which gives m with s eliminated, (stages, stages)."""
-    c3, g = local[2], local[5]
-    stages = len(Q)
-    system = np.zeros((stages, stages))
-    for i in range(stages):
+def _inverse_of_moments(F: float, c3: Array, g: Array, Q: Array) -> Array:
+    """The transposed inverse of 1 + Q g Q F c3, which gives m with s eliminated, (STAGES, STAGES).
+
+    Q: transposed integrals times the length of the element.
+    """
+    system = np.zeros((STAGES, STAGES))
+    for i in range(STAGES):
         system[i, i] = 1.0
-        for k in range(stages):
-            factor = h * h * F * Q[i, k] * g[k]
-            for j in range(stages):
-                system[i, j] += factor * Q[k, j] * c3[j]
-    inverse = np.empty((stages, stages))
+        for k in range(STAGES):
+            for j in range(STAGES):
+                system[i, j] += F * c3[i] * Q[i, k] * g[k] * Q[k, j]
+    inverse = np.empty((STAGES, STAGES))
     _invert(system, inverse)
     return inverse
 
 
-@compiled
-def _scaled(factors: Array, values: Array) -> Array:
-    """Values, (stages, 4), times a factor at each stage, (stages,)."""
-    out = np.empty_like(values)
-    for i in range(len(factors)):
-        for column in range(4):
-            out[i, column] = factors[i] * values[i, column]
-    return out
-
-
-@compiled
-def _product(A: Array, values: Array) -> Array:
-    """A values, shapes (stages, stages) and (stages, 4)."""
-    out = np.zeros_like(values)
-    for i in range(len(A)):
-        for k in range(len(A)):
-            for column in range(4):
-                out[i, column] += A[i, k] * values[k, column]
-    return out
-
-
-@compiled
-def _integrated(Q: Array, h: float, values: Array, column: int, start: float) -> Array:
-    """The integrals of values, (stages, 4), to each stage, plus a start value in one column."""
-    out = _product(Q, h * values)
-    out[:, column] += start
-    return out
-
-
-@compiled
+@compiled_for_vectors
 def _invert(A: Array, inverse: Array) -> None:
-    """Fills `inverse` with that of A, both (n, n), by elimination with pivoting; A is overwritten."""
-    n = len(A)
+    """Fills `inverse` with that of A, both (STAGES, STAGES), by elimination with pivoting; A is overwritten."""
     inverse[:] = 0.0
-    for i in range(n):
+    for i in range(STAGES):
         inverse[i, i] = 1.0
-    for column in range(n):
+    for column in range(STAGES):
         pivot = column
-        for i in range(column + 1, n):
+        for i in range(column + 1, STAGES):
             if abs(A[i, column]) > abs(A[pivot, column]):
                 pivot = i
-        if pivot != column:
-            for j in range(n):
-                A[column, j], A[pivot, j] = A[pivot, j], A[column, j]
-                inverse[column, j], inverse[pivot, j] = inverse[pivot, j], inverse[column, j]
-        for i in range(n):
+        for j in range(STAGES):
+            A[column, j], A[pivot, j] = A[pivot, j], A[column, j]
+            inverse[column, j], inverse[pivot, j] = inverse[pivot, j], inverse[column, j]
+        scale = 1 / A[column, column]
+        for j in range(STAGES):
+            A[column, j] *= scale
+            inverse[column, j] *= scale
+        for i in range(STAGES):
             if i != column:
-                factor = A[i, column] / A[column, column]
-                for j in range(n):
+                factor = A[i, column]
+                for j in range(STAGES):
                     A[i, j] -= factor * A[column, j]
                     inverse[i, j] -= factor * inverse[column, j]
-    for i in range(n):
-        for j in range(n):
-            inverse[i, j] /= A[i, i]
 
 
 @cache
