@@ -32,6 +32,9 @@ SAMPLES = 33
 """Points between two breaks at which the local exponents are looked up."""
 MIN_LEVEL = 2
 """The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
+REUSED = 4
+"""Number of levels above the own one whose elements are used if they exist: to make elements costs as much as
+some thirty evaluations on twice as many."""
 MAX_ELEMENTS = 4000
 KEPT = 16
 """Arms whose propagators are kept."""
@@ -52,12 +55,12 @@ class ArmDeterminant:
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
-        W, polynomials = self._level(abs(w))
+        W, polynomials = self.level(abs(w))
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
         """The number of elements that D takes at |w| = size."""
-        return len(self._level(size)[1])
+        return len(self.level(size)[1])
 
     def wave_number(self, w: complex) -> float:
         """The mean |q| of the fastest exponential along the arm, in 1/L."""
@@ -67,14 +70,16 @@ class ArmDeterminant:
         """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._weights)[1], 1e-300)
 
-    def _level(self, size: float) -> tuple[float, Array]:
-        """(W, propagators) for |w| = size."""
+    def level(self, size: float) -> tuple[float, Array]:
+        """(W, propagators for |w| <= W, (elements, terms, 16)) with W >= size, of the next levels that exist."""
         level = MIN_LEVEL
         if size > 4.0**MIN_LEVEL:
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)
-        if level not in self._levels:
-            W = max(4.0**level, size)
-            self._levels[level] = W, self._propagators(W)
+        for existing in range(level, level + REUSED + 1):
+            if existing in self._levels:
+                return self._levels[existing]
+        W = max(4.0**level, size)
+        self._levels[level] = W, self._propagators(W)
         return self._levels[level]
 
     def _propagators(self, W: float) -> Array:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...determinant.arm.completeness import none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
@@ -68,6 +69,10 @@ class TransverseProblem(ABC):
     @abstractmethod
     def count(self, line: float) -> Count:
         """The number of eigenvalues with Re w > line."""
+
+    def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
+        """(whether a proof without a count says that all right of a line <= 0 are found, evaluations of D)."""
+        return False, 0
 
     @abstractmethod
     def fields(self, mesh: Any, vectors: Complex) -> tuple[Complex, Complex]:
@@ -147,6 +152,9 @@ class ArmProblem(TransverseProblem):
 
     def count(self, line: float) -> Count:
         return count_of_arm(line, self._determinant, self._hull)
+
+    def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
+        return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
 
     def fields(self, mesh: ArmMesh, vectors: Complex) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k), of vectors of the last solve, (unknowns, k)."""
