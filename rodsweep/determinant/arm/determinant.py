@@ -8,6 +8,7 @@ points resolve the coefficients; a break of the profile is always an end of an e
 import cmath
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,12 +47,8 @@ class ArmDeterminant:
     def __init__(self, rod: Rod):
         self.rod = rod
         self._levels: dict[int, tuple[float, Array]] = {}
-        breaks = rod.build.breaks
-        inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        self._points: Array = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
-        self._weights: Array = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
-        self._local = rod.local(self._points)
-        self._sampled: Array = np.array(self._local)
+        self._samples = samples_of([rod])
+        self._sampled: Array = np.array(self._samples.local[0])
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -64,11 +61,11 @@ class ArmDeterminant:
 
     def wave_number(self, w: complex) -> float:
         """The mean |q| of the fastest exponential along the arm, in 1/L."""
-        return mean_waves(w, self.rod.F, self._sampled, self._weights)[0]
+        return mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[0]
 
     def length(self, w: complex) -> float:
         """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
-        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._weights)[1], 1e-300)
+        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
 
     def level(self, size: float) -> tuple[float, Array]:
         """(W, propagators for |w| <= W, (elements, terms, 16)) with W >= size, of the next levels that exist."""
@@ -83,36 +80,70 @@ class ArmDeterminant:
         return self._levels[level]
 
     def _propagators(self, W: float) -> Array:
-        edges = self._edges(W)
-        points, _, _ = gauss_method(STAGES)
-        for _ in range(MAX_HALVINGS):
-            if not len(edges) <= MAX_ELEMENTS:
-                break
-            lengths = np.diff(edges)
-            local = self.rod.local(edges[:-1, None] + lengths[:, None] * points)
-            coarse = tail_of(local) > RESOLVED
-            if not coarse.any():
-                return element_propagators(self.rod.F, local, lengths, W)
-            middles = (edges[:-1] + edges[1:])[coarse] / 2
-            edges = np.sort(np.append(edges, middles))
-        raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
+        found = elements_for([self.rod], self._samples, W)
+        return element_propagators(self.rod.F, found.local[0], found.lengths, W)
 
-    def _edges(self, W: float) -> Array:
-        """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
-        density = bound_of_waves(W, self.rod.F, self._local) / LONGEST
-        if self.rod.taper != 1:
-            apex = 1 / (1 - self.rod.taper)
-            density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - self._points)))
-        edges = [np.zeros(1)]
-        breaks = self.rod.build.breaks
-        shares = np.split(density, len(breaks) - 1)
-        for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
-            mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
-            count = max(1, math.ceil(mass[-1]))
-            places = np.linspace(start, stop, SAMPLES + 1)
-            edges.append(np.interp(np.linspace(0, mass[-1], count + 1)[1:], mass, places))
-            edges[-1][-1] = stop
-        return np.concatenate(edges)
+
+class Samples(NamedTuple):
+    """Points between the breaks of arms, the length that each stands for, and the arms' coefficients there."""
+
+    points: Array
+    weights: Array
+    local: list[LocalCoefficients]
+
+
+class PropagatorElements(NamedTuple):
+    """Lengths of elements, (elements,), and coefficients of arms at their Gauss points, (elements, STAGES)."""
+
+    lengths: Array
+    local: list[LocalCoefficients]
+
+
+def samples_of(rods: list[Rod]) -> Samples:
+    """Samples of arms with equal breaks."""
+    breaks = rods[0].build.breaks
+    inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
+    weights = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
+    return Samples(points, weights, [rod.local(points) for rod in rods])
+
+
+def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
+    """Elements that resolve each of some arms with equal breaks for |w| <= W."""
+    edges = _edges(rods, samples, W)
+    points, _, _ = gauss_method(STAGES)
+    for _ in range(MAX_HALVINGS):
+        if not len(edges) <= MAX_ELEMENTS:
+            break
+        lengths = np.diff(edges)
+        inside = edges[:-1, None] + lengths[:, None] * points
+        local = [rod.local(inside) for rod in rods]
+        coarse = np.max([tail_of(one) for one in local], axis=0) > RESOLVED
+        if not coarse.any():
+            return PropagatorElements(lengths, local)
+        middles = (edges[:-1] + edges[1:])[coarse] / 2
+        edges = np.sort(np.append(edges, middles))
+    raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
+
+
+def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
+    """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
+    density: Array = np.zeros(len(samples.points))
+    for rod, local in zip(rods, samples.local, strict=True):
+        density = np.maximum(density, bound_of_waves(W, rod.F, local) / LONGEST)
+        if rod.taper != 1:
+            apex = 1 / (1 - rod.taper)
+            density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - samples.points)))
+    edges = [np.zeros(1)]
+    breaks = rods[0].build.breaks
+    shares = np.split(density, len(breaks) - 1)
+    for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
+        mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
+        count = max(1, math.ceil(mass[-1]))
+        places = np.linspace(start, stop, SAMPLES + 1)
+        edges.append(np.interp(np.linspace(0, mass[-1], count + 1)[1:], mass, places))
+        edges[-1][-1] = stop
+    return np.concatenate(edges)
 
 
 def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:

@@ -1,0 +1,98 @@
+"""Propagators of all arms of an interval of a path, as polynomials in the path variable.
+
+The propagator of an element is smooth in the path variable p, as the coefficients along the arm are. On
+elements that serve the whole interval, `NODES` arms at Chebyshev points give it for all others by
+interpolation, with its derivative by p. Its last coefficients show the error.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ...arrays import Array
+from ...model.compiled.compilation import compiled
+from ..parameter_path import Path
+from .determinant import elements_for, samples_of
+from .propagators import MAX_TERMS, element_propagators
+
+NODES = 12
+"""Arms of an interval: of 24 random paths from 0 to three times a load, 21 need no more."""
+CONVERGED = 1e-15
+"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
+MOST_ENTRIES = 300_000
+"""Largest number of entries of the propagators of a family: more take longer than arms one by one."""
+
+
+class Family(NamedTuple):
+    """The arms from p = low to p = high: propagators for |w| <= W.
+
+    coefficients: of the Chebyshev polynomials in p, (NODES, elements, terms, 16).
+    """
+
+    low: float
+    high: float
+    W: float
+    coefficients: Array
+
+
+def family_of(path: Path, low: float, high: float, W: float) -> Family | None:
+    """The family of an interval; None where it is no smooth function of p, or too large.
+
+    Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
+    """
+    middle, half = (low + high) / 2, (high - low) / 2
+    arms = [path.at(float(middle + half * x)) for x in nodes_of_family()]
+    found = elements_for(arms, samples_of(arms), W)
+    if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
+        return None
+    each = [
+        element_propagators(rod.F, local, found.lengths, W)
+        for rod, local in zip(arms, found.local, strict=True)
+    ]
+    terms = max(one.shape[1] for one in each)
+    values = np.zeros((NODES, len(found.lengths), terms, 16))
+    for i, one in enumerate(each):
+        values[i, :, : one.shape[1]] = one
+    coefficients = np.tensordot(_to_series(), values, 1)
+    size = np.abs(values).max(axis=(0, 2, 3))
+    if (np.abs(coefficients[-2:]).max(axis=(0, 2, 3)) > CONVERGED * size).any():
+        return None
+    return Family(low, high, W, np.ascontiguousarray(coefficients))
+
+
+@cache
+def nodes_of_family() -> Array:
+    """The Chebyshev points of an interval in [-1, 1], (NODES,): both ends are among them."""
+    nodes: Array = -np.cos(np.pi * np.arange(NODES) / (NODES - 1))
+    return nodes
+
+
+@cache
+def _to_series() -> Array:
+    """Matrix from values at the nodes to the coefficients of Chebyshev polynomials, (NODES, NODES)."""
+    inverse: Array = np.linalg.inv(chebyshev.chebvander(nodes_of_family(), NODES - 1))
+    return inverse
+
+
+@compiled
+def propagators_at(family: Family, p: float, polynomials: Array, changes: Array) -> None:
+    """Fills the propagators at p and their derivatives by p, both (elements, terms, 16)."""
+    half = (family.high - family.low) / 2
+    t = (p - (family.low + family.high) / 2) / half
+    values = polynomials.reshape(-1)
+    slopes = changes.reshape(-1)
+    here, before, rate, rate_before = 1.0, t, 0.0, -1.0  # T_0 and T_(-1), as T_(-1) = T_1
+    values[:] = 0.0
+    slopes[:] = 0.0
+    for k in range(len(family.coefficients)):
+        own = family.coefficients[k].reshape(-1)
+        for i in range(len(own)):
+            values[i] += here * own[i]
+            slopes[i] += rate / half * own[i]
+        if k == 0:
+            here, before, rate, rate_before = t, 1.0, 1.0, 0.0
+        else:
+            rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
+            here, before = 2 * t * here - before, here
