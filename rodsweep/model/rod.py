@@ -4,7 +4,7 @@
 stiffness or a drag by the name of a parameter: other parameters may multiply it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple, TypeVar
@@ -122,6 +122,14 @@ class Rod:
     def local(self, u: Array) -> LocalCoefficients:
         """Coefficients of the transverse operator at points u, (points,), none of them a break."""
         return self.build.local(self.F, scaled(self.values), u)
+
+    @staticmethod
+    def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
+        """`local` of n rods of one build, (n, *u.shape), in the time of one."""
+        shape = (len(rods), *(1,) * u.ndim)
+        values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
+        local = rods[0].build.local(values["F"], scaled(values), u)
+        return LocalCoefficients(*(np.broadcast_to(x, (len(rods), *u.shape)) for x in local))
 
     @property
     def crushing_force(self) -> float:

@@ -8,7 +8,7 @@ points resolve the coefficients; a break of the profile is always an end of an e
 import cmath
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ class ArmDeterminant:
         self.rod = rod
         self._levels: dict[int, tuple[float, Array]] = {}
         self._samples = samples_of([rod])
-        self._sampled: Array = np.array(self._samples.local[0])
+        self._sampled: Array = np.array(self._samples.local)[:, 0]
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -81,44 +81,44 @@ class ArmDeterminant:
 
     def _propagators(self, W: float) -> Array:
         found = elements_for([self.rod], self._samples, W)
-        return element_propagators(self.rod.F, found.local[0], found.lengths, W)
+        return element_propagators([self.rod.F], found.local, found.lengths, W)[0]
 
 
 class Samples(NamedTuple):
-    """Points between the breaks of arms, the length that each stands for, and the arms' coefficients there."""
+    """Points between the breaks of n arms, (points,), the length that each stands for, (points,), and the
+    arms' coefficients there, (n, points)."""
 
     points: Array
     weights: Array
-    local: list[LocalCoefficients]
+    local: LocalCoefficients
 
 
 class PropagatorElements(NamedTuple):
-    """Lengths of elements, (elements,), and coefficients of arms at their Gauss points, (elements, STAGES)."""
+    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, STAGES)."""
 
     lengths: Array
-    local: list[LocalCoefficients]
+    local: LocalCoefficients
 
 
 def samples_of(rods: list[Rod]) -> Samples:
-    """Samples of arms with equal breaks."""
+    """Samples of arms of one build."""
     breaks = rods[0].build.breaks
     inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
     points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
     weights = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
-    return Samples(points, weights, [rod.local(points) for rod in rods])
+    return Samples(points, weights, Rod.local_of_all(rods, points))
 
 
 def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
-    """Elements that resolve each of some arms with equal breaks for |w| <= W."""
+    """Elements that resolve each of some arms of one build for |w| <= W."""
     edges = _edges(rods, samples, W)
     points, _, _ = gauss_method(STAGES)
     for _ in range(MAX_HALVINGS):
         if not len(edges) <= MAX_ELEMENTS:
             break
         lengths = np.diff(edges)
-        inside = edges[:-1, None] + lengths[:, None] * points
-        local = [rod.local(inside) for rod in rods]
-        coarse = np.max([tail_of(one) for one in local], axis=0) > RESOLVED
+        local = Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points)
+        coarse = tail_of(local).max(axis=0) > RESOLVED
         if not coarse.any():
             return PropagatorElements(lengths, local)
         middles = (edges[:-1] + edges[1:])[coarse] / 2
@@ -128,31 +128,31 @@ def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorEleme
 
 def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
     """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
-    density: Array = np.zeros(len(samples.points))
-    for rod, local in zip(rods, samples.local, strict=True):
-        density = np.maximum(density, bound_of_waves(W, rod.F, local) / LONGEST)
-        if rod.taper != 1:
-            apex = 1 / (1 - rod.taper)
+    F, tapers = (np.array([getattr(rod, name) for rod in rods]) for name in ("F", "taper"))
+    density: Array = bound_of_waves(W, F[:, None], samples.local).max(axis=0) / LONGEST
+    for taper in (tapers.min(), tapers.max()):
+        if taper != 1:
+            apex = 1 / (1 - taper)
             density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - samples.points)))
     edges = [np.zeros(1)]
     breaks = rods[0].build.breaks
-    shares = np.split(density, len(breaks) - 1)
+    shares = density.reshape(len(breaks) - 1, -1)
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
         count = max(1, math.ceil(mass[-1]))
-        places = np.linspace(start, stop, SAMPLES + 1)
-        edges.append(np.interp(np.linspace(0, mass[-1], count + 1)[1:], mass, places))
+        places = start + (stop - start) * np.arange(SAMPLES + 1) / SAMPLES
+        edges.append(np.interp(mass[-1] * np.arange(1, count + 1) / count, mass, places))
         edges[-1][-1] = stop
     return np.concatenate(edges)
 
 
-def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
+def _as_uniform(w: complex, F: Any, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
     """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that the arm is at each point."""
     return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
 
 
-def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
-    """An upper bound of |q| for all |w| <= W, at the points of `local`, shape (points,)."""
+def bound_of_waves(W: float, F: Any, local: LocalCoefficients) -> Array:
+    """An upper bound of |q| for all |w| <= W, at the points of `local`, (..., points); F: (..., 1)."""
     w, force, c2, gamma3 = _as_uniform(W, F, local)
     square = w * (np.abs(local.g) * local.nu + c2 * gamma3 * w)
     return np.sqrt((c2 + gamma3) * w + np.abs(force * local.g) + 2 * np.sqrt(square))

@@ -47,14 +47,7 @@ def family_of(path: Path, low: float, high: float, W: float) -> Family | None:
     found = elements_for(arms, samples_of(arms), W)
     if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
         return None
-    each = [
-        element_propagators(rod.F, local, found.lengths, W)
-        for rod, local in zip(arms, found.local, strict=True)
-    ]
-    terms = max(one.shape[1] for one in each)
-    values = np.zeros((NODES, len(found.lengths), terms, 16))
-    for i, one in enumerate(each):
-        values[i, :, : one.shape[1]] = one
+    values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
     coefficients = np.tensordot(_to_series(), values, 1)
     size = np.abs(values).max(axis=(0, 2, 3))
     if (np.abs(coefficients[-2:]).max(axis=(0, 2, 3)) > CONVERGED * size).any():

@@ -21,7 +21,7 @@ a convex region bounded by a parabola. Of several alpha the one with the smalles
 Extremes along the arm are looked up at points between the breaks, with `MARGIN` for what lies between them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
@@ -89,37 +89,42 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     return best, normal
 
 
-def hull_of(rod: Rod) -> Hull:
-    """The smallest of the regions that contain the spectrum of the arm; `UNKNOWN` where none is found."""
-    pieces = _pieces(rod)
-    candidates = [*_constant(rod.F, pieces), *_following(rod, pieces), *_by_clamp(rod.F, pieces)]
+def hull_of(*rods: Rod) -> Hull:
+    """The smallest of the regions that contain the spectra of arms of one build; `UNKNOWN` where none is found.
+
+    Arms of an interval of a path are as points along an arm: `MARGIN` is for those between them, too.
+    """
+    arms = _arms(rods)
+    candidates = [*_constant(arms), *_following(arms), *_by_clamp(arms)]
     best = min(candidates, key=lambda hull: hull.a**2 / (1 - hull.c), default=UNKNOWN)
     return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
 
 
-class Piece(NamedTuple):
-    """Coefficients at the Chebyshev points of a smooth piece, increasing u; u has the shape (POINTS,)."""
+class Arms(NamedTuple):
+    """n arms: F, (n, 1, 1); lengths of the smooth pieces, (pieces,); coefficients, (n, pieces, POINTS).
 
-    u: Array
+    The points of a piece are its Chebyshev points, with increasing u.
+    """
+
+    F: Array
+    lengths: Array
     local: LocalCoefficients
+    continuous: bool
 
 
-def _pieces(rod: Rod) -> list[Piece]:
+def _arms(rods: Sequence[Rod]) -> Arms:
     x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
-    breaks = rod.build.breaks
-    grids = [a + (b - a) * (x + 1) / 2 for a, b in zip(breaks[:-1], breaks[1:], strict=True)]
-    return [Piece(u, rod.local(u)) for u in grids]
+    build = rods[0].build
+    lengths = np.diff(build.breaks)
+    u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
+    F = np.array([rod.F for rod in rods])[:, None, None]
+    return Arms(F, lengths * (1 - 2 * INSIDE), Rod.local_of_all(rods, u), build.continuous)
 
 
-def _joined(pieces: list[Piece]) -> LocalCoefficients:
-    """The coefficients of all pieces, one behind another."""
-    return LocalCoefficients(*(np.concatenate(rows) for rows in zip(*(p.local for p in pieces), strict=True)))
-
-
-def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
+def _constant(arms: Arms) -> Iterator[Hull]:
     """The regions by constant alpha; none where gamma3 = 0 lets an arm that shears rotate freely."""
-    nu, c2, c3, gamma2, gamma3, g = _joined(pieces)
-    push = F**2 * float((c3 / gamma2).max())
+    nu, c2, c3, gamma2, gamma3, g = (x.ravel() for x in arms.local)
+    push = float((arms.F**2 * arms.local.c3 / arms.local.gamma2).max())
     if not c2.any():  # then g = nu
         yield Hull(sqrt(push), 0.0)
         return
@@ -132,21 +137,21 @@ def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
     yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
 
 
-def _following(rod: Rod, pieces: list[Piece]) -> Iterator[Hull]:
+def _following(arms: Arms) -> Iterator[Hull]:
     """The regions by an alpha that follows g/nu, which must be above 0 and without jumps."""
-    nu, c2, _, _, _, g = _joined(pieces)
-    if not (g > 0).all() or not (c2 > 0).all() or not rod.build.continuous:
+    if not (arms.local.g > 0).all() or not (arms.local.c2 > 0).all() or not arms.continuous:
         return
     for factor in MIDDLES:
-        yield Hull(max(_norm(rod.F, piece, factor) for piece in pieces), 0.0)
+        yield Hull(_norm(arms, factor), 0.0)
 
 
-def _norm(F: float, piece: Piece, factor: float) -> float:
-    """The largest norm of the matrix along a piece."""
-    nu, c2, c3, gamma2, gamma3, g = piece.local
-    level = factor * abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
+def _norm(arms: Arms, factor: float) -> float:
+    """The largest norm of the matrix along arms."""
+    nu, c2, c3, gamma2, gamma3, g = arms.local
+    F = arms.F
+    level = factor * np.abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
     alpha = g / (nu + level)
-    slope = _chebyshev()[0] @ np.log(alpha) * 2 / (piece.u[-1] - piece.u[0])
+    slope = np.log(alpha) @ _chebyshev()[0].T * 2 / arms.lengths[:, None]
     A = slope / np.sqrt(gamma2 * c2)
     B = F * np.sqrt(alpha * c3 / gamma2)
     e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
@@ -167,15 +172,13 @@ def _chebyshev() -> tuple[Array, Array]:
     return derivative, np.polynomial.chebyshev.chebvander(x, POINTS) @ integrals
 
 
-def _by_clamp(F: float, pieces: list[Piece]) -> Iterator[Hull]:
+def _by_clamp(arms: Arms) -> Iterator[Hull]:
     """The region by alpha = 1 and theta(0) = 0, which needs no rotational drag."""
-    below, integral = 0.0, 0.0  # of c3, and of what bounds the term with theta
-    for u, (_, c2, c3, _, _, _) in pieces:
-        along = _chebyshev()[1] * (u[-1] - u[0]) / 2
-        turned = below + along @ c3
-        integral += float(along[-1] @ (c2 * turned))
-        below = float(turned[-1])
-    c = MARGIN * abs(F) * sqrt(max(integral, 0.0)) / 2
-    local = _joined(pieces)
+    local, lengths = arms.local, arms.lengths[:, None]
+    along = local.c3 @ _chebyshev()[1].T * lengths / 2  # integrals of c3 from the start of each piece
+    below = np.cumsum(along[..., -1:], axis=1) - along[..., -1:]
+    parts = (local.c2 * (below + along)) @ _chebyshev()[1][-1] * arms.lengths / 2
+    integrals = np.maximum(parts.sum(axis=1), 0.0)
+    c = MARGIN * float((np.abs(arms.F[:, 0, 0]) * np.sqrt(integrals)).max()) / 2
     if c < LARGEST_SHARE:
-        yield Hull(abs(F) * sqrt(float((local.c3 / local.gamma2).max())), c)
+        yield Hull(sqrt(float((arms.F**2 * local.c3 / local.gamma2).max())), c)

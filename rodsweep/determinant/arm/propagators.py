@@ -11,6 +11,7 @@ law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a line
 quadrature gives theta and y.
 """
 
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -42,16 +43,18 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
     return (x + 1) / 2, integrals / 2, weights / 2
 
 
-def element_propagators(F: float, local: LocalCoefficients, lengths: Array, W: float) -> Array:
-    """The coefficients of Phi in powers of w/W, shape (elements, terms, 16): each Phi column by column.
+def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: Array, W: float) -> Array:
+    """The coefficients of Phi in powers of w/W, shape (n, elements, terms, 16), each Phi column by column.
 
-    local: at the Gauss points, each (elements, STAGES). lengths: of the elements, in L, (elements,).
+    F: of n arms. local: at the Gauss points, each (n, elements, STAGES). lengths: of the elements, in L,
+    (elements,).
     """
     _, integrals, weights = gauss_method(STAGES)
-    terms = np.zeros((len(lengths), MAX_TERMS, 16))
-    coefficients = np.ascontiguousarray(np.moveaxis(np.array(local), 0, 1))
-    most = _fill_terms((F, W), coefficients, lengths, (np.ascontiguousarray(integrals.T), weights), terms)
-    return np.ascontiguousarray(terms[:, :most])
+    terms = np.zeros((len(F), len(lengths), MAX_TERMS, 16))
+    coefficients = np.ascontiguousarray(np.array(local).transpose(1, 2, 0, 3))
+    method = np.ascontiguousarray(integrals.T), weights
+    most = max(_fill_terms((F[i], W), coefficients[i], lengths, method, terms[i]) for i in range(len(F)))
+    return np.ascontiguousarray(terms[:, :, :most])
 
 
 @compiled
@@ -221,7 +224,10 @@ def _last_terms(stages: int) -> Array:
 
 
 def tail_of(local: LocalCoefficients) -> Array:
-    """The last two coefficients of the Legendre series of the coefficients, relative, (elements,)."""
+    """The last two coefficients of the Legendre series of the coefficients, relative, (n, elements).
+
+    local: at Gauss points, (n, elements, stages).
+    """
     values = np.array(local[:5])
     size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
     largest: Array = (np.abs(values @ _last_terms(values.shape[-1])).max(axis=-1) / size).max(axis=0)
