@@ -51,11 +51,6 @@ class Remainder(NamedTuple):
     blur: float
     least: float
 
-    @property
-    def proves(self) -> bool:
-        """Whether no unknown eigenvalue lies right of the line."""
-        return self.R + self.blur < self.least
-
 
 def none_is_missing(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
@@ -73,7 +68,7 @@ def none_is_missing(
         if len(points) and points[-1] <= FARTHEST * np.abs(known).max():
             found = remainder(line, known[whole], error[whole], hull, points, determinant.level(points[-1]))
             examined += k
-            if found.proves:
+            if found.R + found.blur < found.least:
                 return True, examined
     return False, examined
 

@@ -12,11 +12,11 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.newton import REAL_BELOW
 from ...determinant.parameter_path import determinant_along
-from ...determinant.roots import SAME_ROOT, sort_descending
+from ...determinant.roots import SAME_ROOT, sort_descending, two_roots
 from ...determinant.value import ROUND_OFF, TYPICAL_NOISE
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from .prediction import Track, guess_at, mates_of
+from .prediction import Track, guess_at, mates_of, place_two
 
 MOST_CORRECTIONS = 8
 ROUGH = 1e-9
@@ -50,7 +50,7 @@ def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -
 
 
 @compiled
-def _crowding(w: Complex, k: int) -> float:
+def crowding_of(w: Complex, k: int) -> float:
     """A generous |D''/(2 D')| at the k-th of the known roots."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
@@ -75,7 +75,7 @@ def _settled(
 
 
 @compiled
-def _distinct_roots(w: Complex, error: Array) -> bool:
+def distinct_roots(w: Complex, error: Array) -> bool:
     """Whether all are finite numbers, each with its error, and no two may be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
@@ -108,7 +108,7 @@ def _correct_all(
     for rank in range(m):
         k = order[rank]
         if guess[k].imag >= 0:
-            last, error[k] = _settled(first[k], _crowding(w, k), rank <= modes, rod, direction)
+            last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
             w[k], slope[k] = last.w, last.slope
             if mate[k] >= 0:
                 if not w[k].imag > REAL_BELOW * abs(w[k]):
@@ -116,7 +116,7 @@ def _correct_all(
                 j = mate[k]
                 w[j], slope[j], error[j] = w[k].conjugate(), slope[k].conjugate(), error[k]
     sort_descending(w, order)
-    return _distinct_roots(w, error)
+    return distinct_roots(w, error)
 
 
 @compiled
@@ -127,11 +127,16 @@ def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients,
     rods and path variables; direction: d(F, nu, c2, gamma3)/dp. The leading `modes` get all digits.
     """
     guess = track.w[0].copy()
+    decided = np.empty(len(guess), np.int64)
     for i in range(len(p)):
         F, nu, c2, gamma3 = coefficients[i]
         rod = Coefficients(F, nu, c2, gamma3)
         if i > 0:
-            guess_at(track, i, p, rod, guess)
+            guess_at(track, i, p, guess, decided)
+            for k in range(len(guess)):
+                if decided[k] >= 0:
+                    two = (k, decided[k])
+                    place_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, rod, direction):
             return i
