@@ -5,6 +5,7 @@ elements that serve the whole interval, `NODES` arms at Chebyshev points give it
 interpolation, with its derivative by p. Its last coefficients show the error.
 """
 
+import math
 from functools import cache
 from typing import NamedTuple
 
@@ -13,9 +14,12 @@ from numpy.polynomial import chebyshev
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ..newton import MOST_REFINEMENTS
 from ..parameter_path import Path
+from ..value import TYPICAL_NOISE, Value
 from .determinant import elements_for, samples_of
 from .propagators import MAX_TERMS, element_propagators
+from .value import chain_along, chain_value
 
 NODES = 12
 """Arms of an interval: of 24 random paths from 0 to three times a load, 21 need no more."""
@@ -89,3 +93,39 @@ def propagators_at(family: Family, p: float, polynomials: Array, changes: Array)
         else:
             rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
             here, before = 2 * t * here - before, here
+
+
+@compiled
+def value_in(family: Family, w: complex, p: float) -> Value:
+    """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
+    shape = family.coefficients.shape[1:]
+    polynomials, changes = np.empty(shape), np.empty(shape)
+    propagators_at(family, p, polynomials, changes)
+    return chain_value(w, family.W, polynomials)
+
+
+@compiled
+def eigenvalue_in(family: Family, guess: complex, p: float) -> tuple[complex, complex, float]:
+    """(eigenvalue near the guess, its slope by p, its error) at p by Newton's method, away from double ones.
+
+    The iteration ends where rounding keeps the steps from getting smaller. What is real stays real.
+    """
+    shape = family.coefficients.shape[1:]
+    polynomials, changes = np.empty(shape), np.empty(shape)
+    propagators_at(family, p, polynomials, changes)
+    w, last = guess, math.inf
+    for _ in range(MOST_REFINEMENTS):
+        value = chain_value(w, family.W, polynomials)
+        step = value.D / value.D_w if value.D_w != 0 else 0j
+        if w.imag == 0:
+            step = complex(step.real, 0.0)
+        if not abs(step) < last / 2 or abs(w) > family.W:
+            break
+        last = abs(step)
+        w -= step
+    D, D_w, D_p, _, noise = chain_along(w, family.W, polynomials, changes)
+    size = max(abs(D_w), 1e-300)
+    slope = -D_p / D_w if D_w != 0 else 0j
+    if w.imag == 0:
+        slope = complex(slope.real, 0.0)
+    return w, slope, max(abs(D), TYPICAL_NOISE * noise) / size
