@@ -39,6 +39,8 @@ FARTHEST = 16.0
 ones look like the known."""
 SLABS = 24
 """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
+ALLOWED = 0.7
+"""Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
 ROUNDING_OF_SLOPE = 10.0
 """Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels of
 elements, over 45 random arms."""
@@ -68,9 +70,16 @@ def none_is_missing(
         if len(points) and points[-1] <= FARTHEST * np.abs(known).max():
             found = remainder(line, known[whole], error[whole], hull, points, determinant.level(points[-1]))
             examined += k
-            if found.R + found.blur < found.least:
+            if proves(found):
                 return True, examined
     return False, examined
+
+
+@compiled
+def proves(found: Remainder) -> bool:
+    """Whether no unknown eigenvalue lies right of the line; R below 0 would say that a known one is none."""
+    allowed = ALLOWED * found.least
+    return found.R + found.blur < allowed and found.R > -allowed
 
 
 @compiled

@@ -9,7 +9,7 @@ The last three terms are at most a n N^2, where a is the largest norm of the mat
 
     [[alpha'/(alpha sqrt(gamma2 c2)), F sqrt(alpha c3/gamma2)], [(g - alpha nu)/sqrt(gamma3 alpha c2), 0]]
 
-along the arm. Where gamma3 = 0 the term with theta is bounded by theta(0) = 0 instead: it is at most
+along the arm. Where gamma3 is small the term with theta is better bounded by theta(0) = 0: it is at most
 c n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
 
     Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
@@ -41,6 +41,8 @@ INSIDE = 1e-9
 """Distance of the first and last point from the ends of a piece, in units of its length."""
 LARGEST_SHARE = 0.9
 """Largest c: the region grows beyond use where c approaches 1."""
+WIDE_SHARE = 0.15
+"""The c from which on a region counts as wide, whatever its a."""
 MIDDLES = (0.0, 0.5, 1.0)
 """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha that are tried."""
 WEIGHTS = 41
@@ -96,7 +98,7 @@ def hull_of(*rods: Rod) -> Hull:
     """
     arms = _arms(rods)
     candidates = [*_constant(arms), *_following(arms), *_by_clamp(arms)]
-    best = min(candidates, key=lambda hull: hull.a**2 / (1 - hull.c), default=UNKNOWN)
+    best = min(candidates, key=lambda hull: hull.a**2 * (1 + (hull.c / WIDE_SHARE) ** 4), default=UNKNOWN)
     return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
 
 
@@ -130,11 +132,16 @@ def _constant(arms: Arms) -> Iterator[Hull]:
         return
     if not gamma3.all():
         return
-    ratio = np.abs(g / nu)
-    some = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
-    alphas = np.append(some, 1.0)
+    alphas = _constants(g / nu)
     turns = ((g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)).max(axis=1)
     yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
+
+
+def _constants(ratio: Array) -> Array:
+    """Constant alpha that are tried, (WEIGHTS + 1,), for ratios g/nu along arms, (...,)."""
+    sizes = np.abs(ratio)
+    some = np.geomspace(max(float(sizes.min()), 1e-3), max(float(sizes.max()), 2e-3), WEIGHTS)
+    return np.append(some, 1.0)
 
 
 def _following(arms: Arms) -> Iterator[Hull]:
@@ -173,12 +180,20 @@ def _chebyshev() -> tuple[Array, Array]:
 
 
 def _by_clamp(arms: Arms) -> Iterator[Hull]:
-    """The region by alpha = 1 and theta(0) = 0, which needs no rotational drag."""
-    local, lengths = arms.local, arms.lengths[:, None]
-    along = local.c3 @ _chebyshev()[1].T * lengths / 2  # integrals of c3 from the start of each piece
+    """The regions by constant alpha and theta(0) = 0, which need no rotational drag."""
+    nu, c2, c3, gamma2, _, g = arms.local
+    lengths = arms.lengths[:, None]
+    along = c3 @ _chebyshev()[1].T * lengths / 2  # integrals of c3 from the start of each piece
     below = np.cumsum(along[..., -1:], axis=1) - along[..., -1:]
-    parts = (local.c2 * (below + along)) @ _chebyshev()[1][-1] * arms.lengths / 2
-    integrals = np.maximum(parts.sum(axis=1), 0.0)
-    c = MARGIN * float((np.abs(arms.F[:, 0, 0]) * np.sqrt(integrals)).max()) / 2
-    if c < LARGEST_SHARE:
-        yield Hull(sqrt(float((arms.F**2 * local.c3 / local.gamma2).max())), c)
+    weights = (_chebyshev()[1][-1] * lengths / 2 * (below + along)).ravel()
+    nu, c2 = nu.ravel(), c2.ravel()
+    pull = (arms.F * arms.local.c2).ravel()
+    alphas = _constants(g / arms.local.nu)[:, None] if c2.all() else np.ones((1, 1))
+    with np.errstate(invalid="ignore"):
+        squares = np.where(c2 > 0, ((1 - alphas) * nu + pull) ** 2 / (alphas * c2), 0.0)  # g = nu + pull
+    integrals = (squares * weights).reshape(len(alphas), len(arms.F), -1).sum(axis=-1).max(axis=-1)
+    push = float((arms.F**2 * c3 / gamma2).max())
+    for alpha, most in zip(alphas[:, 0].tolist(), integrals.tolist(), strict=True):
+        c = MARGIN * sqrt(max(most, 0.0)) / 2
+        if c < LARGEST_SHARE:
+            yield Hull(sqrt(alpha * push), c)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import POWERS, remainder, right_of_hull
+from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
 from ...determinant.arm.family import Family, propagators_at
 from ...determinant.arm.hull import Hull
 from ...determinant.arm.value import chain_along, chain_value
@@ -122,8 +122,7 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
     for power in POWERS:
         points = right_of_hull(line, hull.a, hull.c, power)
         if len(points) and points[-1] <= level[0]:
-            found = remainder(line, w, error, hull, points, (level[0], level[1]))
-            if found.R + found.blur < found.least:
+            if proves(remainder(line, w, error, hull, points, (level[0], level[1]))):
                 return here
     return 0
 
