@@ -91,12 +91,39 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     return best, normal
 
 
-def hull_of(*rods: Rod) -> Hull:
-    """The smallest of the regions that contain the spectra of arms of one build; `UNKNOWN` where none is found.
+def hull_of(rod: Rod) -> Hull:
+    """The smallest of the regions that contain the spectrum of the arm; `UNKNOWN` where none is found."""
+    return _hull(_arms([rod]))
 
-    Arms of an interval of a path are as points along an arm: `MARGIN` is for those between them, too.
+
+class Hulls(NamedTuple):
+    """Regions for the arms of a path between places, (k,), increasing: a and c of each interval, (k - 1,)."""
+
+    places: Array
+    a: Array
+    c: Array
+
+
+def hulls_along(rods: Sequence[Rod], places: Array) -> Hulls:
+    """The regions for all arms between places of a path, (k,), from the arms at them.
+
+    Extremes along the path are, as those along an arm, looked up at points, with `MARGIN` between them.
     """
     arms = _arms(rods)
+    hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+    return Hulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
+
+
+@compiled
+def hull_at(hulls: Hulls, p: float) -> Hull:
+    """The region for the arm at p, from the first place to the last."""
+    i = 0
+    while i < len(hulls.a) - 1 and p > hulls.places[i + 1]:
+        i += 1
+    return Hull(hulls.a[i], hulls.c[i])
+
+
+def _hull(arms: "Arms") -> Hull:
     candidates = [*_constant(arms), *_following(arms), *_by_clamp(arms)]
     best = min(candidates, key=lambda hull: hull.a**2 * (1 + (hull.c / WIDE_SHARE) ** 4), default=UNKNOWN)
     return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
@@ -121,6 +148,11 @@ def _arms(rods: Sequence[Rod]) -> Arms:
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
     F = np.array([rod.F for rod in rods])[:, None, None]
     return Arms(F, lengths * (1 - 2 * INSIDE), Rod.local_of_all(rods, u), build.continuous)
+
+
+def _part(arms: Arms, chosen: slice) -> Arms:
+    """Some of the arms."""
+    return arms._replace(F=arms.F[chosen], local=LocalCoefficients(*(x[chosen] for x in arms.local)))
 
 
 def _constant(arms: Arms) -> Iterator[Hull]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
 from ...determinant.arm.family import Family, propagators_at
-from ...determinant.arm.hull import Hull
+from ...determinant.arm.hull import Hull, Hulls, hull_at
 from ...determinant.arm.value import chain_along, chain_value
 from ...determinant.newton import REAL_BELOW
 from ...determinant.roots import sort_descending
@@ -128,11 +128,11 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 
 
 @compiled
-def follow_arms(track: Track, family: Family, hull: Hull, p: Array, modes: int, known: NDArray) -> int:
+def follow_arms(track: Track, family: Family, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
     """How many points, from the first, the eigenvalues can be followed to; fills the track as far.
 
     track: with w and order of the first point; p: (points,), the points' path variables, inside the family.
-    hull: of all arms of the family. known: (points,), filled with `all_right_of_line`.
+    hulls: of all arms of the family. known: (points,), filled with `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)
@@ -150,5 +150,5 @@ def follow_arms(track: Track, family: Family, hull: Hull, p: Array, modes: int, 
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, level):
             return i
-        known[i] = all_right_of_line(track, i, modes, hull, level)
+        known[i] = all_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
     return len(p)

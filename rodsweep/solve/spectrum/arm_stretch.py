@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, right_of_hull
 from ...determinant.arm.family import Family, family_of
-from ...determinant.arm.hull import Hull, hull_of
+from ...determinant.arm.hull import Hulls, hulls_along
 from ...determinant.parameter_path import Path
 from ..point import FAILURES
 from .arm_following import follow_arms
@@ -25,8 +25,10 @@ from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
 
-FURTHER_MODES = 3
-"""Modes that are followed beyond those wanted, at least."""
+FURTHER_MODES = (3, 9)
+"""Numbers of modes that are followed beyond those wanted: the more for arms whose hull is wide."""
+PROVED_ENOUGH = 0.5
+"""Share of the points that must be proved complete, or else more modes are followed."""
 HEADROOM = 2.0
 """Largest |w| for which propagators are made, in units of the largest at the first point."""
 FEWEST = 4
@@ -36,7 +38,7 @@ ACCURACY = 1e-8
 STEPS_FROM_NEAREST = (1, 4)
 """Numbers of steps in which a point is reached from the nearest one of a path."""
 HULL_ARMS = 7
-"""Arms of an interval from which the hull of all is made."""
+"""Arms of an interval from which the hulls of those between are made."""
 
 
 class Interval(NamedTuple):
@@ -46,7 +48,11 @@ class Interval(NamedTuple):
     track: Track
     known: NDArray[np.int64]
     family: Family
-    hull: Hull
+    hulls: Hulls
+
+    def proved(self, modes: int) -> int:
+        """The number of points at which so many leading modes are proved complete."""
+        return int((self.known >= modes).sum())
 
 
 def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | None:
@@ -59,24 +65,34 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | N
 
 
 def _interval(path: Path, p: Array, request: SpectrumRequest) -> Interval | None:
-    """The points p, (n,), as far as one family of arms and following reach; None if not beyond the first."""
-    n = len(p)
-    first = first_eigenvalues(path, float(p[0]), request) if n >= FEWEST else None
-    while first is not None and n >= FEWEST:
+    """The points p, (n,), as far as one family of arms and following reach; None if not beyond the first.
+
+    Where too few eigenvalues beyond the wanted ones are known for a proof, more are followed.
+    """
+    best: Interval | None = None
+    for further in FURTHER_MODES:
+        found = _followed(path, p, request, further) if len(p) >= FEWEST else None
+        if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
+            best = found
+        if best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
+            break
+    return best
+
+
+def _followed(path: Path, p: Array, request: SpectrumRequest, further: int) -> Interval | None:
+    """`_interval` with so many modes beyond the wanted ones."""
+    first, n, made = first_eigenvalues(path, float(p[0]), request, further), len(p), None
+    while first is not None and made is None and n >= FEWEST:
         made = arms_between(path, p[:n], first, request.modes)
-        if made is not None:
-            return _followed(first, *made, p[:n], request)
-        n //= 2
-    return None
-
-
-def _followed(
-    first: Complex, family: Family, hull: Hull, p: Array, request: SpectrumRequest
-) -> Interval | None:
-    """The points of an interval that has a family."""
-    track, known = _empty_track(first, len(p)), np.zeros(len(p), np.int64)
-    n = follow_arms(track, family, hull, p, request.modes, known)
-    return Interval(p[:n], part(track, 0, n), known[:n], family, hull) if n else None
+        n = n if made is not None else n // 2
+    if first is None or made is None:
+        return None
+    family, hulls = made
+    track, known = _empty_track(first, n), np.zeros(n, np.int64)
+    reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
+    if reached == 0:
+        return None
+    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls)
 
 
 def _empty_track(first: Complex, points: int) -> Track:
@@ -89,8 +105,8 @@ def _empty_track(first: Complex, points: int) -> Track:
     return track
 
 
-def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[Family, Hull] | None:
-    """The family of the arms at points p, (n,), in order, and their hull; None where there is no family.
+def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[Family, Hulls] | None:
+    """The family of the arms at points p, (n,), in order, and their hulls; None where there is no family.
 
     first: eigenvalues at the first point, (m,), leading ones first.
     """
@@ -98,21 +114,23 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[Fami
     if not low < high:
         return None
     try:
-        hull = hull_of(*(path.at(x) for x in np.linspace(low, high, HULL_ARMS).tolist()))
+        places = np.linspace(low, high, HULL_ARMS)
+        hulls = hulls_along([path.at(x) for x in places.tolist()], places)
         W = HEADROOM * float(np.abs(first).max())
         line = min(HEADROOM * float(first[modes - 1].real), 0.0)
-        ends = [points[-1] for k in POWERS if len(points := right_of_hull(line, hull.a, hull.c, k))]
+        hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
+        ends = [points[-1] for k in POWERS if len(points := right_of_hull(line, *hull, k))]
         near = [end for end in ends if end <= HEADROOM * W]
         family = family_of(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None
-    return None if family is None else (family, hull)
+    return None if family is None else (family, hulls)
 
 
-def first_eigenvalues(path: Path, p: float, request: SpectrumRequest) -> Complex | None:
+def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
     """Eigenvalues to follow from p on, (m,), pairs whole; None where they cannot be had."""
     try:
-        modes = request.modes + FURTHER_MODES
+        modes = request.modes + further
         search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
         with np.errstate(all="ignore"):
             search.outcome()
@@ -165,7 +183,7 @@ def _from_nearest(one: Interval, p: float, modes: int, accuracy: float) -> Spect
         grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
         track, known = _empty_track(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
         track.order[0] = one.track.order[i]
-        if follow_arms(track, one.family, one.hull, grid, modes, known) == len(grid):
+        if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
             good, unstable = judge_points(part(track, len(grid) - 1, len(grid)), known[-1:], modes, accuracy)
             if good[0]:
                 w, error = leading(part(track, len(grid) - 1, len(grid)), modes)
