@@ -1,7 +1,7 @@
 """Propagators of all arms of an interval of a path, as polynomials in the path variable.
 
 The propagator of an element is smooth in the path variable p, as the coefficients along the arm are. On
-elements that serve the whole interval, `NODES` arms at Chebyshev points give it for all others by
+elements that serve the whole interval, some arms at Chebyshev points give it for all others by
 interpolation, with its derivative by p. Its last coefficients show the error.
 """
 
@@ -21,8 +21,9 @@ from .determinant import elements_for, samples_of
 from .propagators import MAX_TERMS, element_propagators
 from .value import chain_along, chain_value
 
-NODES = 12
-"""Arms of an interval: of 24 random paths from 0 to three times a load, 21 need no more."""
+NODES = (12, 24)
+"""Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
+first is enough."""
 CONVERGED = 1e-15
 """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
 MOST_ENTRIES = 300_000
@@ -32,7 +33,7 @@ MOST_ENTRIES = 300_000
 class Family(NamedTuple):
     """The arms from p = low to p = high: propagators for |w| <= W.
 
-    coefficients: of the Chebyshev polynomials in p, (NODES, elements, terms, 16).
+    coefficients: of the Chebyshev polynomials in p, (nodes, elements, terms, 16).
     """
 
     low: float
@@ -46,31 +47,40 @@ def family_of(path: Path, low: float, high: float, W: float) -> Family | None:
 
     Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
     """
-    middle, half = (low + high) / 2, (high - low) / 2
-    arms = [path.at(float(middle + half * x)) for x in nodes_of_family()]
-    found = elements_for(arms, samples_of(arms), W)
-    if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
-        return None
-    values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
-    coefficients = np.tensordot(_to_series(), values, 1)
-    size = np.abs(values).max(axis=(0, 2, 3))
-    if (np.abs(coefficients[-2:]).max(axis=(0, 2, 3)) > CONVERGED * size).any():
-        return None
-    return Family(low, high, W, np.ascontiguousarray(coefficients))
+    for number in NODES:
+        p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(number)
+        arms = [path.at(value) for value in p.tolist()]
+        found = elements_for(arms, samples_of(arms), W)
+        if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
+            return None
+        # What the coefficients along the arm do not resolve, the propagators made of them cannot.
+        if not _converged(np.moveaxis(np.array(found.local), 1, 0), 10 * CONVERGED):
+            continue
+        values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
+        if _converged(values, CONVERGED):
+            coefficients = np.tensordot(_to_series(number), values, 1)
+            return Family(low, high, W, np.ascontiguousarray(coefficients))
+    return None
+
+
+def _converged(values: Array, tolerance: float) -> bool:
+    """Whether the last two Chebyshev coefficients of values at nodes, (nodes, n, ...), are small for each n."""
+    others = tuple(range(2, values.ndim))
+    last = np.tensordot(_to_series(len(values))[-2:], values, 1)
+    size = np.abs(values).max(axis=(0, *others))
+    return bool((np.abs(last).max(axis=(0, *others)) <= tolerance * size).all())
 
 
 @cache
-def nodes_of_family() -> Array:
-    """The Chebyshev points of an interval in [-1, 1], (NODES,): both ends are among them."""
-    nodes: Array = -np.cos(np.pi * np.arange(NODES) / (NODES - 1))
-    return nodes
+def chebyshev_points(number: int) -> Array:
+    """So many Chebyshev points of [-1, 1], (number,): both ends are among them."""
+    return np.asarray(-np.cos(np.pi * np.arange(number) / (number - 1)))
 
 
 @cache
-def _to_series() -> Array:
-    """Matrix from values at the nodes to the coefficients of Chebyshev polynomials, (NODES, NODES)."""
-    inverse: Array = np.linalg.inv(chebyshev.chebvander(nodes_of_family(), NODES - 1))
-    return inverse
+def _to_series(number: int) -> Array:
+    """Matrix from values at so many points to coefficients of Chebyshev polynomials, (number, number)."""
+    return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(number), number - 1)))
 
 
 @compiled

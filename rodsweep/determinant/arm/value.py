@@ -45,6 +45,20 @@ def _propagator(polynomial: Array, z: complex, value: Array, slope: Array) -> No
 
 
 @compiled_for_vectors
+def _propagator_alone(polynomial: Array, z: complex, value: Array) -> None:
+    """Phi at z, (2, 16), of a polynomial, (terms, 16)."""
+    x, y, terms = z.real, z.imag, polynomial.shape[0]
+    for k in range(16):
+        value[0, k] = polynomial[terms - 1, k]
+        value[1, k] = 0.0
+    for n in range(terms - 2, -1, -1):
+        for k in range(16):
+            real = value[0, k] * x - value[1, k] * y + polynomial[n, k]
+            value[1, k] = value[0, k] * y + value[1, k] * x
+            value[0, k] = real
+
+
+@compiled_for_vectors
 def _add_product(Phi: Array, x: Array, out: Array) -> None:
     """Adds Phi x to `out`; Phi: (2, 16), columns: (2, 4)."""
     for j in range(4):
@@ -150,6 +164,24 @@ def _swept(z: complex, W: float, polynomials: Array, changes: Array) -> tuple[co
     D = _tip(Q, 2, 0) * _tip(Q, 3, 1) - _tip(Q, 2, 1) * _tip(Q, 3, 0)
     D_w = _change_of_block(Q, T[BY_W], D, traces[BY_W]) / W
     return D, D_w, _change_of_block(Q, T[BY_P], D, traces[BY_P]) if along == 2 else 0j, S
+
+
+@compiled
+def chain_size(w: complex, W: float, polynomials: Array) -> float:
+    """log |D| at w, from propagators for |w| <= W, (elements, terms, 16); -inf where D is 0."""
+    Q, ahead = np.zeros((2, 2, 4)), np.empty((2, 2, 4))
+    Phi, no_change, no_trace = np.empty((2, 16)), np.empty((0, 2, 2, 4)), np.empty((0, 2))
+    Q[0, 0, 2] = Q[1, 0, 3] = 1.0
+    S = 0.0
+    for e in range(len(polynomials)):
+        _propagator_alone(polynomials[e], w / W, Phi)
+        ahead[:] = 0.0
+        for column in range(2):
+            _add_product(Phi, Q[column], ahead[column])
+        S += _orthonormal(ahead, no_change, no_trace)
+        Q, ahead = ahead, Q
+    size = abs(_tip(Q, 2, 0) * _tip(Q, 3, 1) - _tip(Q, 2, 1) * _tip(Q, 3, 0))
+    return S + math.log(size) if size > 0 else -math.inf
 
 
 @compiled
