@@ -82,6 +82,7 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
     top = complex(line, corner.imag)
     nodes, total = 0, 0.0
     try:
+        node_at(corner, determinant, hull)  # makes the elements for the largest |w|, which serve most others
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, determinant, hull)
             total += change

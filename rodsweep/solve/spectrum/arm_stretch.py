@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, right_of_hull
+from ...determinant.arm.count import count_right_of
+from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import Family, family_of
-from ...determinant.arm.hull import Hulls, hulls_along
+from ...determinant.arm.hull import Hulls, hull_at, hulls_along
 from ...determinant.parameter_path import Path
 from ..point import FAILURES
 from .arm_following import follow_arms
+from .candidates import lines
 from .carried_count import judge_points, leading
 from .prediction import Track, part
 from .problem import forget_solvers
@@ -151,8 +154,9 @@ class FollowedArms:
 
     def __init__(self, path: Path, p: Array, modes: int):
         """p: points in order, (n,); modes: leading eigenvalues that are to be proved complete at each."""
-        self.request = SpectrumRequest(modes, ACCURACY, certify=True)
+        self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
         self.intervals: list[Interval] = []
+        self._spectra: dict[tuple[float, int], Spectrum | None] = {}
         place, patience = 0, 1
         while place < len(p):
             found = _interval(path, p[place:], self.request)
@@ -167,31 +171,52 @@ class FollowedArms:
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The leading eigenvalues at p; None where they are not followed, accurate and proved complete."""
-        for one in self.intervals:
-            if one.p.min() <= p <= one.p.max():
-                found = _from_nearest(one, p, min(modes, one.track.w.shape[1]), self.request.accuracy)
-                if found is not None:
-                    return found
+        if (p, modes) not in self._spectra:
+            within = (one for one in self.intervals if one.p.min() <= p <= one.p.max())
+            tried = (self._from_nearest(one, p, min(modes, one.track.w.shape[1])) for one in within)
+            self._spectra[p, modes] = next((found for found in tried if found is not None), None)
+        return self._spectra[p, modes]
+
+    def _from_nearest(self, one: Interval, p: float, modes: int) -> Spectrum | None:
+        """The leading eigenvalues at p, followed from the nearest point of an interval."""
+        i = int(np.argmin(np.abs(one.p - p)))
+        start = float(one.p[i])
+        for steps in STEPS_FROM_NEAREST:
+            grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
+            track, known = _empty_track(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
+            track.order[0] = one.track.order[i]
+            if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
+                return self._judged(one, p, modes, part(track, len(grid) - 1, len(grid)), known[-1:])
         return None
 
+    def _judged(
+        self, one: Interval, p: float, modes: int, here: Track, known: NDArray[np.int64]
+    ) -> Spectrum | None:
+        """The leading eigenvalues at p, if they are accurate and complete, by a count where nothing else tells.
 
-def _from_nearest(one: Interval, p: float, modes: int, accuracy: float) -> Spectrum | None:
-    """The leading eigenvalues at p, followed from the nearest point of an interval."""
-    i = int(np.argmin(np.abs(one.p - p)))
-    start = float(one.p[i])
-    for steps in STEPS_FROM_NEAREST:
-        grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-        track, known = _empty_track(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
-        track.order[0] = one.track.order[i]
-        if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-            good, unstable = judge_points(part(track, len(grid) - 1, len(grid)), known[-1:], modes, accuracy)
-            if good[0]:
-                w, error = leading(part(track, len(grid) - 1, len(grid)), modes)
-                return Spectrum(
-                    status=SpectrumStatus.ok,
-                    eigenvalues=w[0],
-                    error_estimate=error[0],
-                    unstable_count=int(unstable[0]),
-                    certified=True,
-                )
-    return None
+        here: track of this point alone. known: `all_right_of_line` there, (1,).
+        """
+        if known[0] < modes:
+            known = np.array([self._counted(one, p, modes, here)])
+        good, unstable = judge_points(here, known, modes, self.request.accuracy)
+        if not good[0]:
+            return None
+        w, error = leading(here, modes)
+        return Spectrum(
+            status=SpectrumStatus.ok,
+            eigenvalues=w[0],
+            error_estimate=error[0],
+            unstable_count=int(unstable[0]),
+            certified=True,
+        )
+
+    def _counted(self, one: Interval, p: float, modes: int, here: Track) -> int:
+        """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 if it does not."""
+        w, error = leading(here, here.w.shape[1])
+        determinant, hull = arm_determinant(self.path.at(p)), hull_at(one.hulls, p)
+        for line in lines(w[0].tolist(), modes):
+            number = count_right_of(line, determinant, hull).number
+            if number is not None:
+                clear = (np.abs(w[0].real - line) > 2 * error[0]).all()
+                return number if clear and number == (w[0].real > line).sum() else 0
+        return 0
