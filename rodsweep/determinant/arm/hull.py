@@ -24,7 +24,7 @@ Extremes along the arm are looked up at points between the breaks, with `MARGIN`
 from collections.abc import Iterator, Sequence
 from functools import cache
 from math import inf, isfinite, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -125,8 +125,13 @@ def hull_at(hulls: Hulls, p: float) -> Hull:
 
 def _hull(arms: "Arms") -> Hull:
     candidates = [*_constant(arms), *_following(arms), *_by_clamp(arms)]
-    best = min(candidates, key=lambda hull: hull.a**2 * (1 + (hull.c / WIDE_SHARE) ** 4), default=UNKNOWN)
+    best = min(candidates, key=lambda hull: _size(*hull), default=UNKNOWN)
     return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
+
+
+def _size(a: Any, c: Any) -> Any:
+    """A measure of regions, numbers or arrays: its least is the region that is taken."""
+    return a**2 * (1 + (c / WIDE_SHARE) ** 4)
 
 
 class Arms(NamedTuple):
@@ -225,7 +230,8 @@ def _by_clamp(arms: Arms) -> Iterator[Hull]:
         squares = np.where(c2 > 0, ((1 - alphas) * nu + pull) ** 2 / (alphas * c2), 0.0)  # g = nu + pull
     integrals = (squares * weights).reshape(len(alphas), len(arms.F), -1).sum(axis=-1).max(axis=-1)
     push = float((arms.F**2 * c3 / gamma2).max())
-    for alpha, most in zip(alphas[:, 0].tolist(), integrals.tolist(), strict=True):
-        c = MARGIN * sqrt(max(most, 0.0)) / 2
-        if c < LARGEST_SHARE:
-            yield Hull(sqrt(alpha * push), c)
+    c = MARGIN * np.sqrt(np.maximum(integrals, 0.0)) / 2
+    a = np.sqrt(alphas[:, 0] * push)
+    best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
+    if c[best] < LARGEST_SHARE:
+        yield Hull(float(a[best]), float(c[best]))
