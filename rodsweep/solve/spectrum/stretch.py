@@ -101,7 +101,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
     """The points from `start` on as far as they can be followed and counted; None where none can be."""
-    if not stretch.path.rod.standard:
+    if stretch.path.name == "taper" or not stretch.path.rod.standard:
         return followed_arms(stretch.path, stretch.coordinates[start:], request)
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
