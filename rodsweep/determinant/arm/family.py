@@ -25,7 +25,8 @@ NODES = (12, 24)
 """Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
 first is enough."""
 CONVERGED = 1e-15
-"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
+"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding; the
+relative error that eigenvalues have from it, as from changes of w and p by as much."""
 MOST_ENTRIES = 300_000
 """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
 
@@ -138,4 +139,4 @@ def eigenvalue_in(family: Family, guess: complex, p: float) -> tuple[complex, co
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    return w, slope, max(abs(D), TYPICAL_NOISE * noise) / size
+    return w, slope, max(abs(D), TYPICAL_NOISE * noise) / size + CONVERGED * (abs(w) + abs(p * slope))

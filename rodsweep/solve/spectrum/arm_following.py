@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
-from ...determinant.arm.family import Family, propagators_at
+from ...determinant.arm.family import CONVERGED, Family, propagators_at
 from ...determinant.arm.hull import Hull, Hulls, hull_at
 from ...determinant.arm.value import chain_along, chain_value
 from ...determinant.newton import REAL_BELOW
@@ -77,8 +77,8 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 
 @compiled
-def _correct_all(track: Track, i: int, guess: Complex, modes: int, level: Level) -> bool:
-    """Makes roots of the guesses for point i, into the track; whether all became roots, and pairs pairs."""
+def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
+    """Makes roots of the guesses for point i, at p, into the track; whether all did, and pairs became pairs."""
     w, slope, error, order = track.w[i], track.slope[i], track.error[i], track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
@@ -96,6 +96,7 @@ def _correct_all(track: Track, i: int, guess: Complex, modes: int, level: Level)
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _settled(first, crowding_of(w, k), rank <= modes, level)
             w[k], slope[k] = last.w, last.slope
+            error[k] += CONVERGED * (abs(w[k]) + abs(p * slope[k]))
             if mate[k] >= 0:
                 if not w[k].imag > REAL_BELOW * abs(w[k]):
                     return False
@@ -148,7 +149,7 @@ def follow_arms(track: Track, family: Family, hulls: Hulls, p: Array, modes: int
                     two = (k, decided[k])
                     place_two(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
             track.order[i] = track.order[i - 1]
-        if not _correct_all(track, i, guess, modes, level):
+        if not _correct_all(track, i, p[i], guess, modes, level):
             return i
         known[i] = all_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
     return len(p)
