@@ -170,7 +170,10 @@ def _constant(arms: Arms) -> Iterator[Hull]:
     if not gamma3.all():
         return
     alphas = _constants(g / nu)
-    turns = ((g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squares = (g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)
+    rigid = np.where(alphas[:, None] == 1, 0.0, inf)  # where c2 = 0 is g = nu
+    turns = np.where(c2 > 0, squares, rigid).max(axis=1)
     yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
 
 
