@@ -17,8 +17,8 @@ def known_roots(rod, determinant, wanted):
     """(w, error) of so many leading eigenvalues, pairs whole: roots of D from another discretisation."""
     dense = eigenvalues(rod)[: wanted + 1].astype(complex)
     number = wanted + (dense[wanted - 1].imag > 0)
-    upper = [refined(complex(w), determinant) for w in dense[:number] if w.imag >= 0]
-    w = np.array([value for root in upper for value in ([root] if root.imag == 0 else [root, root.conjugate()])])
+    upper = np.array([refined(complex(w), determinant) for w in dense[:number] if w.imag >= 0])
+    w = np.append(upper, upper[upper.imag > 0].conj())
     return w, 1e-12 * np.abs(w)
 
 

@@ -58,6 +58,7 @@ def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
 
 
 def test_an_interval_too_long_for_polynomials_has_no_family():
-    path = Path(Rod(F=1.0, k1=1.0, k2=1e3, gamma3=1e-3, taper=0.9, build=Build("neo_hookean", "swelling")), "F")
+    rod = Rod(F=1.0, k1=1.0, k2=1e3, gamma3=1e-3, taper=0.9, build=Build("neo_hookean", "swelling"))
+    path = Path(rod, "F")
     assert family_of(path, -30.0, 300.0, 4.0**5) is None
     assert family_of(path, 1.0, 1.3, 4.0**5) is not None

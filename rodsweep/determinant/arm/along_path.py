@@ -14,7 +14,7 @@ from ..parameter_path import Path
 from ..roots import BLURRED
 from ..value import ROUND_OFF, SECOND_STEP, Value
 from .determinant import ArmDeterminant, arm_determinant
-from .family import Family, eigenvalue_in, value_in
+from .family import ArmFamily, eigenvalue_in, value_in
 from .roots import refined, root_error
 
 CENTRAL = ((1, 0.5), (-1, -0.5))
@@ -30,7 +30,7 @@ class ArmAlongPath:
     family: the family of arms that contains p, or None: then D is that of the arm at p itself.
     """
 
-    def __init__(self, path: Path, family: Callable[[float], Family | None] = lambda p: None):
+    def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
         self.path, self.family = path, family
 
     def determinant(self, p: float) -> ArmDeterminant:

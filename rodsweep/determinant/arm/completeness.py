@@ -79,7 +79,7 @@ def none_is_missing(
 def proves(found: Remainder) -> bool:
     """Whether no unknown eigenvalue lies right of the line; R below 0 would say that a known one is none."""
     allowed = ALLOWED * found.least
-    return found.R + found.blur < allowed and found.R > -allowed
+    return found.R + found.blur < allowed and -allowed < found.R
 
 
 @compiled
@@ -131,13 +131,14 @@ def remainder(
         slope = (value.D_w / value.D).real
         R += weight * slope
         blur += abs(weight * slope) * ROUNDING_OF_SLOPE * value.noise / abs(value.D)
-    for w, e in zip(known, error):
+    for n in range(len(known)):
+        w = known[n]
         phi, rate = 1 + 0j, 0.0
         for x in points:
             phi /= x - w
             rate += 1 / abs(x - w)
         R -= phi.real
-        blur += abs(phi) * rate * e
+        blur += abs(phi) * rate * error[n]
     return Remainder(R, blur, _least_right_of(line, points, hull[0], hull[1]))
 
 

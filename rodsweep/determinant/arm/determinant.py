@@ -68,7 +68,7 @@ class ArmDeterminant:
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
 
     def level(self, size: float) -> tuple[float, Array]:
-        """(W, propagators for |w| <= W, (elements, terms, 16)) with W >= size, of the next levels that exist."""
+        """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists."""
         level = MIN_LEVEL
         if size > 4.0**MIN_LEVEL:
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)

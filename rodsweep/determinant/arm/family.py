@@ -31,7 +31,7 @@ MOST_ENTRIES = 300_000
 """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
 
 
-class Family(NamedTuple):
+class ArmFamily(NamedTuple):
     """The arms from p = low to p = high: propagators for |w| <= W.
 
     coefficients: of the Chebyshev polynomials in p, (nodes, elements, terms, 16).
@@ -43,7 +43,7 @@ class Family(NamedTuple):
     coefficients: Array
 
 
-def family_of(path: Path, low: float, high: float, W: float) -> Family | None:
+def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
     """The family of an interval; None where it is no smooth function of p, or too large.
 
     Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
@@ -60,12 +60,12 @@ def family_of(path: Path, low: float, high: float, W: float) -> Family | None:
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _converged(values, CONVERGED):
             coefficients = np.tensordot(_to_series(number), values, 1)
-            return Family(low, high, W, np.ascontiguousarray(coefficients))
+            return ArmFamily(low, high, W, np.ascontiguousarray(coefficients))
     return None
 
 
 def _converged(values: Array, tolerance: float) -> bool:
-    """Whether the last two Chebyshev coefficients of values at nodes, (nodes, n, ...), are small for each n."""
+    """Whether the last two Chebyshev coefficients of values, (nodes, n, ...), are small for each n."""
     others = tuple(range(2, values.ndim))
     last = np.tensordot(_to_series(len(values))[-2:], values, 1)
     size = np.abs(values).max(axis=(0, *others))
@@ -85,7 +85,7 @@ def _to_series(number: int) -> Array:
 
 
 @compiled
-def propagators_at(family: Family, p: float, polynomials: Array, changes: Array) -> None:
+def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
     """Fills the propagators at p and their derivatives by p, both (elements, terms, 16)."""
     half = (family.high - family.low) / 2
     t = (p - (family.low + family.high) / 2) / half
@@ -107,7 +107,7 @@ def propagators_at(family: Family, p: float, polynomials: Array, changes: Array)
 
 
 @compiled
-def value_in(family: Family, w: complex, p: float) -> Value:
+def value_in(family: ArmFamily, w: complex, p: float) -> Value:
     """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)
@@ -116,7 +116,7 @@ def value_in(family: Family, w: complex, p: float) -> Value:
 
 
 @compiled
-def eigenvalue_in(family: Family, guess: complex, p: float) -> tuple[complex, complex, float]:
+def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
     """(eigenvalue near the guess, its slope by p, its error) at p by Newton's method, away from double ones.
 
     The iteration ends where rounding keeps the steps from getting smaller. What is real stays real.

@@ -75,9 +75,7 @@ def _fill_terms(
 
 
 @compiled
-def _fill_element(
-    load: tuple[float, float], local: Array, method: tuple[Array, Array], terms: Array
-) -> int:
+def _fill_element(load: tuple[float, float], local: Array, method: tuple[Array, Array], terms: Array) -> int:
     """Fills the terms of one element, (MAX_TERMS, 16); returns how many are needed.
 
     method: transposed integrals, (STAGES, STAGES), and weights, (STAGES,), times the length of the element.
@@ -85,7 +83,7 @@ def _fill_element(
     """
     F, W = load
     Q, weights = method
-    nu, c2, c3, gamma2, gamma3, g = local[0], local[1], local[2], local[3], local[4], local[5]
+    c3, gamma2, gamma3, g = local[2], local[3], local[4], local[5]
     inverse = _inverse_of_moments(F, c3, g, Q)
     along = np.zeros((10, 4, STAGES))
     y, theta, push, turn, m = along[0], along[1], along[2], along[3], along[4]
@@ -155,9 +153,7 @@ def _shear_and_rise(
 
 
 @compiled_for_vectors
-def _end_values(
-    weights: Array, rates: tuple[Array, Array, Array, Array], start: float, term: Array
-) -> float:
+def _end_values(weights: Array, rates: tuple[Array, Array, Array, Array], start: float, term: Array) -> float:
     """Fills one term, (16,), from the rates (y', theta', s', m'), (4, STAGES); returns its largest entry."""
     size = 0.0
     for row in range(4):
@@ -190,7 +186,7 @@ def _inverse_of_moments(F: float, c3: Array, g: Array, Q: Array) -> Array:
 
 @compiled_for_vectors
 def _invert(A: Array, inverse: Array) -> None:
-    """Fills `inverse` with that of A, both (STAGES, STAGES), by elimination with pivoting; A is overwritten."""
+    """Fills `inverse` with that of A, both (STAGES, STAGES), by elimination with pivoting, in place of A."""
     inverse[:] = 0.0
     for i in range(STAGES):
         inverse[i, i] = 1.0

@@ -137,7 +137,9 @@ def _change_of_block(Q: Array, T: Array, D: complex, trace: Array) -> complex:
 
 
 @compiled
-def _swept(z: complex, W: float, polynomials: Array, changes: Array) -> tuple[complex, complex, complex, float]:
+def _swept(
+    z: complex, W: float, polynomials: Array, changes: Array
+) -> tuple[complex, complex, complex, float]:
     """(D, dD/dw, dD/dp, S) as of `chain_along`; no dD/dp where `changes` has no element."""
     elements, along = len(polynomials), 2 if len(changes) else 1
     Q, ahead = np.zeros((2, 2, 4)), np.empty((2, 2, 4))

@@ -1,7 +1,7 @@
 """Eigenvalues of arms followed along a path, and proved complete at every point.
 
-As `rodsweep.solve.spectrum.following`, with D from the interpolated propagators of a family. The proof is that
-of `rodsweep.determinant.arm.completeness` and needs nothing but the eigenvalues of the point itself.
+As `rodsweep.solve.spectrum.following`, with D from the interpolated propagators of a family. The proof is
+that of `rodsweep.determinant.arm.completeness` and needs nothing but the eigenvalues of the point itself.
 """
 
 import cmath
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
-from ...determinant.arm.family import CONVERGED, Family, propagators_at
+from ...determinant.arm.family import CONVERGED, ArmFamily, propagators_at
 from ...determinant.arm.hull import Hull, Hulls, hull_at
 from ...determinant.arm.value import chain_along, chain_value
 from ...determinant.newton import REAL_BELOW
@@ -78,7 +78,7 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 @compiled
 def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
-    """Makes roots of the guesses for point i, at p, into the track; whether all did, and pairs became pairs."""
+    """Makes roots of the guesses for point i, at p, into the track; whether all did, and pairs are pairs."""
     w, slope, error, order = track.w[i], track.slope[i], track.error[i], track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
@@ -122,14 +122,15 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
         here += w[j].real > line
     for power in POWERS:
         points = right_of_hull(line, hull.a, hull.c, power)
-        if len(points) and points[-1] <= level[0]:
-            if proves(remainder(line, w, error, hull, points, (level[0], level[1]))):
-                return here
+        if len(points) == 0 or points[-1] > level[0]:
+            continue
+        if proves(remainder(line, w, error, hull, points, (level[0], level[1]))):
+            return here
     return 0
 
 
 @compiled
-def follow_arms(track: Track, family: Family, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
+def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
     """How many points, from the first, the eigenvalues can be followed to; fills the track as far.
 
     track: with w and order of the first point; p: (points,), the points' path variables, inside the family.

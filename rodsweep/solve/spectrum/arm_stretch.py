@@ -15,7 +15,7 @@ from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, right_of_hull
 from ...determinant.arm.count import count_right_of
 from ...determinant.arm.determinant import arm_determinant
-from ...determinant.arm.family import Family, family_of
+from ...determinant.arm.family import ArmFamily, family_of
 from ...determinant.arm.hull import Hulls, hull_at, hulls_along
 from ...determinant.parameter_path import Path
 from ..point import FAILURES
@@ -45,12 +45,12 @@ HULL_ARMS = 7
 
 
 class Interval(NamedTuple):
-    """Points of a path, (n,), that were followed with one family of arms: track and `known` of `follow_arms`."""
+    """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`."""
 
     p: Array
     track: Track
     known: NDArray[np.int64]
-    family: Family
+    family: ArmFamily
     hulls: Hulls
 
     def proved(self, modes: int) -> int:
@@ -108,7 +108,7 @@ def _empty_track(first: Complex, points: int) -> Track:
     return track
 
 
-def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[Family, Hulls] | None:
+def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, Hulls] | None:
     """The family of the arms at points p, (n,), in order, and their hulls; None where there is no family.
 
     first: eigenvalues at the first point, (m,), leading ones first.
@@ -165,7 +165,7 @@ class FollowedArms:
             place += max(len(found.p) - 1, 1) if found is not None else patience
             patience = 1 if found is not None else 2 * patience
 
-    def family(self, p: float) -> Family | None:
+    def family(self, p: float) -> ArmFamily | None:
         """The family of arms that contains p."""
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
@@ -192,7 +192,7 @@ class FollowedArms:
     def _judged(
         self, one: Interval, p: float, modes: int, here: Track, known: NDArray[np.int64]
     ) -> Spectrum | None:
-        """The leading eigenvalues at p, if they are accurate and complete, by a count where nothing else tells.
+        """The leading eigenvalues at p, if accurate and complete, by a count where nothing else tells.
 
         here: track of this point alone. known: `all_right_of_line` there, (1,).
         """
@@ -211,7 +211,7 @@ class FollowedArms:
         )
 
     def _counted(self, one: Interval, p: float, modes: int, here: Track) -> int:
-        """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 if it does not."""
+        """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 for none."""
         w, error = leading(here, here.w.shape[1])
         determinant, hull = arm_determinant(self.path.at(p)), hull_at(one.hulls, p)
         for line in lines(w[0].tolist(), modes):

@@ -51,7 +51,7 @@ def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -
 
 @compiled
 def crowding_of(w: Complex, k: int) -> float:
-    """A generous |D''/(2 D')| at the k-th of the known roots."""
+    """A generous |D''/(2 D')| at the k-th of the known roots, (m,)."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
@@ -76,7 +76,7 @@ def _settled(
 
 @compiled
 def distinct_roots(w: Complex, error: Array) -> bool:
-    """Whether all are finite numbers, each with its error, and no two may be the same root."""
+    """Whether all, (m,), are finite numbers, each with its error, and no two may be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False

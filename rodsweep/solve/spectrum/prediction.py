@@ -114,7 +114,7 @@ def _two_ahead(
 
 @compiled
 def place_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
-    """Sets the guesses for two eigenvalues w, in the order that these have: real part, then frequency."""
+    """Sets the guesses for two of the eigenvalues w, both (m,), in their order: real part, then frequency."""
     k, j = two
     one, other = roots
     if (one - other).real < 0 or (one - other).imag < 0:

@@ -71,7 +71,7 @@ class TransverseProblem(ABC):
         """The number of eigenvalues with Re w > line."""
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
-        """(whether a proof without a count says that all right of a line <= 0 are found, evaluations of D)."""
+        """(whether a proof without a count says that all right of a line are found, evaluations of D)."""
         return False, 0
 
     @abstractmethod

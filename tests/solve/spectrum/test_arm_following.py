@@ -1,4 +1,4 @@
-"""Spectra of arms followed along a grid: equal to those of single points, with counts of dense eigenvalues."""
+"""Spectra of arms followed along a grid: those of single points, with the counts of dense eigenvalues."""
 
 import numpy as np
 import pytest
