@@ -63,6 +63,9 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | N
     found = _interval(path, p, request)
     if found is None:
         return None
+    for i in np.flatnonzero(found.known < request.modes).tolist():
+        here = part(found.track, i, i + 1)
+        found.known[i] = _counted(path, found.hulls, float(found.p[i]), request.modes, here)
     good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
     return Reached(*leading(found.track, request.modes), unstable, good)
 
@@ -197,7 +200,7 @@ class FollowedArms:
         here: track of this point alone. known: `all_right_of_line` there, (1,).
         """
         if known[0] < modes:
-            known = np.array([self._counted(one, p, modes, here)])
+            known = np.array([_counted(self.path, one.hulls, p, modes, here)])
         good, unstable = judge_points(here, known, modes, self.request.accuracy)
         if not good[0]:
             return None
@@ -210,13 +213,17 @@ class FollowedArms:
             certified=True,
         )
 
-    def _counted(self, one: Interval, p: float, modes: int, here: Track) -> int:
-        """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 for none."""
-        w, error = leading(here, here.w.shape[1])
-        determinant, hull = arm_determinant(self.path.at(p)), hull_at(one.hulls, p)
-        for line in lines(w[0].tolist(), modes):
-            number = count_right_of(line, determinant, hull).number
-            if number is not None:
-                clear = (np.abs(w[0].real - line) > 2 * error[0]).all()
-                return number if clear and number == (w[0].real > line).sum() else 0
-        return 0
+
+def _counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
+    """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 for none.
+
+    here: track of this point alone.
+    """
+    w, error = leading(here, here.w.shape[1])
+    determinant, hull = arm_determinant(path.at(p)), hull_at(hulls, p)
+    for line in lines(w[0].tolist(), modes):
+        number = count_right_of(line, determinant, hull).number
+        if number is not None:
+            clear = (np.abs(w[0].real - line) > 2 * error[0]).all()
+            return number if clear and number == (w[0].real > line).sum() else 0
+    return 0
