@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.dispersion import PIECE_SAMPLES, sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..value import Value
@@ -29,8 +30,6 @@ RESOLVED = 1e-9
 """Tail of the coefficients' Legendre series, relative, above which an element is halved. The error of a Gauss
 method is about the square of the tail."""
 MAX_HALVINGS = 12
-SAMPLES = 33
-"""Points between two breaks at which the local exponents are looked up."""
 MIN_LEVEL = 2
 """The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
 REUSED = 4
@@ -47,8 +46,9 @@ class ArmDeterminant:
     def __init__(self, rod: Rod):
         self.rod = rod
         self._levels: dict[int, tuple[float, Array]] = {}
-        self._samples = samples_of([rod])
-        self._sampled: Array = np.array(self._samples.local)[:, 0]
+        points, weights, local = sampled(rod)
+        self._sampled: Array = np.array(local)
+        self._samples = Samples(points, weights, LocalCoefficients(*self._sampled[:, None]))
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -102,10 +102,7 @@ class PropagatorElements(NamedTuple):
 
 def samples_of(rods: list[Rod]) -> Samples:
     """Samples of arms of one build."""
-    breaks = rods[0].build.breaks
-    inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
-    weights = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
+    points, weights, _ = sampled(rods[0])
     return Samples(points, weights, Rod.local_of_all(rods, points))
 
 
@@ -138,9 +135,9 @@ def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
     breaks = rods[0].build.breaks
     shares = density.reshape(len(breaks) - 1, -1)
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
-        mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
+        mass = np.append(0.0, np.cumsum(share)) * (stop - start) / PIECE_SAMPLES
         count = max(1, math.ceil(mass[-1]))
-        places = start + (stop - start) * np.arange(SAMPLES + 1) / SAMPLES
+        places = start + (stop - start) * np.arange(PIECE_SAMPLES + 1) / PIECE_SAMPLES
         edges.append(np.interp(mass[-1] * np.arange(1, count + 1) / count, mass, places))
         edges[-1][-1] = stop
     return np.concatenate(edges)

@@ -180,8 +180,8 @@ def _constant(arms: Arms) -> Iterator[Hull]:
 def _constants(ratio: Array) -> Array:
     """Constant alpha that are tried, (WEIGHTS + 1,), for ratios g/nu along arms, (...,)."""
     sizes = np.abs(ratio)
-    some = np.geomspace(max(float(sizes.min()), 1e-3), max(float(sizes.max()), 2e-3), WEIGHTS)
-    return np.append(some, 1.0)
+    ends = np.log(np.maximum([sizes.min(), sizes.max()], (1e-3, 2e-3)))
+    return np.append(np.exp(ends[0] + (ends[1] - ends[0]) * np.arange(WEIGHTS) / (WEIGHTS - 1)), 1.0)
 
 
 def _following(arms: Arms) -> Iterator[Hull]:

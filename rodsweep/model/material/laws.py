@@ -51,8 +51,10 @@ class Law:
 def _neo_hookean_shortening(x: Values) -> Values:
     """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Newton's method on nu, then on e where e is small."""
     x = np.asarray(x, dtype=float)
-    # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0.
-    nu = np.where(x > 0.5, 1 / np.sqrt(3 * np.maximum(x, 0.5)), np.where(x < 0, 1 - 3 * x, 1.0))
+    # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0. Between 1 - x for small
+    # and (3 x)^(-1/2) for large x the first guess is off by some percents.
+    pushed = np.maximum(x, 0.0)
+    nu = np.where(x < 0, 1 - 3 * x, 1 / np.sqrt(1 + 2 * pushed + pushed**2 / (1 + pushed)))
     for _ in range(MAX_STEPS):
         step = (nu**3 + 3 * x * nu**2 - 1) / (3 * nu**2 + 6 * x * nu)
         nu = nu - step

@@ -8,8 +8,6 @@ from abc import ABC, abstractmethod
 from math import isfinite, sqrt
 from typing import Any
 
-import numpy as np
-
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
@@ -29,8 +27,6 @@ from .krylov_schur import EigenSolver, eigen_solver, forget_uniform_solvers
 
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
-SAMPLES = 33
-"""Points of each smooth piece of an arm at which its largest local growth rate is looked up."""
 
 Mesh = Resolution | ArmMesh
 """A mesh of either kind."""
@@ -128,9 +124,7 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
-        breaks = rod.build.breaks
-        inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        growth, _ = local_growth(rod, (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel())
+        growth, _ = local_growth(rod)
         self.shift = SHIFT_ABOVE_GROWTH * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
