@@ -129,7 +129,8 @@ class Rod:
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
         local = rods[0].build.local(values["F"], scaled(values), u)
-        return LocalCoefficients(*(np.broadcast_to(x, (len(rods), *u.shape)) for x in local))
+        whole = (len(rods), *u.shape)
+        return LocalCoefficients(*(x if x.shape == whole else np.broadcast_to(x, whole) for x in local))
 
     @property
     def crushing_force(self) -> float:
