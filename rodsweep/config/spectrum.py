@@ -63,7 +63,7 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def _could_follow(self) -> bool:
-        return self.certifies and self.standard and not (self.spectrum.vectors or self.parameters.is_list)
+        return self.certifies and not (self.spectrum.vectors or self.parameters.is_list)
 
     @property
     def meaning(self) -> dict[str, Any]:

@@ -8,15 +8,21 @@ The largest growth rate suggests where to search for eigenvalues of the finite r
 the mesh. Neither claims that an eigenvalue of the finite rod is near.
 """
 
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
+from .material.build import LocalCoefficients
 from .rod import Rod
 
 SAMPLES = 64
 """Number of samples of K, at equal ratios: 13 % apart, enough for an estimate."""
+PIECE_SAMPLES = 33
+"""Points of each smooth piece of an arm at which local waves are evaluated."""
+KEPT = 16
+"""Arms whose samples are kept."""
 LOWEST = 1e-4
 """Smallest sample of K in units of F g, the K above which every wave decays."""
 FRACTIONS: Array = LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
@@ -37,12 +43,33 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     return (float(rates[best]), float(np.sqrt(K[best]))) if rates[best] > 0 else (0.0, 0.0)
 
 
-def local_growth(rod: Rod, u: Array) -> tuple[Array, Array]:
-    """Growth rates and wave numbers of the most amplified waves at points u of an arm, both (n,).
+class SampledArm(NamedTuple):
+    """Points between the breaks of an arm, the length that each stands for, and the coefficients there.
+
+    points, weights: (points,).
+    """
+
+    points: Array
+    weights: Array
+    local: LocalCoefficients
+
+
+@lru_cache(maxsize=KEPT)
+def sampled(rod: Rod) -> SampledArm:
+    """The samples of an arm, kept for the next question about it."""
+    breaks = rod.build.breaks
+    inside = (np.arange(PIECE_SAMPLES) + 0.5) / PIECE_SAMPLES
+    points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
+    return SampledArm(points, np.repeat(np.diff(breaks) / PIECE_SAMPLES, PIECE_SAMPLES), rod.local(points))
+
+
+@lru_cache(maxsize=KEPT)
+def local_growth(rod: Rod) -> tuple[Array, Array]:
+    """Growth rates and wave numbers of the most amplified waves at the samples u of an arm, both (points,).
 
     Each point is treated as a uniform rod with the local coefficients.
     """
-    nu, c2, c3, gamma2, gamma3, g = rod.local(u)
+    nu, c2, c3, gamma2, gamma3, g = sampled(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
     K, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
     best = np.argmax(rates, axis=-1)[:, None]

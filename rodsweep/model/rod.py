@@ -4,7 +4,7 @@
 drag by the name of a parameter, because other parameters may multiply the stiffness or drag.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple, TypeVar
@@ -123,6 +123,15 @@ class Rod:
     def local(self, u: Array) -> LocalCoefficients:
         """Coefficients of the transverse operator at points u, (points,), none of them a break."""
         return self.build.local(self.F, scaled(self.values), u)
+
+    @staticmethod
+    def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
+        """`local` of n rods of one build, (n, *u.shape), in the time of one."""
+        shape = (len(rods), *(1,) * u.ndim)
+        values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
+        local = rods[0].build.local(values["F"], scaled(values), u)
+        whole = (len(rods), *u.shape)
+        return LocalCoefficients(*(x if x.shape == whole else np.broadcast_to(x, whole) for x in local))
 
     @property
     def crushing_force(self) -> float:

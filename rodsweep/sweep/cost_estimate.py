@@ -40,13 +40,17 @@ FIRST_POINTS = 2.0
 """Cost of the first point of a stretch, in units of a point solved alone."""
 FOLLOWED_MS = 0.006
 """Time of every point of a stretch, followed from a neighbour, in ms."""
+FOLLOWED_ARM_MS = 0.4
+"""Time of every point of a stretch of arms that are not uniform, in ms: median over 24 random arms, the first
+point included."""
 LINE_MS = 24.0
 """Time of a search for crossings along one parameter, in ms: mean over 72 rods, of which a few take four
 times as long."""
 LINE_CERTIFICATE_MS = 16.0
 """Time of the certificate of a search, in ms: mean over the 72 rods."""
-LINE_OF_ARM_MS = 500.0
-"""Time of a search along F of an arm that is not uniform, in ms."""
+LINE_OF_ARM_MS = 200.0
+"""Time of a search along F of an arm that is not uniform, in ms: mean over 64 random arms, of which half take
+40 and a few soft ones 2000."""
 HOPF_SEARCH_MS = 25.0
 """Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
@@ -133,11 +137,15 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
-def estimate_followed(alone: Estimate, stretches: Stretches) -> Estimate:
-    """Cost of spectra along stretches, from the cost of the same points solved alone."""
+def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
+    """Cost of spectra along stretches, from the cost of the same points solved alone.
+
+    standard: whether all rods are uniform and of linear material.
+    """
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
-    return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * FOLLOWED_MS)
+    each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS
+    return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * each)
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:

@@ -95,7 +95,9 @@ class SpectrumTask(ProvedTask):
             return estimate_two_meshes(self.points, options.modes, self.config.accuracy)
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
         alone = estimate_spectra(self.points, options.modes, accuracy, self.config.certifies)
-        return estimate_followed(alone, self.stretches) if self.stretches else alone
+        if self.stretches is None:
+            return alone
+        return estimate_followed(alone, self.stretches, self.config.standard)
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up

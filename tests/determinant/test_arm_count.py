@@ -17,6 +17,8 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.1,) * 6, (0.1,) * 6))
+SOFT_ROW = (0.1, 0.01, 0.1, 0.1, 0.1, 0.1)
+SOFT_STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, SOFT_ROW, SOFT_ROW))
 
 
 def line_in_gap(w):
@@ -85,7 +87,7 @@ def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
 def test_stepped_arm_without_rotational_drag_is_bounded_by_its_clamp():
     """No weight is continuous across the jump; theta(0) = 0 bounds what is left while shear is stiff."""
     stiff = Rod(F=2.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
-    soft = Rod(F=2.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=STEP))
+    soft = Rod(F=2.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=SOFT_STEP))
     assert 0 < hull_of(stiff).c < 0.5
     assert hull_of(soft).a == np.inf
     refused = count_right_of(-1.0, ArmDeterminant(soft), hull_of(soft))

@@ -1,17 +1,22 @@
 """D of arms along a path of one parameter: eigenvalues with slopes, and double eigenvalues.
 
-D depends on the parameter through all coefficients along the arm, so derivatives with respect to the
-parameter are differences between determinants of neighbouring arms. The differences need not be accurate:
-Newton's method and predictors use them, and the residual D decides convergence.
+D depends on the parameter through all coefficients along the arm. Where a family of arms
+(`rodsweep.determinant.arm.family`) contains the arm, D and its derivative by the parameter come from it.
+Elsewhere derivatives with respect to the parameter are central differences between determinants of
+neighbouring arms. These need not be accurate: Newton's method and predictors use them, and the residual D
+decides convergence.
 """
 
 import math
+from collections.abc import Callable
 
 from ..newton import FAILED, JACOBIAN_STEP, LAST_NEWTON_STEP, MAX_NEWTON_STEPS, Zero
 from ..parameter_path import Path
-from ..value import ROUND_OFF, Value
+from ..roots import BLURRED
+from ..value import ROUND_OFF, SECOND_STEP, Value
 from .determinant import ArmDeterminant, arm_determinant
-from .roots import refined, root_error, second_derivative
+from .family import ArmFamily, eigenvalue_in, value_in
+from .roots import refined, root_error
 
 CENTRAL = ((1, 0.5), (-1, -0.5))
 FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
@@ -21,10 +26,13 @@ MAX_SHORTENINGS = 20
 
 
 class ArmAlongPath:
-    """D of the arms of one path, as a function of the path variable p."""
+    """D of the arms of one path, as a function of the path variable p.
 
-    def __init__(self, path: Path):
-        self.path = path
+    family: the family of arms that contains p, or None: then D is that of the arm at p itself.
+    """
+
+    def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
+        self.path, self.family = path, family
 
     def determinant(self, p: float) -> ArmDeterminant:
         """D of the arm at p."""
@@ -32,6 +40,11 @@ class ArmAlongPath:
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """(w, dw/dp, error of w) of the eigenvalue w near the guess, at p."""
+        family = self.family(p)
+        if family is not None and abs(guess) < family.W / 2:
+            w, slope, error = eigenvalue_in(family, guess, p)
+            if error <= BLURRED * abs(w):
+                return w, slope, error
         here = self.determinant(p)
         w = refined(guess, here)
         value = here.value(w)
@@ -55,13 +68,13 @@ class ArmAlongPath:
         first = p
         last = math.inf
         for _ in range(2 * MAX_NEWTON_STEPS):
-            here = self.determinant(p)
-            value = here.value(complex(x, 0.0))
+            value = self._value(x, p)
             D = value.D.real
             D_w = value.D_w.real
             S = value.S
             noise = value.noise
-            D_ww = second_derivative(complex(x, 0.0), S, here).real
+            h = SECOND_STEP * abs(x)
+            D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
             stencil, k = self._stencil(p, JACOBIAN_STEP * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
             D_p, D_wp = (sum(weight * value[i] for weight, value in neighbours) / k for i in range(2))
@@ -83,9 +96,16 @@ class ArmAlongPath:
             last = abs(in_x)
         return FAILED
 
+    def _value(self, x: float, p: float) -> Value:
+        """D and D_w at real w = x."""
+        family = self.family(p)
+        if family is not None and abs(x) < family.W:
+            return value_in(family, complex(x, 0.0), p)
+        return self.determinant(p).value(complex(x, 0.0))
+
     def _real(self, x: float, p: float, S: float) -> tuple[float, float]:
         """(D, D_w) exp(-S) at real w = x."""
-        value: Value = self.determinant(p).value(complex(x, 0.0))
+        value = self._value(x, p)
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 

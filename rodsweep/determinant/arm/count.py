@@ -23,11 +23,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Complex
+from ...arrays import Array, Complex
+from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import LEAST_HEIGHT, NOT_AN_INTEGER, WIDTH_ADDED, WIDTH_FACTOR, Count
 from ..value import Value
 from .determinant import ArmDeterminant
 from .hull import Hull, clearance
+from .value import chain_size, chain_value
 
 LARGEST_TURN = 1.5
 """Largest allowed error of a tangent's phase, in radians. The errors of two tangents then sum to less than
@@ -85,6 +87,7 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
     nodes = 0
     total = 0.0
     try:
+        node_at(corner, determinant, hull)  # makes the elements for the largest |w|, which serve most others
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, determinant, hull)
             total += change
@@ -136,7 +139,14 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
 
 def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> PhaseNode:
     """The node at w; its reach is 0 if rounding errors hide D."""
-    value = determinant.value(w)
+    length = determinant.length(w)
+    return _node(w, length, hull, determinant.level(abs(w) + RADII[0] * length))
+
+
+@compiled
+def _node(w: complex, length: float, hull: Hull, level: tuple[float, Array]) -> PhaseNode:
+    """The node about w; level: (W, propagators) for |v| <= W, which hold the largest circle about w."""
+    value = chain_value(w, level[0], level[1])
     if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
         return PhaseNode(w, value.D, 0j, 0.0)
     L = value.D_w / value.D
@@ -145,35 +155,28 @@ def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> PhaseNode:
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
         reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
-    if not reach > determinant.length(w):
-        reach = max(reach, _reach_inside(w, value, L, determinant))
+    if not reach > length:
+        reach = max(reach, _reach_inside(w, value, L, length, level))
     return PhaseNode(w, value.D, L, reach)
 
 
-def _reach_inside(w: complex, value: Value, L: complex, determinant: ArmDeterminant) -> float:
+@compiled
+def _reach_inside(w: complex, value: Value, L: complex, length: float, level: tuple[float, Array]) -> float:
     """The reach of a node at w inside the hull, from the largest |f| on circles about w."""
-    length = min(determinant.length(w), STEEPEST / max(abs(L), 1e-300))
+    unit = min(length, STEEPEST / max(abs(L), 1e-300))
     room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
+    here = math.log(abs(value.D)) + value.S
     best = 0.0
     for factor in RADII:
-        rho = factor * length
-        M = BETWEEN_POINTS * _largest_on_circle(w, rho, value, L, determinant)
+        rho = factor * unit
+        size = -math.inf  # log of the largest |f| of the points of the circle
+        for direction in UNIT_CIRCLE:
+            step = rho * direction
+            size = max(size, chain_size(w + step, level[0], level[1]) - (L * step).real)
+        M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
         q = room / M if M > 0 else math.inf
         reach = rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q < math.inf else 0.0
         if reach <= best:
             break
         best = reach
     return best
-
-
-def _largest_on_circle(
-    w: complex, rho: float, value: Value, L: complex, determinant: ArmDeterminant
-) -> float:
-    """The largest |f/f(w)| over `CIRCLE` points of the circle of radius rho about w; inf for overflow."""
-    size = -math.inf
-    for step in (rho * UNIT_CIRCLE).tolist():
-        there = determinant.value(w + step)
-        if there.D != 0:
-            size = max(size, math.log(abs(there.D)) + there.S - (L * step).real)
-    excess = size - math.log(abs(value.D)) - value.S
-    return math.exp(excess) if excess < 700 else math.inf

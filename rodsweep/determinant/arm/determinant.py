@@ -1,128 +1,155 @@
-"""D(w) of one arm at any w, from elements whose length depends on |w|.
+"""D(w) of one arm at any w: elements that suit the size of w, made when they are first needed.
 
-The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements,
-computed at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`LARGEST_EXPONENT`) and that the Gauss points resolve the coefficients; every break of the profile is an
-end of an element.
+The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements.
+They are so short that the fastest local exponential grows by exp(`LONGEST`) at most and that the Gauss
+points resolve the coefficients; a break of the profile is always an end of an element.
 """
 
 import cmath
 import math
 from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.dispersion import PIECE_SAMPLES, sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..value import Value
 from .propagators import STAGES, element_propagators, gauss_method, tail_of
 from .value import chain_value
 
-LARGEST_EXPONENT = 2.4
-"""Largest |q| h of an element of length h: twelve stages integrate exp(2.4) to 1e-17."""
-LENGTH_OVER_APEX_DISTANCE = 0.5
+LONGEST = 2.4
+"""Largest |q| h of an element: twelve stages integrate exp(2.4) to 1e-17."""
+TO_THE_TIP = 0.5
 """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
 RESOLVED = 1e-9
-"""Relative tail of the coefficients' Legendre series above which an element is halved. The error of a Gauss
+"""Tail of the coefficients' Legendre series, relative, above which an element is halved. The error of a Gauss
 method is about the square of the tail."""
 MAX_HALVINGS = 12
-"""Maximum halvings of an element, down to 1/4096 of its first length."""
-SAMPLES = 33
-"""Points between two breaks at which the local exponents are evaluated."""
 MIN_LEVEL = 2
-"""The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
+"""The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
+REUSED = 4
+"""Number of levels above the own one whose elements are used if they exist: to make elements costs as much as
+some thirty evaluations on twice as many."""
 MAX_ELEMENTS = 4000
-"""Maximum elements of an arm; cones with tapers from 0.1 to 1 need 4 to 60 for |w| up to 1e6."""
-MAX_CACHED_ARMS = 16
-"""Number of arms whose propagators stay in memory."""
+KEPT = 16
+"""Arms whose propagators are kept."""
 
 
 class ArmDeterminant:
-    """D(w) of one arm. Methods raise FloatingPointError if `MAX_ELEMENTS` elements do not resolve the arm."""
+    """D(w) of one arm; raises FloatingPointError where no `MAX_ELEMENTS` elements resolve it."""
 
     def __init__(self, rod: Rod):
         self.rod = rod
         self._levels: dict[int, tuple[float, Array]] = {}
-        breaks = rod.build.breaks
-        inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        self._points: Array = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
-        self._weights: Array = np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
-        self._local = rod.local(self._points)
-        self._sampled: Array = np.array(self._local)
+        points, weights, local = sampled(rod)
+        self._sampled: Array = np.array(local)
+        self._samples = Samples(points, weights, LocalCoefficients(*self._sampled[:, None]))
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
-        W, polynomials = self._level(abs(w))
+        W, polynomials = self.level(abs(w))
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
-        """The number of elements for D at |w| = size."""
-        return len(self._level(size)[1])
+        """The number of elements that D takes at |w| = size."""
+        return len(self.level(size)[1])
 
     def wave_number(self, w: complex) -> float:
         """The mean |q| of the fastest exponential along the arm, in 1/L."""
-        return mean_waves(w, self.rod.F, self._sampled, self._weights)[0]
+        return mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[0]
 
     def length(self, w: complex) -> float:
-        """Change of w that changes an exponent of D, integrated along the arm, by about one."""
-        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._weights)[1], 1e-300)
+        """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
+        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
 
-    def _level(self, size: float) -> tuple[float, Array]:
-        """(W, propagators) of the level for |w| = size; propagators: (elements, terms, 4, 4)."""
+    def level(self, size: float) -> tuple[float, Array]:
+        """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists."""
         level = MIN_LEVEL
         if size > 4.0**MIN_LEVEL:
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)
-        if level not in self._levels:
-            W = max(4.0**level, size)
-            self._levels[level] = W, self._propagators(W)
+        for existing in range(level, level + REUSED + 1):
+            if existing in self._levels:
+                return self._levels[existing]
+        W = max(4.0**level, size)
+        self._levels[level] = W, self._propagators(W)
         return self._levels[level]
 
     def _propagators(self, W: float) -> Array:
-        edges = self._edges(W)
-        points, _, _ = gauss_method(STAGES)
-        for _ in range(MAX_HALVINGS):
-            if not len(edges) <= MAX_ELEMENTS:
-                break
-            lengths = np.diff(edges)
-            local = self.rod.local(edges[:-1, None] + lengths[:, None] * points)
-            coarse = tail_of(local) > RESOLVED
-            if not coarse.any():
-                return element_propagators(self.rod.F, local, lengths, W)
-            middles = (edges[:-1] + edges[1:])[coarse] / 2
-            edges = np.sort(np.append(edges, middles))
-        raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
-
-    def _edges(self, W: float) -> Array:
-        """Ends of elements for |w| <= W, (elements + 1,).
-
-        The local exponents and the taper require a density of elements; each element has an equal share.
-        """
-        density = bound_of_waves(W, self.rod.F, self._local) / LARGEST_EXPONENT
-        if self.rod.taper != 1:
-            apex = 1 / (1 - self.rod.taper)
-            density = np.maximum(density, 1 / (LENGTH_OVER_APEX_DISTANCE * np.abs(apex - self._points)))
-        edges = [np.zeros(1)]
-        breaks = self.rod.build.breaks
-        shares = np.split(density, len(breaks) - 1)
-        for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
-            mass = np.append(0.0, np.cumsum(share)) * (stop - start) / SAMPLES
-            count = max(1, math.ceil(mass[-1]))
-            places = np.linspace(start, stop, SAMPLES + 1)
-            edges.append(np.interp(np.linspace(0, mass[-1], count + 1)[1:], mass, places))
-            edges[-1][-1] = stop
-        return np.concatenate(edges)
+        found = elements_for([self.rod], self._samples, W)
+        return element_propagators([self.rod.F], found.local, found.lengths, W)[0]
 
 
-def _as_uniform(w: complex, F: float, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
-    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that equal the arm at each point."""
+class Samples(NamedTuple):
+    """Points between the breaks of n arms, (points,), the length that each stands for, (points,), and the
+    arms' coefficients there, (n, points)."""
+
+    points: Array
+    weights: Array
+    local: LocalCoefficients
+
+
+class PropagatorElements(NamedTuple):
+    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, STAGES)."""
+
+    lengths: Array
+    local: LocalCoefficients
+
+
+def samples_of(rods: list[Rod]) -> Samples:
+    """Samples of arms of one build."""
+    points, weights, _ = sampled(rods[0])
+    return Samples(points, weights, Rod.local_of_all(rods, points))
+
+
+def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
+    """Elements that resolve each of some arms of one build for |w| <= W."""
+    edges = _edges(rods, samples, W)
+    points, _, _ = gauss_method(STAGES)
+    for _ in range(MAX_HALVINGS):
+        if not len(edges) <= MAX_ELEMENTS:
+            break
+        lengths = np.diff(edges)
+        local = Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points)
+        coarse = tail_of(local).max(axis=0) > RESOLVED
+        if not coarse.any():
+            return PropagatorElements(lengths, local)
+        middles = (edges[:-1] + edges[1:])[coarse] / 2
+        edges = np.sort(np.append(edges, middles))
+    raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
+
+
+def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
+    """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
+    F, tapers = (np.array([getattr(rod, name) for rod in rods]) for name in ("F", "taper"))
+    density: Array = bound_of_waves(W, F[:, None], samples.local).max(axis=0) / LONGEST
+    for taper in (tapers.min(), tapers.max()):
+        if taper != 1:
+            apex = 1 / (1 - taper)
+            density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - samples.points)))
+    edges = [np.zeros(1)]
+    breaks = rods[0].build.breaks
+    shares = density.reshape(len(breaks) - 1, -1)
+    for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
+        mass = np.append(0.0, np.cumsum(share)) * (stop - start) / PIECE_SAMPLES
+        count = max(1, math.ceil(mass[-1]))
+        places = start + (stop - start) * np.arange(PIECE_SAMPLES + 1) / PIECE_SAMPLES
+        edges.append(np.interp(mass[-1] * np.arange(1, count + 1) / count, mass, places))
+        edges[-1][-1] = stop
+    return np.concatenate(edges)
+
+
+def _as_uniform(w: complex, F: Any, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
+    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that the arm is at each point."""
     return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
 
 
-def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
-    """An upper bound of |q| for all |w| <= W, at the points of `local`, shape (points,)."""
+def bound_of_waves(W: float, F: Any, local: LocalCoefficients) -> Array:
+    """An upper bound of |q| for all |w| <= W, at the points of `local`, (..., points); F: (..., 1)."""
     w, force, c2, gamma3 = _as_uniform(W, F, local)
     square = w * (np.abs(local.g) * local.nu + c2 * gamma3 * w)
     return np.sqrt((c2 + gamma3) * w + np.abs(force * local.g) + 2 * np.sqrt(square))
@@ -132,22 +159,17 @@ def bound_of_waves(W: float, F: float, local: LocalCoefficients) -> Array:
 def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[float, float]:
     """(mean |q| of both pairs of exponents, mean of the larger |dq/dw|) along an arm.
 
-    local: the `LocalCoefficients` at points, (6, points). weights: quadrature weights, (points,).
+    local: the `LocalCoefficients` at points, (6, points); weights: of these points, (points,).
     """
-    number = 0.0
-    rate = 0.0
+    number, rate = 0.0, 0.0
     for i in range(len(weights)):
         nu, c2, c3, gamma2, gamma3, g = local[:, i]
-        v = w * gamma2 * c3
-        T = c2 / c3 + gamma3 / gamma2
-        X = c2 / c3 * gamma3 / gamma2
+        v, T, X = w * gamma2 * c3, c2 / c3 + gamma3 / gamma2, c2 / c3 * gamma3 / gamma2
         P = cmath.sqrt(v * (g * nu + X * v))
-        M = T * v - F * c3 * g
-        size = abs(P)
-        first = math.sqrt(abs(M + 2 * P))
-        second = math.sqrt(abs(M - 2 * P))
+        M, size = T * v - F * c3 * g, abs(P)
+        first, second = math.sqrt(abs(M + 2 * P)), math.sqrt(abs(M - 2 * P))
         towards = P.conjugate() / size if size > 0 else 1 + 0j
-        # D is even in P, so for small P the rate is limited: the branch point of P does not affect D.
+        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
         turn = (g * nu + 2 * X * v) * towards / max(size, 1.0, first, second)
         fast = max(abs(T + turn) / max(1.0, first), abs(T - turn) / max(1.0, second)) / 2
         number += weights[i] * (first + second) / 2
@@ -155,7 +177,7 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
     return number, rate
 
 
-@lru_cache(maxsize=MAX_CACHED_ARMS)
+@lru_cache(maxsize=KEPT)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
-    """D of the arm `rod`, cached."""
+    """D of the arm, kept for the next question about it."""
     return ArmDeterminant(rod)

@@ -9,21 +9,22 @@ The last three terms are at most a n N^2, where a is the largest norm of the mat
 
     [[alpha'/(alpha sqrt(gamma2 c2)), F sqrt(alpha c3/gamma2)], [(g - alpha nu)/sqrt(gamma3 alpha c2), 0]]
 
-along the arm. For gamma3 = 0 the clamp, theta(0) = 0, bounds the term with theta by c n^2 N^2 with
-4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both bounds give, for some n >= 0,
+along the arm. Where gamma3 is small the term with theta is better bounded by theta(0) = 0: it is at most
+c n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
 
     Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
 
-a convex region bounded by a parabola. The smallest region over several alpha is chosen. For a uniform rod,
-alpha = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) gives the region of `rodsweep.determinant.certificate.box`.
+a convex region bounded by a parabola. Of several alpha the one with the smallest region is taken. With alpha
+= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
+`rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are evaluated at points between the breaks, with the safety factor `HULL_MARGIN`.
+Extremes along the arm are looked up at points between the breaks, with `MARGIN` for what lies between them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from math import inf, isfinite, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,32 +33,33 @@ from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 
-CHEBYSHEV_POINTS = 25
-"""Chebyshev points of each smooth piece, for evaluating coefficients and differentiating alpha."""
-HULL_MARGIN = 1.05
-"""Safety factor on a and c, for extremes between the points and for rounding."""
+POINTS = 25
+"""Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
+MARGIN = 1.05
+"""Factor on a, for extremes between the points and for rounding."""
 INSIDE = 1e-9
-"""Distance of the first and last point from the ends of a piece, in units of the piece's length."""
-LARGEST_C = 0.9
-"""Largest useful c: the region grows without bound as c approaches 1."""
+"""Distance of the first and last point from the ends of a piece, in units of its length."""
+LARGEST_SHARE = 0.9
+"""Largest c: the region grows beyond use where c approaches 1."""
+WIDE_SHARE = 0.15
+"""The c from which on a region counts as wide, whatever its a."""
 MIDDLES = (0.0, 0.5, 1.0)
-"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
+"""Factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha that are tried."""
 WEIGHTS = 41
-"""Number of constant weights alpha to try, between the smallest and the largest g/nu."""
+"""Constant weights alpha that are tried, between the smallest and the largest g/nu."""
 DIRECTIONS = 48
-"""Number of normals of the region to try for the distance of a point."""
+"""Normals of the region that are tried for the distance of a point."""
 
 
 class Hull(NamedTuple):
-    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf if no bound is known."""
+    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf where none is known."""
 
     a: float
     c: float
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """(max Re w, max |Im w|) of the eigenvalues with Re w >= -depth, depth >= 0."""
-        a = self.a
-        b = 1 - self.c
+        a, b = self.a, 1 - self.c
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
         pad = 0.01 * depth + 1e-6
@@ -65,20 +67,19 @@ class Hull(NamedTuple):
 
 
 UNKNOWN = Hull(inf, 0.0)
-"""The whole plane, when no bound applies."""
+"""The region where no bound applies."""
 
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """(distance, normal): lower bound of the distance of w, Im w >= 0, from the hull; unit normal towards w.
+    """(distance of w, Im w >= 0, from the hull, unit normal towards w); at most 0 for w inside.
 
-    The distance is at most 0 for w inside. <normal, w - v> >= distance for every v in the hull.
+    The distance is a lower bound, and the normal n has <n, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
-    best = -inf
-    normal = 1 + 0j
+    best, normal = -inf, 1 + 0j
     for k in range(DIRECTIONS):
-        # The support function grows without bound as the normal approaches the imaginary axis.
+        # Close to the imaginary axis the support function grows without bound.
         T = (k / (DIRECTIONS - k)) ** 2
         if not c * T < b:
             break
@@ -86,100 +87,154 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
         support = a * a * (1 + T) * (1 + T) / (4 * (b - c * T))
         distance = (w.real + T * w.imag - support) / size
         if distance > best:
-            best = distance
-            normal = complex(1 / size, T / size)
+            best, normal = distance, complex(1 / size, T / size)
     return best, normal
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest known region that contains the spectrum of the arm; `UNKNOWN` without a bound."""
-    pieces = _pieces(rod)
-    candidates = [*_constant(rod.F, pieces), *_following(rod, pieces), *_by_clamp(rod.F, pieces)]
-    best = min(candidates, key=lambda hull: hull.a**2 / (1 - hull.c), default=UNKNOWN)
-    return Hull(HULL_MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
+    """The smallest of the regions that contain the spectrum of the arm; `UNKNOWN` where none is found."""
+    return _hull(_arms([rod]))
 
 
-class Piece(NamedTuple):
-    """Coefficients at the Chebyshev points of a smooth piece, increasing u, (CHEBYSHEV_POINTS,)."""
+class Hulls(NamedTuple):
+    """Regions for the arms of a path between places, (k,), increasing: a and c of each interval, (k - 1,)."""
 
-    u: Array
+    places: Array
+    a: Array
+    c: Array
+
+
+def hulls_along(rods: Sequence[Rod], places: Array) -> Hulls:
+    """The regions for all arms between places of a path, (k,), from the arms at them.
+
+    Extremes along the path are, as those along an arm, looked up at points, with `MARGIN` between them.
+    """
+    arms = _arms(rods)
+    hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+    return Hulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
+
+
+@compiled
+def hull_at(hulls: Hulls, p: float) -> Hull:
+    """The region for the arm at p, from the first place to the last."""
+    i = 0
+    while i < len(hulls.a) - 1 and p > hulls.places[i + 1]:
+        i += 1
+    return Hull(hulls.a[i], hulls.c[i])
+
+
+def _hull(arms: "Arms") -> Hull:
+    candidates = [*_constant(arms), *_following(arms), *_by_clamp(arms)]
+    best = min(candidates, key=lambda hull: _size(*hull), default=UNKNOWN)
+    return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
+
+
+def _size(a: Any, c: Any) -> Any:
+    """A measure of regions, numbers or arrays: its least is the region that is taken."""
+    return a**2 * (1 + (c / WIDE_SHARE) ** 4)
+
+
+class Arms(NamedTuple):
+    """n arms: F, (n, 1, 1); lengths of the smooth pieces, (pieces,); coefficients, (n, pieces, POINTS).
+
+    The points of a piece are its Chebyshev points, with increasing u.
+    """
+
+    F: Array
+    lengths: Array
     local: LocalCoefficients
+    continuous: bool
 
 
-def _pieces(rod: Rod) -> list[Piece]:
-    x = -np.cos(np.pi * np.arange(CHEBYSHEV_POINTS) / (CHEBYSHEV_POINTS - 1)) * (1 - 2 * INSIDE)
-    breaks = rod.build.breaks
-    grids = [a + (b - a) * (x + 1) / 2 for a, b in zip(breaks[:-1], breaks[1:], strict=True)]
-    return [Piece(u, rod.local(u)) for u in grids]
+def _arms(rods: Sequence[Rod]) -> Arms:
+    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    build = rods[0].build
+    lengths = np.diff(build.breaks)
+    u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
+    F = np.array([rod.F for rod in rods])[:, None, None]
+    return Arms(F, lengths * (1 - 2 * INSIDE), Rod.local_of_all(rods, u), build.continuous)
 
 
-def _joined(pieces: list[Piece]) -> LocalCoefficients:
-    """The coefficients of all pieces, concatenated."""
-    return LocalCoefficients(*(np.concatenate(rows) for rows in zip(*(p.local for p in pieces), strict=True)))
+def _part(arms: Arms, chosen: slice) -> Arms:
+    """Some of the arms."""
+    return arms._replace(F=arms.F[chosen], local=LocalCoefficients(*(x[chosen] for x in arms.local)))
 
 
-def _constant(F: float, pieces: list[Piece]) -> Iterator[Hull]:
-    """The regions for constant alpha; no region if an arm with shear has gamma3 = 0 somewhere."""
-    nu, c2, c3, gamma2, gamma3, g = _joined(pieces)
-    push = F**2 * float((c3 / gamma2).max())
+def _constant(arms: Arms) -> Iterator[Hull]:
+    """The regions by constant alpha; none where gamma3 = 0 lets an arm that shears rotate freely."""
+    nu, c2, c3, gamma2, gamma3, g = (x.ravel() for x in arms.local)
+    push = float((arms.F**2 * arms.local.c3 / arms.local.gamma2).max())
     if not c2.any():  # then g = nu
         yield Hull(sqrt(push), 0.0)
         return
     if not gamma3.all():
         return
-    ratio = np.abs(g / nu)
-    between = np.geomspace(max(float(ratio.min()), 1e-3), max(float(ratio.max()), 2e-3), WEIGHTS)
-    alphas = np.append(between, 1.0)
-    turns = ((g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)).max(axis=1)
+    alphas = _constants(g / nu)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squares = (g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)
+    rigid = np.where(alphas[:, None] == 1, 0.0, inf)  # where c2 = 0 is g = nu
+    turns = np.where(c2 > 0, squares, rigid).max(axis=1)
     yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
 
 
-def _following(rod: Rod, pieces: list[Piece]) -> Iterator[Hull]:
-    """The regions for alpha = g/(nu + ...); no region unless g > 0 and alpha has no jumps."""
-    nu, c2, _, _, _, g = _joined(pieces)
-    if not (g > 0).all() or not (c2 > 0).all() or not rod.build.continuous:
+def _constants(ratio: Array) -> Array:
+    """Constant alpha that are tried, (WEIGHTS + 1,), for ratios g/nu along arms, (...,)."""
+    sizes = np.abs(ratio)
+    ends = np.log(np.maximum([sizes.min(), sizes.max()], (1e-3, 2e-3)))
+    return np.append(np.exp(ends[0] + (ends[1] - ends[0]) * np.arange(WEIGHTS) / (WEIGHTS - 1)), 1.0)
+
+
+def _following(arms: Arms) -> Iterator[Hull]:
+    """The regions by an alpha that follows g/nu, which must be above 0 and without jumps."""
+    if not (arms.local.g > 0).all() or not (arms.local.c2 > 0).all() or not arms.continuous:
         return
     for factor in MIDDLES:
-        yield Hull(max(_norm(rod.F, piece, factor) for piece in pieces), 0.0)
+        yield Hull(_norm(arms, factor), 0.0)
 
 
-def _norm(F: float, piece: Piece, factor: float) -> float:
-    """The largest norm of the matrix along a piece, with `factor` of `MIDDLES` in alpha."""
-    nu, c2, c3, gamma2, gamma3, g = piece.local
-    level = factor * abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
+def _norm(arms: Arms, factor: float) -> float:
+    """The largest norm of the matrix along arms."""
+    nu, c2, c3, gamma2, gamma3, g = arms.local
+    F = arms.F
+    level = factor * np.abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
     alpha = g / (nu + level)
-    slope = _chebyshev()[0] @ np.log(alpha) * 2 / (piece.u[-1] - piece.u[0])
+    slope = np.log(alpha) @ _chebyshev()[0].T * 2 / arms.lengths[:, None]
     A = slope / np.sqrt(gamma2 * c2)
     B = F * np.sqrt(alpha * c3 / gamma2)
     e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
     C = np.where(e == 0, 0.0, e / np.sqrt(np.where(e == 0, 1.0, gamma3 * alpha * c2)))
-    total = A**2 + B**2 + C**2
-    product = B * C
+    total, product = A**2 + B**2 + C**2, B * C
     largest = (total + np.sqrt(np.maximum(total**2 - 4 * product**2, 0.0))) / 2
     return sqrt(float(largest.max()))
 
 
 @cache
 def _chebyshev() -> tuple[Array, Array]:
-    """Matrices (derivative, integral from -1) of the interpolant through the points in [-1, 1]."""
-    x = -np.cos(np.pi * np.arange(CHEBYSHEV_POINTS) / (CHEBYSHEV_POINTS - 1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, CHEBYSHEV_POINTS - 1))
+    """(derivative, integral from -1) of the interpolant through the points in [-1, 1], as matrices."""
+    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, POINTS - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
-    derivative = np.polynomial.chebyshev.chebvander(x, CHEBYSHEV_POINTS - 2) @ slopes
-    return derivative, np.polynomial.chebyshev.chebvander(x, CHEBYSHEV_POINTS) @ integrals
+    derivative = np.polynomial.chebyshev.chebvander(x, POINTS - 2) @ slopes
+    return derivative, np.polynomial.chebyshev.chebvander(x, POINTS) @ integrals
 
 
-def _by_clamp(F: float, pieces: list[Piece]) -> Iterator[Hull]:
-    """The region for alpha = 1 and theta(0) = 0, without rotational drag; no region if c is too large."""
-    below = 0.0  # int_0^u c3 du at the start of the piece
-    integral = 0.0  # 4 c^2/F^2: for alpha = 1, g - alpha nu = F c2
-    for u, (_, c2, c3, _, _, _) in pieces:
-        along = _chebyshev()[1] * (u[-1] - u[0]) / 2
-        turned = below + along @ c3
-        integral += float(along[-1] @ (c2 * turned))
-        below = float(turned[-1])
-    c = HULL_MARGIN * abs(F) * sqrt(max(integral, 0.0)) / 2
-    local = _joined(pieces)
-    if c < LARGEST_C:
-        yield Hull(abs(F) * sqrt(float((local.c3 / local.gamma2).max())), c)
+def _by_clamp(arms: Arms) -> Iterator[Hull]:
+    """The regions by constant alpha and theta(0) = 0, which need no rotational drag."""
+    nu, c2, c3, gamma2, _, g = arms.local
+    lengths = arms.lengths[:, None]
+    along = c3 @ _chebyshev()[1].T * lengths / 2  # integrals of c3 from the start of each piece
+    below = np.cumsum(along[..., -1:], axis=1) - along[..., -1:]
+    weights = (_chebyshev()[1][-1] * lengths / 2 * (below + along)).ravel()
+    nu, c2 = nu.ravel(), c2.ravel()
+    pull = (arms.F * arms.local.c2).ravel()
+    alphas = _constants(g / arms.local.nu)[:, None] if c2.all() else np.ones((1, 1))
+    with np.errstate(invalid="ignore"):
+        squares = np.where(c2 > 0, ((1 - alphas) * nu + pull) ** 2 / (alphas * c2), 0.0)  # g = nu + pull
+    integrals = (squares * weights).reshape(len(alphas), len(arms.F), -1).sum(axis=-1).max(axis=-1)
+    push = float((arms.F**2 * c3 / gamma2).max())
+    c = MARGIN * np.sqrt(np.maximum(integrals, 0.0)) / 2
+    a = np.sqrt(alphas[:, 0] * push)
+    best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
+    if c[best] < LARGEST_SHARE:
+        yield Hull(float(a[best]), float(c[best]))

@@ -98,6 +98,8 @@ def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: flo
     first = np.where(np.abs(raw.imag) <= REAL_BELOW * np.abs(raw), raw.real + 0j, raw)
     first[~np.isfinite(raw)] = np.inf
     inside = np.array([_inside(w, hull) for w in first.tolist()], dtype=bool)
+    candidates = [w for w in first[inside].tolist() if determinant.wave_number(w) <= most_waves]
+    determinant.level(max(map(abs, candidates), default=0.0))  # its elements serve most of the others
     error: Array = np.full(len(raw), math.inf)
     length: Array = np.ones(len(raw))
     wave: Array = np.full(len(raw), math.inf)

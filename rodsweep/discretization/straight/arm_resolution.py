@@ -5,14 +5,12 @@ from math import ceil, hypot, log, pi
 import numpy as np
 
 from ...arrays import Array
-from ...model.dispersion import local_growth
+from ...model.dispersion import local_growth, sampled
 from ...model.rod import Rod
 from ..elements.elements import Elements
 from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WAVE_FACTOR, required_order
 from .arm_pencil import ArmMesh
 
-SAMPLES = 33
-"""Points of each smooth piece at which local wave numbers are evaluated."""
 LARGEST_RATIO = 2.2
 """Largest ratio of the radii at the ends of an element, for which order 12 gives eigenvalues to 1e-4."""
 FOR_PROFILES = 2
@@ -21,9 +19,9 @@ FOR_PROFILES = 2
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """A mesh expected to give `modes` leading eigenvalues to the relative accuracy."""
-    points, weights = _samples(rod)
-    _, amplified = local_growth(rod, points)
-    at_rest = (modes - MODE_OFFSET) * pi * _local_share(rod, points, weights)
+    weights = sampled(rod).weights
+    _, amplified = local_growth(rod)
+    at_rest = (modes - MODE_OFFSET) * pi * _local_share(rod)
     waves = np.hypot(WAVE_FACTOR * amplified, at_rest)
     elements = _resolving(rod, waves * weights, accuracy, LARGEST_ORDER)
     return ArmMesh(elements.edges, elements.order)
@@ -33,22 +31,13 @@ def arm_elements(
     rod: Rod, wave_number: float, accuracy: float, largest_order: int = LARGEST_ORDER
 ) -> Elements:
     """Elements that resolve a field with the mean wave number `wave_number` to the relative accuracy."""
-    points, weights = _samples(rod)
-    waves = wave_number * _local_share(rod, points, weights)
-    return _resolving(rod, waves * weights, accuracy, largest_order)
+    waves = wave_number * _local_share(rod)
+    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order)
 
 
-def _samples(rod: Rod) -> tuple[Array, Array]:
-    """Midpoints of short intervals of an arm, and their lengths, both (n,)."""
-    breaks = rod.build.breaks
-    inside = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
-    return points, np.repeat(np.diff(breaks) / SAMPLES, SAMPLES)
-
-
-def _local_share(rod: Rod, points: Array, weights: Array) -> Array:
-    """Local wave number at one frequency, in units of the mean over the arm; all arrays (n,)."""
-    local = rod.local(points)
+def _local_share(rod: Rod) -> Array:
+    """Local wave number at one frequency at the samples of an arm, in units of the mean, (points,)."""
+    _, weights, local = sampled(rod)
     at_rest: Array = (local.gamma2 * local.c3) ** 0.25
     return at_rest / (weights @ at_rest)
 

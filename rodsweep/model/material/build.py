@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -110,10 +110,11 @@ class Build:
         shares = [self.crushing_share(taper) for taper in tapers.ravel().tolist()]
         return np.array(shares).reshape(tapers.shape)
 
-    def local(self, F: float, at_base: Mapping[str, float], u: Array) -> LocalCoefficients:
+    def local(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
         """Coefficients at points u, any shape (...,), under the force F.
 
-        at_base: parameters at u = 0, by name. No point may be a break of the profile.
+        at_base: parameters at u = 0, by name. No point may be a break of the profile. Force and parameters
+        are numbers, or arrays for n arms, (n, 1, ...).
         """
         factors = self._factors(at_base["taper"], u)
         law = self.constitutive_law
@@ -155,7 +156,7 @@ class Build:
         load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
-    def _factors(self, taper: float, u: Array) -> dict[str, Array]:
+    def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
         """Factors of stiffnesses and drags at points u, by name; all arrays have the shape of u, (...,)."""
         ones: Array = np.ones((len(FACTORS), *u.shape))
         factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))

@@ -78,7 +78,7 @@ def eigenvalue_lines(view: View) -> list[str]:
     unstable = int(v["unstable_count"].max())
     proof = PROOFS[bool(v["certified"].all())]
     if v["certified"].all() and estimates_counts(view.config):
-        proof = "counted by a winding number that is estimated in part"
+        proof = "proved by D or counted by its winding number, estimated in part"
     count = f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
     return [count, *lines]
 

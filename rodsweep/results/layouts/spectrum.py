@@ -47,8 +47,8 @@ EACH_MODE = (
 )
 CERTIFIED = boolean("certified", "whether the winding number of D proves the list of leading modes complete")
 ESTIMATED = (
-    "whether the winding number of D says that the list of leading modes is complete; for arms that vary "
-    "along their length it is estimated in part"
+    "whether D right of the spectrum, or its winding number, says that the list of leading modes is "
+    "complete; for arms that vary along their length it is estimated in part"
 )
 """Meaning of `certified` in a file of arms that vary along their length."""
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)

@@ -9,11 +9,16 @@ from ...determinant.certificate.covering import slabs
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.newton import Zero, double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at
+from ..spectrum.arm_stretch import FollowedArms
 from ..spectrum.problem import ArmProblem
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 ARM_EDGES = 12
 """Number of equal intervals into which a path of arms is first divided."""
+POINTS_BETWEEN = 4
+"""Steps in which eigenvalues are followed through each of these intervals."""
+FOLLOWED_MODES = 4
+"""Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
 
 
 class PathProblem(ABC):
@@ -77,14 +82,32 @@ class UniformPath(PathProblem):
 
 
 class ArmPath(PathProblem):
-    """Path of arms that vary along their length or have any law, with D from propagators."""
+    """Path of arms that vary along their length or have any law, with D from propagators.
+
+    The leading eigenvalues are followed along the path once, and from there to wherever they are asked for.
+    """
 
     def __init__(self, path: Path):
         super().__init__(path)
-        self._along = ArmAlongPath(path)
+        self._followed: FollowedArms | None = None
+        self._along = ArmAlongPath(path, lambda p: self._followed.family(p) if self._followed else None)
 
     def edges(self, low: float, high: float) -> list[float]:
-        return np.linspace(low, high, ARM_EDGES + 1).tolist()
+        edges = np.linspace(low, high, ARM_EDGES + 1)
+        if self._followed is None and low < high:
+            points = np.linspace(low, high, ARM_EDGES * POINTS_BETWEEN + 1)
+            points[::POINTS_BETWEEN] = edges
+            self._followed = FollowedArms(self.path, points, FOLLOWED_MODES)
+        return edges.tolist()
+
+    def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
+        """The leading eigenvalues at p, followed, or solved where they are not."""
+        key = p, request
+        if key not in self._spectra and self._followed is not None:
+            found = self._followed.spectrum(p, request.modes)
+            if found is not None and len(found.eigenvalues) == request.modes:
+                self._spectra[key] = found
+        return super().spectrum(p, request)
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         return self._along.eigenvalue(guess, p)
@@ -93,6 +116,14 @@ class ArmPath(PathProblem):
         return self._along.double(x, p, reach)
 
     def count(self, line: float, p: float) -> Count:
+        found = self._followed.spectrum(p, FOLLOWED_MODES) if self._followed is not None else None
+        if found is not None:
+            w, error = found.eigenvalues, found.error_estimate
+            clear = (np.abs(w.real - line) > 2 * error).all()
+            if clear and w[-1].real < line <= 0:
+                return Count(int((w.real > line).sum()), 0)
+            if clear and line == 0 and found.unstable_count < FOLLOWED_MODES:
+                return Count(found.unstable_count, 0)
         return ArmProblem(self.path.at(p)).count(line)
 
     def relaxation(self, p: float) -> tuple[float, float]:

@@ -27,6 +27,9 @@ BEHIND = 0.05
 """Distance of the last line behind the last eigenvalue found, in units of its modulus."""
 NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
+BELOW, CLOSE_BELOW = 3.0, 1e-9
+"""Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its error and
+of its modulus."""
 LINES_TRIED = 3
 """Number of lines tried before the count is given up."""
 
@@ -90,13 +93,23 @@ def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
     """Counts the eigenvalues right of a line that lies left of the last wanted and of every unstable mode."""
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
+    last = w[modes - 1]
+    line = min(last.real - BELOW * errors[modes - 1] - CLOSE_BELOW * abs(last), 0.0)
+    complete, evaluations = problem.none_is_missing(line, found)
+    if complete:
+        here, clear = _right_of(line, w, errors)
+        return Verdict(Count(here, evaluations), here, clear)
     for line in lines(w, modes):
         count = problem.count(line)
         if count.number is not None:
             break
-    here = sum(value.real > line for value in w)
-    clear = all(abs(v.real - line) > 2 * error for v, error in zip(w, errors, strict=True))
-    return Verdict(count, here, clear)
+    return Verdict(count, *_right_of(line, w, errors))
+
+
+def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
+    """(how many lie right of a line, whether each is farther from the line than twice its error)."""
+    clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
+    return sum(value.real > line for value in w), clear
 
 
 def lines(w: list[complex], modes: int) -> list[float]:

@@ -12,11 +12,11 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.newton import REAL_BELOW
 from ...determinant.parameter_path import determinant_along
-from ...determinant.roots import SAME_ROOT, sort_descending
+from ...determinant.roots import SAME_ROOT, sort_descending, two_roots
 from ...determinant.value import ROUND_OFF, TYPICAL_NOISE
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from .prediction import Track, guess_at, mates_of
+from .prediction import Track, guess_at, mates_of, place_two
 
 MAX_EIGENVALUE_CORRECTIONS = 8
 """Maximum number of Newton steps for one eigenvalue."""
@@ -52,8 +52,8 @@ def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -
 
 
 @compiled
-def _crowding(w: Complex, k: int) -> float:
-    """Upper estimate of |D''/(2 D')| at the k-th known root."""
+def crowding_of(w: Complex, k: int) -> float:
+    """Upper estimate of |D''/(2 D')| at the k-th of the known roots, (m,)."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
@@ -77,8 +77,8 @@ def _settled(
 
 
 @compiled
-def _distinct_roots(w: Complex, error: Array) -> bool:
-    """Whether all eigenvalues and errors are finite and no two eigenvalues may be the same root."""
+def distinct_roots(w: Complex, error: Array) -> bool:
+    """Whether all, (m,), eigenvalues and errors are finite and no two eigenvalues may be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
@@ -110,7 +110,7 @@ def _correct_all(
     for rank in range(m):
         k = order[rank]
         if guess[k].imag >= 0:
-            last, error[k] = _settled(first[k], _crowding(w, k), rank <= modes, rod, direction)
+            last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
             w[k], slope[k] = last.w, last.slope
             if mate[k] >= 0:
                 if not w[k].imag > REAL_BELOW * abs(w[k]):
@@ -118,7 +118,7 @@ def _correct_all(
                 j = mate[k]
                 w[j], slope[j], error[j] = w[k].conjugate(), slope[k].conjugate(), error[k]
     sort_descending(w, order)
-    return _distinct_roots(w, error)
+    return distinct_roots(w, error)
 
 
 @compiled
@@ -129,11 +129,16 @@ def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients,
     direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues get all digits.
     """
     guess = track.w[0].copy()
+    decided = np.empty(len(guess), np.int64)
     for i in range(len(p)):
         F, nu, c2, gamma3 = coefficients[i]
         rod = Coefficients(F, nu, c2, gamma3)
         if i > 0:
-            guess_at(track, i, p, rod, guess)
+            guess_at(track, i, p, guess, decided)
+            for k in range(len(guess)):
+                if decided[k] >= 0:
+                    two = (k, decided[k])
+                    place_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, rod, direction):
             return i

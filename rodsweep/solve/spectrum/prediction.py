@@ -3,7 +3,7 @@
 Cubic Hermite polynomials extrapolate single real eigenvalues. Two real eigenvalues that meet, or have just
 met, are not smooth functions of the rod, but half their sum and the square of half their difference are
 smooth, as for a pair; these are extrapolated. Near the meeting point, the quadratic approximation of D about
-their mean decides between two real eigenvalues and a pair.
+their mean has to decide between two real eigenvalues and a pair.
 """
 
 import cmath
@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.roots import two_roots
 from ...model.compiled.compilation import compiled
-from ...model.rod import Coefficients
 
 CLOSING = 4.0
 """Two real eigenvalues are extrapolated together if their present rates give a meeting within this many
@@ -95,9 +93,12 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
 
 @compiled
 def _two_ahead(
-    track: Track, i: int, two: tuple[int, int], steps: tuple[float, float], coefficients: Coefficients
-) -> tuple[complex, complex]:
-    """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first."""
+    track: Track, i: int, two: tuple[int, int], steps: tuple[float, float]
+) -> tuple[complex, complex, bool]:
+    """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first.
+
+    Where D has to decide what they are, both guesses are their middle and the last value is True.
+    """
     k, j = two
     middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
     before = square
@@ -108,23 +109,36 @@ def _two_ahead(
     else:
         middle, square = middle + m1 * steps[1], square + s1 * steps[1]
     if square * before <= 0 or abs(square) < MEETING * abs(before):
-        one, other = two_roots(complex(middle, 0.0), coefficients)
-        if (one - other).real < 0 or (one - other).imag < 0:
-            return other, one
-        return one, other
+        return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
-    return middle + root, middle - root
+    return middle + root, middle - root, False
 
 
 @compiled
-def guess_at(track: Track, i: int, p: Array, coefficients: Coefficients, guess: Complex) -> None:
-    """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,)."""
+def place_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
+    """Sets the guesses for two of the eigenvalues w, both (m,), in their order: real part, then frequency."""
+    k, j = two
+    one, other = roots
+    if (one - other).real < 0 or (one - other).imag < 0:
+        one, other = other, one
+    first = (w[k] - w[j]).real > 0 or (w[k] - w[j]).imag > 0
+    guess[k], guess[j] = (one, other) if first else (other, one)
+
+
+@compiled
+def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
+    """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,).
+
+    decided: shape (m,), filled with the number of the other one where D has to decide what two are, whose
+    guess is their middle; -1 elsewhere.
+    """
     w, slope = track.w[i - 1], track.slope[i - 1]
     mate = np.empty(len(w), np.int64)
     mates_of(w, mate)
     ahead = p[i] - p[i - 1]
     _pair_up(w, slope, ahead, mate)
     steps = (p[i - 1] - p[i - 2] if i >= 2 else ahead, ahead)
+    decided[:] = -1
     for k in range(len(w)):
         j = mate[k]
         if j < 0 and i >= 2:
@@ -134,6 +148,7 @@ def guess_at(track: Track, i: int, p: Array, coefficients: Coefficients, guess: 
         elif j < 0:
             guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
         elif j > k:
-            larger, smaller = _two_ahead(track, i, (k, j), steps, coefficients)
-            first = (w[k] - w[j]).real > 0 or (w[k] - w[j]).imag > 0
-            guess[k], guess[j] = (larger, smaller) if first else (smaller, larger)
+            one, other, undecided = _two_ahead(track, i, (k, j), steps)
+            place_two(w, (k, j), (one, other), guess)
+            if undecided:
+                decided[k] = j

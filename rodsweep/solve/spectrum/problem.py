@@ -8,9 +8,8 @@ from abc import ABC, abstractmethod
 from math import isfinite, sqrt
 from typing import Any
 
-import numpy as np
-
 from ...arrays import Array, Complex
+from ...determinant.arm.completeness import none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
@@ -28,8 +27,6 @@ from .krylov_schur import EigenSolver, eigen_solver, forget_uniform_solvers
 
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
-GROWTH_SAMPLES = 33
-"""Number of points of each smooth piece of an arm at which the local growth rate is evaluated."""
 
 Mesh = Resolution | ArmMesh
 """Mesh of a uniform rod or of an arm."""
@@ -69,6 +66,10 @@ class TransverseProblem(ABC):
     @abstractmethod
     def count(self, line: float) -> Count:
         """Number of eigenvalues with Re w > line."""
+
+    def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
+        """(whether a proof without a count says that all right of a line are found, evaluations of D)."""
+        return False, 0
 
     @abstractmethod
     def fields(self, mesh: Any, vectors: Complex) -> tuple[Complex, Complex]:
@@ -125,9 +126,7 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
-        breaks = rod.build.breaks
-        inside = (np.arange(GROWTH_SAMPLES) + 0.5) / GROWTH_SAMPLES
-        growth, _ = local_growth(rod, (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel())
+        growth, _ = local_growth(rod)
         self.shift = SHIFT_ABOVE_GROWTH * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
@@ -149,6 +148,9 @@ class ArmProblem(TransverseProblem):
 
     def count(self, line: float) -> Count:
         return count_of_arm(line, self._determinant, self._hull)
+
+    def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
+        return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
 
     def fields(self, mesh: ArmMesh, vectors: Complex) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...discretization.elements.quadrature import lobatto_points
@@ -60,6 +61,19 @@ class Spectrum:
     def frequency(self) -> Array:
         """Im w, (modes,)."""
         return self.eigenvalues.imag
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """The first n points of what is left of a stretch: eigenvalues and errors, shape (n, modes).
+
+    unstable: how many are unstable, good: whether certified and accurate, both of shape (n,).
+    """
+
+    w: Complex
+    error: Array
+    unstable: NDArray[np.int64]
+    good: NDArray[np.bool_]
 
 
 def vectors_on_nodes(

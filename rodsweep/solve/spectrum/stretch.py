@@ -11,19 +11,20 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod, coefficients_of
 from ..point import FAILURES
+from .arm_stretch import followed_arms
 from .carried_count import best_gap, carry, judge_points, leading, line_in
 from .following import follow
 from .prediction import Track, part
 from .problem import forget_solvers
-from .search import Search, Spectrum, SpectrumRequest, solve_spectrum
+from .search import Search, SpectrumRequest, solve_spectrum
 from .search import warm_up as warm_up_search
+from .spectrum import Reached, Spectrum
 from .status import SpectrumStatus
 
 FURTHER_MODES = 2
@@ -57,19 +58,6 @@ class Stretch:
         for place, column in enumerate(columns):
             table[:, place] = column
         return table
-
-
-@dataclass(frozen=True, slots=True)
-class Reached:
-    """The next n points of a stretch: leading eigenvalues w and errors, (n, modes) each.
-
-    unstable: number of unstable modes; good: whether certified and accurate; (n,) each.
-    """
-
-    w: Complex
-    error: Array
-    unstable: NDArray[np.int64]
-    good: NDArray[np.bool_]
 
 
 def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
@@ -113,6 +101,8 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
     """The points from `start` on that can be followed and counted; None if even the first cannot."""
+    if stretch.path.name == "taper" or not stretch.path.rod.standard:
+        return followed_arms(stretch.path, stretch.coordinates[start:], request)
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
         return None

@@ -1,0 +1,164 @@
+"""Proof that no eigenvalue of an arm is missing among known ones, from D at a few real points.
+
+D is entire of order 1/2 with D(0) = 1, so that D'/D(x) = sum 1/(x - w_n) over all eigenvalues. With points
+x_1 < ... < x_k right of the hull of the spectrum and c_j = prod_(i != j) 1/(x_i - x_j),
+
+    phi(v) = prod_j 1/(x_j - v) = sum_j c_j/(x_j - v),   sum_n phi(w_n) = sum_j c_j D'/D(x_j).
+
+What the known eigenvalues leave of this sum is R = sum phi over the unknown ones. The points lie so far to
+the right that sum_j arg(x_j - v) is at most pi/2 everywhere in the hull: every term of R has a real part of
+at least 0. An unknown eigenvalue right of a line would contribute the least Re phi there at least, twice as
+much if it is one of a pair. If R is less, there is none.
+
+The far eigenvalues, infinitely many, contribute like |w_n|^-k: a few known ones beyond the line suffice. The
+proof rests on the hull, on the known ones being eigenvalues within their errors, and on the rounding error of
+D and the error of its elements, which are estimates.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ...model.compiled.compilation import compiled
+from .determinant import ArmDeterminant
+from .hull import Hull
+from .value import chain_value
+
+POWERS = (6, 3)
+"""Numbers k of points that are tried: many where the hull is slim, few where it is wide."""
+FIRST_POINT = 0.35
+"""Least distance of the first point from 0, in units of the depth of the line."""
+SPREAD = 1.0
+"""Distance of the last point from the first, in units of the first one's from 0."""
+WIDER = 1.3
+"""Factor by which the points are moved outwards until every term of R is positive."""
+FARTHEST = 16.0
+"""Largest distance of the last point from 0, in units of the largest known |w|: from farther away the unknown
+ones look like the known."""
+SLABS = 24
+"""Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
+ALLOWED = 0.7
+"""Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
+ROUNDING_OF_SLOPE = 10.0
+"""Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels of
+elements, over 45 random arms."""
+
+
+class Remainder(NamedTuple):
+    """R, its rounding error, and the least that an unknown eigenvalue right of the line would contribute."""
+
+    R: float
+    blur: float
+    least: float
+
+
+def none_is_missing(
+    line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
+) -> tuple[bool, int]:
+    """(whether it is proved that every eigenvalue with Re w >= line is known, evaluations of D).
+
+    known, error: eigenvalues, (n,), and how far each may be off. Of pairs both must be known.
+    """
+    if not math.isfinite(hull.a) or not line <= 0:
+        return False, 0
+    whole = np.array([w.imag == 0 or w.conjugate() in known for w in known], dtype=bool)
+    examined = 0
+    for k in POWERS:
+        points = right_of_hull(line, hull.a, hull.c, k)
+        if len(points) and points[-1] <= FARTHEST * np.abs(known).max():
+            found = remainder(line, known[whole], error[whole], hull, points, determinant.level(points[-1]))
+            examined += k
+            if proves(found):
+                return True, examined
+    return False, examined
+
+
+@compiled
+def proves(found: Remainder) -> bool:
+    """Whether no unknown eigenvalue lies right of the line; R below 0 would say that a known one is none."""
+    allowed = ALLOWED * found.least
+    return found.R + found.blur < allowed and -allowed < found.R
+
+
+@compiled
+def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
+    """k points for a line and a hull with which every term of R is positive, (k,); none where none are."""
+    x = max(FIRST_POINT * abs(line), a * a, 1e-6)
+    points = np.empty(k)
+    for j in range(k):
+        points[j] = x * (1 + SPREAD * j / max(k - 1, 1))
+    while not _turn_of_hull(points, a, c) < math.pi / 2:
+        if not points[0] < 1e300:
+            return points[:0]
+        points *= WIDER
+    return points
+
+
+@compiled
+def _turn_of_hull(points: Array, a: float, c: float) -> float:
+    """An upper bound of sum_j arg(x_j - v) over the hull."""
+    b, total = 1 - c, 0.0
+    for x in points:
+        if not x > a * a / (4 * b):
+            return math.inf
+        slope = c / b
+        if a > 0:  # |Im v|/(x - Re v) on the boundary is largest at this n
+            n = (c * x + math.sqrt(c * c * x * x + a * a * x)) / a
+            slope = (a * n + c * n * n) / (x - a * n + b * n * n)
+        total += math.atan(slope)
+    return total
+
+
+@compiled
+def remainder(
+    line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
+) -> Remainder:
+    """R with its rounding error and the least contribution right of the line.
+
+    known, error: eigenvalues, (n,), closed under conjugation, and how far each may be off.
+    level: (W, propagators) for |w| up to the last point.
+    """
+    k = len(points)
+    R, blur = 0.0, 0.0
+    for j in range(k):
+        weight = 1.0
+        for i in range(k):
+            if i != j:
+                weight /= points[i] - points[j]
+        value = chain_value(complex(points[j], 0.0), level[0], level[1])
+        slope = (value.D_w / value.D).real
+        R += weight * slope
+        blur += abs(weight * slope) * ROUNDING_OF_SLOPE * value.noise / abs(value.D)
+    for n in range(len(known)):
+        w = known[n]
+        phi, rate = 1 + 0j, 0.0
+        for x in points:
+            phi /= x - w
+            rate += 1 / abs(x - w)
+        R -= phi.real
+        blur += abs(phi) * rate * error[n]
+    return Remainder(R, blur, _least_right_of(line, points, hull[0], hull[1]))
+
+
+@compiled
+def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
+    """A lower bound of Re phi at real points of the hull right of the line, and of 2 Re phi at others."""
+    b = 1 - c
+    right = max(a * a / (4 * b), line)
+    least = 1.0
+    for x in points:
+        least /= x - line
+    for i in range(SLABS):
+        start = line + (right - line) * i / SLABS
+        stop = line + (right - line) * (i + 1) / SLABS
+        depth = max(-start, 0.0)
+        n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
+        height = a * n + c * n * n
+        size, turn = 1.0, 0.0
+        for x in points:
+            size /= math.hypot(x - start, height)
+            turn += math.atan2(height, x - stop)
+        least = min(least, 2 * size * math.cos(turn) if turn < math.pi / 2 else 0.0)
+    return least

@@ -1,0 +1,142 @@
+"""Propagators of all arms of an interval of a path, as polynomials in the path variable.
+
+The propagator of an element is smooth in the path variable p, as the coefficients along the arm are. On
+elements that serve the whole interval, some arms at Chebyshev points give it for all others by
+interpolation, with its derivative by p. Its last coefficients show the error.
+"""
+
+import math
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ...arrays import Array
+from ...model.compiled.compilation import compiled
+from ..newton import MAX_REFINEMENTS
+from ..parameter_path import Path
+from ..value import TYPICAL_NOISE, Value
+from .determinant import elements_for, samples_of
+from .propagators import MAX_TERMS, element_propagators
+from .value import chain_along, chain_value
+
+NODES = (12, 24)
+"""Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
+first is enough."""
+CONVERGED = 1e-15
+"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding; the
+relative error that eigenvalues have from it, as from changes of w and p by as much."""
+MOST_ENTRIES = 300_000
+"""Largest number of entries of the propagators of a family: more take longer than arms one by one."""
+
+
+class ArmFamily(NamedTuple):
+    """The arms from p = low to p = high: propagators for |w| <= W.
+
+    coefficients: of the Chebyshev polynomials in p, (nodes, elements, terms, 16).
+    """
+
+    low: float
+    high: float
+    W: float
+    coefficients: Array
+
+
+def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
+    """The family of an interval; None where it is no smooth function of p, or too large.
+
+    Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
+    """
+    for number in NODES:
+        p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(number)
+        arms = [path.at(value) for value in p.tolist()]
+        found = elements_for(arms, samples_of(arms), W)
+        if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
+            return None
+        # What the coefficients along the arm do not resolve, the propagators made of them cannot.
+        if not _converged(np.moveaxis(np.array(found.local), 1, 0), 10 * CONVERGED):
+            continue
+        values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
+        if _converged(values, CONVERGED):
+            coefficients = np.tensordot(_to_series(number), values, 1)
+            return ArmFamily(low, high, W, np.ascontiguousarray(coefficients))
+    return None
+
+
+def _converged(values: Array, tolerance: float) -> bool:
+    """Whether the last two Chebyshev coefficients of values, (nodes, n, ...), are small for each n."""
+    others = tuple(range(2, values.ndim))
+    last = np.tensordot(_to_series(len(values))[-2:], values, 1)
+    size = np.abs(values).max(axis=(0, *others))
+    return bool((np.abs(last).max(axis=(0, *others)) <= tolerance * size).all())
+
+
+@cache
+def chebyshev_points(number: int) -> Array:
+    """So many Chebyshev points of [-1, 1], (number,): both ends are among them."""
+    return np.asarray(-np.cos(np.pi * np.arange(number) / (number - 1)))
+
+
+@cache
+def _to_series(number: int) -> Array:
+    """Matrix from values at so many points to coefficients of Chebyshev polynomials, (number, number)."""
+    return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(number), number - 1)))
+
+
+@compiled
+def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
+    """Fills the propagators at p and their derivatives by p, both (elements, terms, 16)."""
+    half = (family.high - family.low) / 2
+    t = (p - (family.low + family.high) / 2) / half
+    values = polynomials.reshape(-1)
+    slopes = changes.reshape(-1)
+    here, before, rate, rate_before = 1.0, t, 0.0, -1.0  # T_0 and T_(-1), as T_(-1) = T_1
+    values[:] = 0.0
+    slopes[:] = 0.0
+    for k in range(len(family.coefficients)):
+        own = family.coefficients[k].reshape(-1)
+        for i in range(len(own)):
+            values[i] += here * own[i]
+            slopes[i] += rate / half * own[i]
+        if k == 0:
+            here, before, rate, rate_before = t, 1.0, 1.0, 0.0
+        else:
+            rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
+            here, before = 2 * t * here - before, here
+
+
+@compiled
+def value_in(family: ArmFamily, w: complex, p: float) -> Value:
+    """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
+    shape = family.coefficients.shape[1:]
+    polynomials, changes = np.empty(shape), np.empty(shape)
+    propagators_at(family, p, polynomials, changes)
+    return chain_value(w, family.W, polynomials)
+
+
+@compiled
+def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
+    """(eigenvalue near the guess, its slope by p, its error) at p by Newton's method, away from double ones.
+
+    The iteration ends where rounding keeps the steps from getting smaller. What is real stays real.
+    """
+    shape = family.coefficients.shape[1:]
+    polynomials, changes = np.empty(shape), np.empty(shape)
+    propagators_at(family, p, polynomials, changes)
+    w, last = guess, math.inf
+    for _ in range(MAX_REFINEMENTS):
+        value = chain_value(w, family.W, polynomials)
+        step = value.D / value.D_w if value.D_w != 0 else 0j
+        if w.imag == 0:
+            step = complex(step.real, 0.0)
+        if not abs(step) < last / 2 or abs(w) > family.W:
+            break
+        last = abs(step)
+        w -= step
+    D, D_w, D_p, _, noise = chain_along(w, family.W, polynomials, changes)
+    size = max(abs(D_w), 1e-300)
+    slope = -D_p / D_w if D_w != 0 else 0j
+    if w.imag == 0:
+        slope = complex(slope.real, 0.0)
+    return w, slope, max(abs(D), TYPICAL_NOISE * noise) / size + CONVERGED * (abs(w) + abs(p * slope))

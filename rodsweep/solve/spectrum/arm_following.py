@@ -1,0 +1,156 @@
+"""Eigenvalues of arms followed along a path, and proved complete at every point.
+
+As `rodsweep.solve.spectrum.following`, with D from the interpolated propagators of a family. The proof is
+that of `rodsweep.determinant.arm.completeness` and needs nothing but the eigenvalues of the point itself.
+"""
+
+import cmath
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
+from ...determinant.arm.family import CONVERGED, ArmFamily, propagators_at
+from ...determinant.arm.hull import Hull, Hulls, hull_at
+from ...determinant.arm.value import chain_along, chain_value
+from ...determinant.newton import REAL_BELOW
+from ...determinant.roots import sort_descending
+from ...determinant.value import ROUND_OFF, SECOND_STEP, TYPICAL_NOISE
+from ...model.compiled.compilation import compiled
+from .candidates import BELOW, CLOSE_BELOW
+from .following import (
+    FOLLOWED_ACCURACY,
+    MAX_EIGENVALUE_CORRECTIONS,
+    ROUNDING_STEP,
+    Corrected,
+    crowding_of,
+    distinct_roots,
+)
+from .prediction import Track, guess_at, mates_of, place_two
+
+Level = tuple[float, Array, Array]
+"""(W, propagators, their derivatives by p), the latter of the shape (elements, terms, 16)."""
+
+
+@compiled
+def corrected_of_arm(w: complex, level: Level) -> Corrected:
+    """One step of Newton's method; what is real stays real."""
+    D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
+    size = abs(D_w)
+    if not size > 0:
+        return Corrected(w, 0j, math.inf, math.inf)
+    step, slope = D / D_w, -D_p / D_w
+    if w.imag == 0:
+        step, slope = complex(step.real, 0.0), complex(slope.real, 0.0)
+    return Corrected(w - step, slope, abs(step), TYPICAL_NOISE * noise / size)
+
+
+@compiled
+def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tuple[Corrected, float]:
+    """(the last correction, error): Newton's method until what is left of it, crowding step^2, is small."""
+    here = first
+    for _ in range(MAX_EIGENVALUE_CORRECTIONS):
+        left = crowding * here.step * here.step
+        allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWED_ACCURACY * abs(here.w)
+        if left <= allowed or here.step <= ROUNDING_STEP * here.blur:
+            return here, max(here.blur, min(left, here.step))
+        here = corrected_of_arm(here.w, level)
+    return here, math.inf
+
+
+@compiled
+def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
+    """The two roots near a real `middle` by the quadratic that D is about it."""
+    D, D_w, S, _ = chain_value(middle, level[0], level[1])
+    h = SECOND_STEP * abs(middle)
+    after, before = (
+        chain_value(middle + h, level[0], level[1]),
+        chain_value(middle - h, level[0], level[1]),
+    )
+    second = (after.D_w.real * math.exp(after.S - S) - before.D_w.real * math.exp(before.S - S)) / (2 * h)
+    if second == 0:
+        return middle, middle
+    root = cmath.sqrt(complex(D_w.real**2 - 2 * D.real * second, 0.0))
+    return middle + (root - D_w.real) / second, middle - (root + D_w.real) / second
+
+
+@compiled
+def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
+    """Makes roots of the guesses for point i, at p, into the track; whether all did, and pairs are pairs."""
+    w, slope, error, order = track.w[i], track.slope[i], track.error[i], track.order[i]
+    m = len(w)
+    mate = np.empty(m, np.int64)
+    mates_of(guess, mate)
+    w[:] = guess
+    sort_descending(w, order)
+    for rank in range(m):
+        k = order[rank]
+        if guess[k].imag != 0 and mate[k] < 0:
+            return False
+        if guess[k].imag >= 0:
+            first = corrected_of_arm(guess[k], level)
+            w[k] = first.w
+            if mate[k] >= 0:
+                w[mate[k]] = w[k].conjugate()
+            last, error[k] = _settled(first, crowding_of(w, k), rank <= modes, level)
+            w[k], slope[k] = last.w, last.slope
+            error[k] += CONVERGED * (abs(w[k]) + abs(p * slope[k]))
+            if mate[k] >= 0:
+                if not w[k].imag > REAL_BELOW * abs(w[k]):
+                    return False
+                j = mate[k]
+                w[j], slope[j], error[j] = w[k].conjugate(), slope[k].conjugate(), error[k]
+    sort_descending(w, order)
+    return distinct_roots(w, error) and np.abs(w).max() <= level[0]
+
+
+@compiled
+def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level) -> int:
+    """How many of the leading eigenvalues of point i are all right of a line <= 0; 0 where it is not proved.
+
+    They include the wanted `modes`, and with them all unstable ones.
+    """
+    w, error = track.w[i], track.error[i]
+    k = track.order[i, modes - 1]
+    line = min(w[k].real - BELOW * error[k] - CLOSE_BELOW * abs(w[k]), 0.0)
+    here = 0
+    for j in range(len(w)):
+        if abs(w[j].real - line) <= 2 * error[j]:
+            return 0
+        here += w[j].real > line
+    for power in POWERS:
+        points = right_of_hull(line, hull.a, hull.c, power)
+        if len(points) == 0 or points[-1] > level[0]:
+            continue
+        if proves(remainder(line, w, error, hull, points, (level[0], level[1]))):
+            return here
+    return 0
+
+
+@compiled
+def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
+    """How many points, from the first, the eigenvalues can be followed to; fills the track as far.
+
+    track: with w and order of the first point; p: (points,), the points' path variables, inside the family.
+    hulls: of all arms of the family. known: (points,), filled with `all_right_of_line`.
+    """
+    shape = family.coefficients.shape[1:]
+    polynomials, changes = np.empty(shape), np.empty(shape)
+    level = (family.W, polynomials, changes)
+    guess = track.w[0].copy()
+    decided = np.empty(len(guess), np.int64)
+    for i in range(len(p)):
+        propagators_at(family, p[i], polynomials, changes)
+        if i > 0:
+            guess_at(track, i, p, guess, decided)
+            for k in range(len(guess)):
+                if decided[k] >= 0:
+                    two = (k, decided[k])
+                    place_two(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
+            track.order[i] = track.order[i - 1]
+        if not _correct_all(track, i, p[i], guess, modes, level):
+            return i
+        known[i] = all_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
+    return len(p)

@@ -1,0 +1,229 @@
+"""Spectra of arms at neighbouring points along one parameter: followed, and proved complete one by one.
+
+Krylov-Schur solves the first point for more modes than wanted: the known ones beyond the line make the proof
+easy. The propagators of all arms come from a few (`rodsweep.determinant.arm.family`), on as much of the
+interval as they are smooth polynomials on.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...determinant.arm.completeness import POWERS, right_of_hull
+from ...determinant.arm.count import count_right_of
+from ...determinant.arm.determinant import arm_determinant
+from ...determinant.arm.family import ArmFamily, family_of
+from ...determinant.arm.hull import Hulls, hull_at, hulls_along
+from ...determinant.parameter_path import Path
+from ..point import FAILURES
+from .arm_following import follow_arms
+from .candidates import lines
+from .carried_count import judge_points, leading
+from .prediction import Track, part
+from .problem import forget_solvers
+from .search import Search
+from .spectrum import Reached, Spectrum, SpectrumRequest
+from .status import SpectrumStatus
+
+FURTHER_MODES = (3, 9)
+"""Numbers of modes that are followed beyond those wanted: the more for arms whose hull is wide."""
+PROVED_ENOUGH = 0.5
+"""Share of the points that must be proved complete, or else more modes are followed."""
+HEADROOM = 2.0
+"""Largest |w| for which propagators are made, in units of the largest at the first point."""
+FEWEST = 4
+"""Fewest points for which a family of arms is made."""
+ACCURACY = 1e-8
+"""Relative accuracy of eigenvalues along a path."""
+STEPS_FROM_NEAREST = (1, 4)
+"""Numbers of steps in which a point is reached from the nearest one of a path."""
+HULL_ARMS = 7
+"""Arms of an interval from which the hulls of those between are made."""
+
+
+class Interval(NamedTuple):
+    """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`."""
+
+    p: Array
+    track: Track
+    known: NDArray[np.int64]
+    family: ArmFamily
+    hulls: Hulls
+
+    def proved(self, modes: int) -> int:
+        """The number of points at which so many leading modes are proved complete."""
+        return int((self.known >= modes).sum())
+
+
+def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | None:
+    """The points p, (n,), as far as eigenvalues can be followed from the first; None where none can be."""
+    found = _interval(path, p, request)
+    if found is None:
+        return None
+    for i in np.flatnonzero(found.known < request.modes).tolist():
+        here = part(found.track, i, i + 1)
+        found.known[i] = _counted(path, found.hulls, float(found.p[i]), request.modes, here)
+    good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
+    return Reached(*leading(found.track, request.modes), unstable, good)
+
+
+def _interval(path: Path, p: Array, request: SpectrumRequest) -> Interval | None:
+    """The points p, (n,), as far as one family of arms and following reach; None if not beyond the first.
+
+    Where too few eigenvalues beyond the wanted ones are known for a proof, more are followed.
+    """
+    best: Interval | None = None
+    for further in FURTHER_MODES:
+        found = _followed(path, p, request, further) if len(p) >= FEWEST else None
+        if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
+            best = found
+        if best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
+            break
+    return best
+
+
+def _followed(path: Path, p: Array, request: SpectrumRequest, further: int) -> Interval | None:
+    """`_interval` with so many modes beyond the wanted ones."""
+    first, n, made = first_eigenvalues(path, float(p[0]), request, further), len(p), None
+    while first is not None and made is None and n >= FEWEST:
+        made = arms_between(path, p[:n], first, request.modes)
+        n = n if made is not None else n // 2
+    if first is None or made is None:
+        return None
+    family, hulls = made
+    track, known = _empty_track(first, n), np.zeros(n, np.int64)
+    reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
+    if reached == 0:
+        return None
+    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls)
+
+
+def _empty_track(first: Complex, points: int) -> Track:
+    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
+    shape = (points, len(first))
+    order = np.zeros(shape, np.int64)
+    order[0] = np.arange(len(first))
+    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
+    track.w[0] = first
+    return track
+
+
+def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, Hulls] | None:
+    """The family of the arms at points p, (n,), in order, and their hulls; None where there is no family.
+
+    first: eigenvalues at the first point, (m,), leading ones first.
+    """
+    low, high = float(p.min()), float(p.max())
+    if not low < high:
+        return None
+    try:
+        places = np.linspace(low, high, HULL_ARMS)
+        hulls = hulls_along([path.at(x) for x in places.tolist()], places)
+        W = HEADROOM * float(np.abs(first).max())
+        line = min(HEADROOM * float(first[modes - 1].real), 0.0)
+        hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
+        ends = [points[-1] for k in POWERS if len(points := right_of_hull(line, *hull, k))]
+        near = [end for end in ends if end <= HEADROOM * W]
+        family = family_of(path, low, high, max([W, *near]))
+    except (ValueError, FloatingPointError):
+        return None
+    return None if family is None else (family, hulls)
+
+
+def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
+    """Eigenvalues to follow from p on, (m,), pairs whole; None where they cannot be had."""
+    try:
+        modes = request.modes + further
+        search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
+        with np.errstate(all="ignore"):
+            search.outcome()
+    except FAILURES:
+        forget_solvers()
+        return None
+    if search.best is None:
+        return None
+    w = search.best.found.roots.w
+    return w[np.array([value.imag == 0 or value.conjugate() in w for value in w], dtype=bool)]
+
+
+class FollowedArms:
+    """Leading eigenvalues along a path, followed once from point to point, and from these to any other.
+
+    Where following ends at a point it starts anew from there.
+    """
+
+    def __init__(self, path: Path, p: Array, modes: int):
+        """p: points in order, (n,); modes: leading eigenvalues that are to be proved complete at each."""
+        self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
+        self.intervals: list[Interval] = []
+        self._spectra: dict[tuple[float, int], Spectrum | None] = {}
+        place, patience = 0, 1
+        while place < len(p):
+            found = _interval(path, p[place:], self.request)
+            if found is not None:
+                self.intervals.append(found)
+            place += max(len(found.p) - 1, 1) if found is not None else patience
+            patience = 1 if found is not None else 2 * patience
+
+    def family(self, p: float) -> ArmFamily | None:
+        """The family of arms that contains p."""
+        return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
+
+    def spectrum(self, p: float, modes: int) -> Spectrum | None:
+        """The leading eigenvalues at p; None where they are not followed, accurate and proved complete."""
+        if (p, modes) not in self._spectra:
+            within = (one for one in self.intervals if one.p.min() <= p <= one.p.max())
+            tried = (self._from_nearest(one, p, min(modes, one.track.w.shape[1])) for one in within)
+            self._spectra[p, modes] = next((found for found in tried if found is not None), None)
+        return self._spectra[p, modes]
+
+    def _from_nearest(self, one: Interval, p: float, modes: int) -> Spectrum | None:
+        """The leading eigenvalues at p, followed from the nearest point of an interval."""
+        i = int(np.argmin(np.abs(one.p - p)))
+        start = float(one.p[i])
+        for steps in STEPS_FROM_NEAREST:
+            grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
+            track, known = _empty_track(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
+            track.order[0] = one.track.order[i]
+            if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
+                return self._judged(one, p, modes, part(track, len(grid) - 1, len(grid)), known[-1:])
+        return None
+
+    def _judged(
+        self, one: Interval, p: float, modes: int, here: Track, known: NDArray[np.int64]
+    ) -> Spectrum | None:
+        """The leading eigenvalues at p, if accurate and complete, by a count where nothing else tells.
+
+        here: track of this point alone. known: `all_right_of_line` there, (1,).
+        """
+        if known[0] < modes:
+            known = np.array([_counted(self.path, one.hulls, p, modes, here)])
+        good, unstable = judge_points(here, known, modes, self.request.accuracy)
+        if not good[0]:
+            return None
+        w, error = leading(here, modes)
+        return Spectrum(
+            status=SpectrumStatus.ok,
+            eigenvalues=w[0],
+            error_estimate=error[0],
+            unstable_count=int(unstable[0]),
+            certified=True,
+        )
+
+
+def _counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
+    """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 for none.
+
+    here: track of this point alone.
+    """
+    w, error = leading(here, here.w.shape[1])
+    determinant, hull = arm_determinant(path.at(p)), hull_at(hulls, p)
+    for line in lines(w[0].tolist(), modes):
+        number = count_right_of(line, determinant, hull).number
+        if number is not None:
+            clear = (np.abs(w[0].real - line) > 2 * error[0]).all()
+            return number if clear and number == (w[0].real > line).sum() else 0
+    return 0

@@ -1,0 +1,64 @@
+"""Interpolated propagators against those of the arm itself."""
+
+import numpy as np
+import pytest
+from reference.random_arms import random_arm
+
+from rodsweep.determinant.arm.along_path import ArmAlongPath
+from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.family import eigenvalue_in, family_of, propagators_at, value_in
+from rodsweep.determinant.arm.value import chain_along
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.material.build import Build
+from rodsweep.model.rod import Rod
+
+PLACES = (-3.0 + 0j, 60j, -300 + 70j, -2000 + 0j, 3000 + 100j)
+
+
+def along(family, w, p):
+    shape = family.coefficients.shape[1:]
+    polynomials, changes = np.empty(shape), np.empty(shape)
+    propagators_at(family, p, polynomials, changes)
+    return chain_along(w, family.W, polynomials, changes)
+
+
+@pytest.mark.parametrize("name", ["F", "k1", "k2", "gamma3", "taper"])
+@pytest.mark.parametrize("seed", range(3))
+def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, seed):
+    rng = np.random.default_rng(seed)
+    path = Path(random_arm(rng, pulled=0.0), name)
+    p = path.variable(getattr(path.rod, name))
+    low, high = sorted((p, p * (0.4 if name == "F" else 0.8)))
+    family = family_of(path, low, high, 4.0**6)
+    assert family is not None
+    between = ArmAlongPath(path)
+    for share in (0.0, 0.31, 0.77, 1.0):
+        p = low + share * (high - low)
+        arm = ArmDeterminant(path.at(p))
+        for w in PLACES:
+            here, own = along(family, w, p), arm.value(w)
+            scale = np.exp(here.S - own.S)
+            blur = 1e-13 + 20 * own.noise / abs(own.D)
+            assert abs(here.D * scale / own.D - 1) < blur
+            assert abs(here.D_w * scale / own.D_w - 1) < 20 * blur
+            assert value_in(family, w, p).D == here.D
+            if 0 < share < 1:
+                slope = between.derivative(w, p, own.S)
+                assert abs(here.D_p * scale - slope) < 1e-5 * (abs(slope) + abs(own.D / p))
+
+
+def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
+    path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
+    family = family_of(path, 10.0, 20.0, 4.0**5)
+    w, slope, error = eigenvalue_in(family, -1.0 + 175j, 15.4627583986)
+    assert abs(w - 175.530930682j) < 1e-8
+    own = ArmAlongPath(path).eigenvalue(w, 15.4627583986)
+    assert abs(w - own[0]) <= 4 * (error + own[2])
+    assert slope == pytest.approx(own[1], rel=1e-6)
+
+
+def test_an_interval_too_long_for_polynomials_has_no_family():
+    rod = Rod(F=1.0, k1=1.0, k2=1e3, gamma3=1e-3, taper=0.9, build=Build("neo_hookean", "swelling"))
+    path = Path(rod, "F")
+    assert family_of(path, -30.0, 300.0, 4.0**5) is None
+    assert family_of(path, 1.0, 1.3, 4.0**5) is not None

@@ -1,0 +1,81 @@
+"""Spectra of arms followed along a grid: those of single points, with the counts of dense eigenvalues."""
+
+import numpy as np
+import pytest
+from reference.dense_arm import eigenvalues
+from reference.random_arms import random_arm
+from surveyed import RODS
+
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.arm_stretch import FollowedArms, followed_arms
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
+
+REQUEST = SpectrumRequest(4, 1e-10, certify=True)
+CONE = {"F": 10.0, "k1": 1e4, "k2": 1e3, "gamma3": 1e-3, "taper": 0.6}
+LINES = {
+    "F": np.linspace(0.5, 40, 40),
+    "k1": np.geomspace(60, 1e4, 24),
+    "k2": [*np.geomspace(30, 1e4, 24), np.inf],
+    "gamma3": [0.0, *np.geomspace(1e-5, 1e-1, 24)],
+    "taper": np.linspace(0.4, 1.6, 25),
+}
+COMPARED = 6
+"""Points of a line that are compared with single points and dense eigenvalues."""
+
+
+def agrees(found, i, rod):
+    """Asserts that the i-th point has the spectrum of the rod alone."""
+    alone = solve_spectrum(rod, REQUEST)
+    assert found.certified[i]
+    assert found.unstable_count[i] == alone.unstable_count
+    error = 10 * (found.error_estimate[i] + alone.error_estimate) + 1e-15 * np.abs(alone.eigenvalues)
+    np.testing.assert_array_less(np.abs(found.eigenvalues[i] - alone.eigenvalues), error)
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_followed_spectra_are_those_of_single_points(name):
+    """The taper passes 1, where the rod is uniform, and F and k1 a double eigenvalue and a Hopf point."""
+    values = np.array(LINES[name])
+    stretch = Stretch(Path(Rod(**{**CONE, name: float(values[0])}), name), values)
+    found = solve_stretch(stretch, REQUEST)
+    for i in np.linspace(0, len(values) - 1, COMPARED).astype(int):
+        agrees(found, i, stretch.rod(int(i)))
+
+
+def test_a_cone_is_followed_and_proved_without_single_points():
+    path = Path(Rod(**CONE), "F")
+    reached = followed_arms(path, np.linspace(5, 14, 32), REQUEST)
+    assert len(reached.good) == 32
+    assert reached.good.all()
+
+
+@pytest.mark.parametrize("seed", range(max(4, RODS // 10)))
+def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
+    rng, compared = np.random.default_rng(4000 + seed), 0
+    for _ in range(4):
+        rod = random_arm(rng)
+        values = np.linspace(0.4, 1.0, 24) * rod.F
+        path = Path(rod.changed(F=float(values[0])), "F")
+        reached = followed_arms(path, values, REQUEST)
+        if reached is None:
+            continue
+        for i in np.flatnonzero(reached.good)[::8]:
+            dense = eigenvalues(path.at(float(values[i])))
+            assert reached.unstable[i] == int((dense.real > 0).sum()), (rod, rod.build, values[i])
+            for w in dense[:4]:
+                assert np.abs(reached.w[i] - w).min() <= 1e-4 * max(abs(w), 1.0)
+            compared += 1
+    assert compared >= 3
+
+
+def test_points_between_those_followed_have_their_own_spectra():
+    path = Path(Rod(**CONE), "F")
+    followed = FollowedArms(path, np.linspace(1, 25, 25), 4)
+    for F in (3.3, 12.72, 24.99):
+        found, alone = followed.spectrum(F, 4), solve_spectrum(path.at(F), REQUEST)
+        assert found.unstable_count == alone.unstable_count
+        error = 10 * (found.error_estimate + alone.error_estimate) + 1e-15 * np.abs(alone.eigenvalues)
+        np.testing.assert_array_less(np.abs(found.eigenvalues - alone.eigenvalues), error)
+    assert followed.spectrum(26.0, 4) is None
