@@ -28,7 +28,7 @@ from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
 
-FURTHER_MODES = (3, 9)
+FURTHER_ARM_MODES = (3, 9)
 """Numbers of modes that are followed beyond those wanted: the more for arms whose hull is wide."""
 PROVED_ENOUGH = 0.5
 """Share of the points that must be proved complete, or else more modes are followed."""
@@ -76,7 +76,7 @@ def _interval(path: Path, p: Array, request: SpectrumRequest) -> Interval | None
     Where too few eigenvalues beyond the wanted ones are known for a proof, more are followed.
     """
     best: Interval | None = None
-    for further in FURTHER_MODES:
+    for further in FURTHER_ARM_MODES:
         found = _followed(path, p, request, further) if len(p) >= FEWEST else None
         if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
             best = found
