@@ -1,0 +1,32 @@
+"""Time schemes of a transient, by how fast its rod leaves or approaches the straight state."""
+
+from typing import NamedTuple
+
+from ...motion.time_scheme import TimeScheme
+from .amplitude_equation import SLOW_GROWTH
+
+TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
+"""Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
+QUICK = TimeScheme("arkimex", "4", tolerance=1e-4)
+"""Scheme of the first run of a fast-growing motion, which often closes: no decision uses the growth."""
+CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
+"""Scheme where the sign of a small growth per period must be correct, and for stored paths."""
+WEAK_GROWTH = 0.01
+"""Linear growth per period below which the scheme is CAREFUL."""
+NOISE, CAREFUL_NOISE = 1e-3, 1e-5
+"""Growth per period that the integrator may add; 3e-4 and 8e-6 were measured."""
+
+
+class TransientSchemes(NamedTuple):
+    """first: scheme of the first run; others: of all other runs; noise: growth per period that these may add."""
+
+    first: TimeScheme
+    others: TimeScheme
+    noise: float
+
+
+def schemes_of(growth: float, is_stored: bool) -> TransientSchemes:
+    """Schemes for a linear growth per period; is_stored: whether the path of the motion is stored."""
+    if abs(growth) < WEAK_GROWTH or is_stored:
+        return TransientSchemes(CAREFUL, CAREFUL, CAREFUL_NOISE)
+    return TransientSchemes(QUICK if growth > SLOW_GROWTH else TRANSIENT, TRANSIENT, NOISE)
