@@ -12,9 +12,13 @@ from .contents import PageContents
 from .scales import SCALES
 from .sharing import state_of_text
 from .solving.diagrams import uniform
+from .solving.letting_go import Tip
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
+
+Needs = tuple[PageState, Tip | None]
+"""What an answer depends on."""
 
 AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
 """Questions that follow every change."""
@@ -22,6 +26,8 @@ WHEN_IDLE = ("branch", "diagram")
 """Questions that wait until the page has rested for `IDLE`, because they take seconds."""
 IDLE = 900
 """Milliseconds."""
+OF_TIP = ("bent", "motion")
+"""Questions of a drag of the arm's tip; an answer to another place of the tip is not shown."""
 NAMES = {"thresholds": "thresholds", "growth": "growth rates", "branch": "branches"}
 """Names of questions in the sign, where the name of the kind is none."""
 
@@ -39,13 +45,14 @@ class Page:
         self.session = f"page-{id(self)}"
         self.is_open = True
         self.solving: set[str] = set()
-        self.asked: dict[str, PageState] = {}
+        self.asked: dict[str, Needs] = {}
         """What each kind of question depends on, when it was asked last."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
+        self.contents.beating.on_drag(self.bend, self.let_go)
         if stored is not None:
-            self.asked["diagram"] = needs("diagram", state)
+            self.asked["diagram"] = needs(Question("diagram", state))
             self.contents.show("diagram", stored, state)
 
     def open(self, query: str) -> None:
@@ -78,11 +85,30 @@ class Page:
         self.asked.pop(kind, None)
         self._ask(kind)
 
+    def bend(self, tip: Tip) -> None:
+        """Bends the arm so that its tip is at a place, in L."""
+        self._drop("motion")
+        self._ask("bent", tip)
+
+    def let_go(self, tip: Tip) -> None:
+        """Lets go the arm with its tip at a place, in L."""
+        self._drop("bent")
+        self._ask("motion", tip)
+
+    def _drop(self, kind: str) -> None:
+        """Drops a question, and its answer if it comes nevertheless."""
+        self.asked.pop(kind, None)
+        if kind in self.solving:
+            self.solving.discard(kind)
+            self.solvers.drop(self.session, kind)
+            self._show_solving()
+
     def _connections(self) -> dict[str, Callable[..., None]]:
         return {
             "branch": lambda: self.solve("branch"),
             "diagram": lambda: self.solve("diagram"),
             "diagram_point": self._move_in_diagram,
+            "film": lambda: self.solve("film"),
             "load": self._move_load,
         }
 
@@ -99,21 +125,21 @@ class Page:
             self._refuse(str(error))
             return
         self.contents.show_point(state, F)
+        for kind in (*OF_TIP, "film"):
+            self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
         """Shows a sentence in place of all pictures but a diagram that is drawn, and drops all questions."""
+        for kind in (*OF_TIP, "film"):
+            self._drop(kind)
         for kind in (*AT_ONCE, *WHEN_IDLE):
             if kind != "diagram" or kind in self.solving:
-                self.asked.pop(kind, None)
-            if kind in self.solving:
-                self.solvers.drop(self.session, kind)
+                self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
                 self.contents.say(kind, sentence)
-        self.solving.clear()
-        self._show_solving()
 
     def _rest(self) -> None:
         """Asks what takes seconds once the page has rested."""
@@ -124,7 +150,7 @@ class Page:
     def _rested(self) -> None:
         self._idle = None
         for kind in WHEN_IDLE:
-            if needs(kind, self.state) == self.asked.get(kind):
+            if needs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
             if self.state.tab == "rod" and not uniform(self.state):
                 self.asked.pop(kind, None)
@@ -132,14 +158,14 @@ class Page:
                 continue
             self._ask(kind)
 
-    def _ask(self, kind: str) -> None:
-        wanted = needs(kind, self.state)
+    def _ask(self, kind: str, tip: Tip | None = None) -> None:
+        question = Question(kind, self.state, tip)
+        wanted = needs(question)
         if self.asked.get(kind) == wanted:
             return
         self.asked[kind] = wanted
         self.solving.add(kind)
         self._show_solving()
-        question = Question(kind, self.state)
         self.solvers.ask(self.session, question, lambda reply: self._receive(question, reply))
 
     def _receive(self, question: Question, reply: Reply) -> None:
@@ -152,16 +178,20 @@ class Page:
         newest = self.asked.get(kind)
         if newest is None:  # the values are bad by now
             return
-        if newest == needs(kind, question.state):
+        is_newest = newest == needs(question)
+        if is_newest:
             self.solving.discard(kind)
             self._show_solving()
+        elif kind in OF_TIP:
+            return
         if reply.outcome == "answer":
             self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.say(kind, reply.content["sentence"])
 
     def _show_solving(self) -> None:
-        names = [NAMES.get(kind, kind) for kind in (*AT_ONCE, *WHEN_IDLE) if kind in self.solving]
+        shown = (*AT_ONCE, *WHEN_IDLE, "motion", "film")
+        names = [NAMES.get(kind, kind) for kind in shown if kind in self.solving]
         self.contents.working.text = f"solving {', '.join(names)} ..." if names else ""
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
@@ -177,11 +207,12 @@ class Page:
             self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(event.x)})
 
 
-def needs(kind: str, state: PageState) -> PageState:
-    """The state without what the answer to a question does not depend on."""
-    if kind in ("spectrum", "cycle"):
-        return replace(state, across="", F_max="")
+def needs(question: Question) -> Needs:
+    """The state without what the answer to a question does not depend on, and the place of the tip."""
+    kind, state = question.kind, question.state
+    if kind in ("spectrum", "cycle", "film", *OF_TIP):
+        return replace(state, across="", F_max=""), question.tip
     blank = {state.load: ""}
     if kind == "diagram":
-        return state.with_values(**blank, **{state.second: ""})
-    return replace(state.with_values(**blank), across="")
+        return state.with_values(**blank, **{state.second: ""}), None
+    return replace(state.with_values(**blank), across=""), None

@@ -81,6 +81,11 @@ class Card:
         self.message.text = escape(sentence)
         self.message.visible, self.figure.visible = True, False
 
+    def tell(self, sentence: str) -> None:
+        """Shows a sentence above the picture."""
+        self.message.text = escape(sentence)
+        self.message.visible, self.figure.visible = True, True
+
     def reveal(self) -> None:
         """Shows the picture."""
         self.message.visible, self.figure.visible = False, True

@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...api.answers.answer import Answer
+from ...api.answers.picture import plot
 from ...api.dataset import view_of
 from ...api.sweeping import sweep
 from ...arrays import Array
 from ...config.axes import DEFAULTS
+from ...errors import InputError
 from ...post.branch_curves import curves_of
 from ..state import LAWS, PageState, rod_of
 from .diagrams import diagram, words_of
+from .letting_go import Tip, bent, motion, straight
 
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
@@ -32,10 +35,14 @@ BELOW_CRUSHING = 0.98
 
 @dataclass(frozen=True)
 class Question:
-    """kind: a key of `ANSWERS`. state: the state of the page when it asked."""
+    """kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP`, which need the place of the tip, in L.
+
+    state: the state of the page when it asked.
+    """
 
     kind: str
     state: PageState
+    tip: Tip | None = None
 
 
 class Reply(NamedTuple):
@@ -82,8 +89,16 @@ def growth(state: PageState) -> Found:
 
 
 def cycle(state: PageState) -> Found:
-    """The limit cycle, with the shapes of the arm over a period."""
-    return variables(state.subject().cycle(shapes=SHAPES))
+    """The limit cycle, with the shapes of the arm over a period; x, y: the straight arm."""
+    return variables(state.subject().cycle(shapes=SHAPES)) | straight(state)
+
+
+def film(state: PageState) -> Found:
+    """gif: the film that `rodsweep plot` makes of the limit cycle; empty for a rod without a cycle."""
+    answer = state.subject().cycle(shapes=SHAPES)
+    if not np.isfinite(answer.data["shape_x"].values).all():
+        raise InputError(f"there is no cycle to film: {answer.sentence}")
+    return {"gif": plot(answer, what="animation").image}
 
 
 def branch(state: PageState) -> Found:
@@ -139,9 +154,13 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
     "cycle": cycle,
     "branch": branch,
     "diagram": diagram,
+    "film": film,
 }
+ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {"bent": bent, "motion": motion}
 
 
 def answer_to(question: Question) -> Found:
     """The answer; InputError for bad values."""
+    if question.tip is not None:
+        return ANSWERS_TO_TIP[question.kind](question.state, question.tip)
     return ANSWERS[question.kind](question.state)

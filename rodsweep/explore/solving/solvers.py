@@ -21,10 +21,10 @@ Key = tuple[str, str]
 Done = Callable[[Reply], None]
 GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
-    "branch": "branch", "diagram": "diagram",
+    "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
 }  # fmt: skip
 """The process that answers each kind: what follows a slider never waits for what takes seconds."""
-NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10}
+NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
 """How much the process of each group steps back for others: pictures that follow a slider come first."""
 STARTED_AGAIN = 0.1
 """Seconds after which a cancellation that came while the process starts is tried again."""

@@ -71,7 +71,8 @@ class Cycle:
     tip: x, y, theta at equidistant times, (3, samples). energy: U in k3/L, injection, dissipation, (3,
     samples). shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
     transient: time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4,
-    transient); None if no motion was integrated. motion: the motion from the start, if requested. neighbour: data from which the next point of a chain starts.
+    transient); None if no motion was integrated. motion: shapes from the start, if requested. neighbour: data
+    from which the next point of a chain starts.
     """
 
     status: PointStatus

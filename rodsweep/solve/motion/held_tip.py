@@ -1,9 +1,9 @@
 """The rod bent with its tip at a chosen place: the start of a motion from a shape that a user sets.
 
-Of all curvatures Pi that put the tip at (x, y) these have the least integral of Pi^2: a force at the tip, without
-moment, bends a rod of constant bending stiffness so, an elastica. Stretch and shear are those of the straight rod
-under its follower force. Pi vanishes at the tip, so the state satisfies the rod's own conditions there. Newton's
-method solves for the curvatures and the force f, with W the weights of the quadrature,
+Of all curvatures Pi that put the tip at (x, y) these have the least integral of Pi^2. A force at the tip,
+without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and shear are those of the
+straight rod under its follower force. Pi vanishes at the tip, so the state satisfies the rod's own conditions
+there. Newton's method solves for the curvatures and the force f, with W the weights of the quadrature,
 
     W Pi - f . d(x, y)/dPi = 0,    (x, y)(Pi) = the place,
 
@@ -21,7 +21,7 @@ from ...discretization.elements.mesh import configuration
 REACH = 0.98
 """Largest distance of the tip from the clamp, in lengths of the straight rod: at 1 the rod cannot be bent."""
 FIRST_ANGLE = 0.8
-"""Angle of the tip, rad, from which the path begins: the tip of a straight rod cannot move towards the clamp."""
+"""Angle of the tip, rad, where the path begins: the tip of a straight rod cannot move towards the clamp."""
 FIRST_STEP, LEAST_STEP = 0.1, 1e-3
 """Length of the first step as a share of the path, and the length at which the path is given up."""
 MOST_ITERATIONS, PLACED = 12, 1e-10
@@ -33,8 +33,8 @@ MOST_TURNED = 1.0
 def held_by_tip(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent so that its tip is at (x, y) in L.
 
-    A place beyond `REACH` is drawn towards the clamp. Where the path cannot be followed to its end, the state is
-    that of its last place.
+    A place beyond `REACH` is drawn towards the clamp. Where the path cannot be followed to its end, the state
+    is that of its last place.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0

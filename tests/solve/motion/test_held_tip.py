@@ -41,7 +41,7 @@ def test_stretch_and_shear_are_those_of_the_straight_rod(rod):
 @EACH_ROD
 @pytest.mark.parametrize("place", [(0.5, 0.3), (-0.2, 0.4)])
 def test_the_curvature_is_the_moment_of_a_force_at_the_tip(rod, place):
-    """Pi = f x (r(1) - r), two numbers for the whole curve; of three elements, to the accuracy of the mesh."""
+    """Pi = f x (r(1) - r), two numbers for the whole curve, to the accuracy of the mesh."""
     beam = beam_of(rod)
     z = held_by_tip(beam, *place)
     x, y, _ = beam.shape(z)

@@ -18,7 +18,7 @@ NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 
 
 class TransientSchemes(NamedTuple):
-    """first: scheme of the first run; others: of all other runs; noise: growth per period that these may add."""
+    """Schemes of the first run and of all others, and the growth per period that the others may add."""
 
     first: TimeScheme
     others: TimeScheme

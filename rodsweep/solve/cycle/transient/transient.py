@@ -79,8 +79,8 @@ class Transient:
 
     form: the rod whose cycle is solved for. beam: the integrated rod on the same mesh, different only where
     the rod is in a limit. straight: stability of the straight rod. along: parameter of the cycle's tangent.
-    unstable: a nearby unstable cycle. trace: path of the tip or shapes, if the request stores them. workspace: memory of
-    Newton's matrices.
+    unstable: a nearby unstable cycle. trace: path of the tip or shapes, if the request stores them.
+    workspace: memory of Newton's matrices.
     """
 
     def __init__(
