@@ -37,6 +37,7 @@ class PageContents:
             for kind, name, label in (
                 ("diagram", "diagram", "Solve the diagram around this point"),
                 ("branch", "branches", "Solve the branches"),
+                ("cycles", "cycles", "Add folds and torus points of cycles (minutes)"),
                 ("film", "film", "Save a film of the cycle (GIF)"),
             )
         }
@@ -110,6 +111,9 @@ class PageContents:
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.stop()
+        if kind == "cycles":
+            self.diagram.card.tell(sentence)
+            return
         if kind in ("bent", "motion", "film"):
             self.beating.let_go()
             self.beating.card.tell(sentence)

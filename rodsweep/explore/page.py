@@ -16,6 +16,7 @@ from .solving.letting_go import Tip
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
+from .stored_results import StoredResults
 
 Needs = tuple[PageState, Tip | None]
 """What an answer depends on."""
@@ -24,24 +25,26 @@ AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
 """Questions that follow every change."""
 WHEN_IDLE = ("branch", "diagram")
 """Questions that wait until the page has rested for `IDLE`, because they take seconds."""
+ON_REQUEST = ("motion", "film", "cycles")
+"""Questions that only the user asks; a change of the rod drops them."""
 IDLE = 900
 """Milliseconds."""
 OF_TIP = ("bent", "motion")
-"""Questions of a drag of the arm's tip; an answer to another place of the tip is not shown."""
-NAMES = {"thresholds": "thresholds", "growth": "growth rates", "branch": "branches"}
+"""Questions of a drag of the tip; an answer to another place of the tip is not shown."""
+NAMES = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
 """Names of questions in the sign, where the name of the kind is none."""
 
 
 class Page:
     """Connects controls, solvers and pictures of one session.
 
-    session: name of the session. stored: answer to the question `diagram` from a result file, or None.
+    session: name of the session. stored: what a result file answers, or None.
     """
 
     def __init__(
-        self, document: Document, solvers: Solvers, state: PageState, stored: dict[str, Any] | None = None
+        self, document: Document, solvers: Solvers, state: PageState, stored: StoredResults | None = None
     ):
-        self.document, self.solvers, self.state = document, solvers, state
+        self.document, self.solvers, self.state, self.stored = document, solvers, state, stored
         self.session = f"page-{id(self)}"
         self.is_open = True
         self.solving: set[str] = set()
@@ -51,9 +54,9 @@ class Page:
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
         self.contents.beating.on_drag(self.bend, self.let_go)
-        if stored is not None:
+        if stored is not None and stored.diagram is not None:
             self.asked["diagram"] = needs(Question("diagram", state))
-            self.contents.show("diagram", stored, state)
+            self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
         """Shows the state of an address."""
@@ -82,8 +85,10 @@ class Page:
 
     def solve(self, kind: str) -> None:
         """Solves a kind of question now, though it was solved before."""
-        self.asked.pop(kind, None)
-        self._ask(kind)
+        if kind == "cycles":
+            self._drop("diagram")
+        self._drop(kind)
+        self._ask(kind, is_solved_again=True)
 
     def bend(self, tip: Tip) -> None:
         """Bends the arm so that its tip is at a place, in L."""
@@ -109,6 +114,7 @@ class Page:
             "diagram": lambda: self.solve("diagram"),
             "diagram_point": self._move_in_diagram,
             "film": lambda: self.solve("film"),
+            "cycles": lambda: self.solve("cycles"),
             "load": self._move_load,
         }
 
@@ -125,7 +131,7 @@ class Page:
             self._refuse(str(error))
             return
         self.contents.show_point(state, F)
-        for kind in (*OF_TIP, "film"):
+        for kind in (*OF_TIP, *ON_REQUEST):
             self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
@@ -133,7 +139,7 @@ class Page:
 
     def _refuse(self, sentence: str) -> None:
         """Shows a sentence in place of all pictures but a diagram that is drawn, and drops all questions."""
-        for kind in (*OF_TIP, "film"):
+        for kind in (*OF_TIP, *ON_REQUEST):
             self._drop(kind)
         for kind in (*AT_ONCE, *WHEN_IDLE):
             if kind != "diagram" or kind in self.solving:
@@ -158,12 +164,19 @@ class Page:
                 continue
             self._ask(kind)
 
-    def _ask(self, kind: str, tip: Tip | None = None) -> None:
+    def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
+        """Asks a question that is not asked yet. A stored answer is shown instead, unless solved again."""
         question = Question(kind, self.state, tip)
         wanted = needs(question)
         if self.asked.get(kind) == wanted:
             return
         self.asked[kind] = wanted
+        stored = None if self.stored is None or is_solved_again else self.stored.answer(kind, self.state)
+        if stored is not None:
+            self._drop(kind)
+            self.asked[kind] = wanted
+            self.contents.show(kind, stored, self.state)
+            return
         self.solving.add(kind)
         self._show_solving()
         self.solvers.ask(self.session, question, lambda reply: self._receive(question, reply))
@@ -185,12 +198,14 @@ class Page:
         elif kind in OF_TIP:
             return
         if reply.outcome == "answer":
+            if kind == "cycles":
+                self.asked["diagram"] = needs(replace(question, kind="diagram"))
             self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.say(kind, reply.content["sentence"])
 
     def _show_solving(self) -> None:
-        shown = (*AT_ONCE, *WHEN_IDLE, "motion", "film")
+        shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)
         names = [NAMES.get(kind, kind) for kind in shown if kind in self.solving]
         self.contents.working.text = f"solving {', '.join(names)} ..." if names else ""
 
@@ -204,7 +219,9 @@ class Page:
     def _move_load(self, event: Tap) -> None:
         """Moves the load to that of a click."""
         if event.x is not None:
-            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(event.x)})
+            stored = self.stored if self.state.tab == "rod" else None
+            at = event.x if stored is None else stored.load_near(event.x)
+            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(at)})
 
 
 def needs(question: Question) -> Needs:
@@ -213,6 +230,6 @@ def needs(question: Question) -> Needs:
     if kind in ("spectrum", "cycle", "film", *OF_TIP):
         return replace(state, across="", F_max=""), question.tip
     blank = {state.load: ""}
-    if kind == "diagram":
+    if kind in ("diagram", "cycles"):
         return state.with_values(**blank, **{state.second: ""}), None
     return replace(state.with_values(**blank), across=""), None

@@ -11,6 +11,8 @@ from ...arrays import Array
 
 STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
 """Colours that stand out on a white page and on a dark one."""
+FOLD, TORUS = "#8a63d2", "#2a9d5c"
+"""Colours of curves of special points of cycles."""
 TICKS = 5
 """Labels along the lower axis, about."""
 PLAIN_DIGITS = 7

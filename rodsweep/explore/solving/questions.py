@@ -2,23 +2,21 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...api.answers.answer import Answer
 from ...api.answers.picture import plot
 from ...api.dataset import view_of
 from ...api.sweeping import sweep
-from ...arrays import Array
 from ...config.axes import DEFAULTS
 from ...errors import InputError
 from ...post.branch_curves import curves_of
 from ..state import LAWS, PageState, rod_of
-from .diagrams import diagram, words_of
+from .branches import drawn_branches, straight_pieces
+from .diagrams import cycle_diagram, diagram, words_of
 from .letting_go import Tip, bent, motion, straight
 
 Found = dict[str, Any]
@@ -108,38 +106,9 @@ def branch(state: PageState) -> Found:
     is not known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force())
-    curves = curves_of(view_of(answer.whole, Path(answer.rod)), 0)
-    pieces = [piece for curve in curves for piece in pieces_of(curve.at, curve.y, curve.stable)]
-    special = [(p.at, p.tip_y_max, p.kind, p.period) for curve in curves for p in curve.special]
-    return {
-        "pieces": pieces + straight_pieces(answer, state.largest_force()),
-        "special": [each for each in special if each[2] != "end"],
-        "status": str(answer.status),
-        "sentence": answer.sentence,
-    }
-
-
-def pieces_of(at: Array, y: Array, stable: NDArray[np.integer]) -> list[tuple[Array, Array, int]]:
-    """Pieces of equal stability of a curve through (n,) vertices; stable: (n - 1,)."""
-    starts = [0, *(i for i in range(1, len(stable)) if stable[i] != stable[i - 1]), len(stable)]
-    return [
-        (at[a : b + 1], y[a : b + 1], int(stable[a])) for a, b in pairwise(starts) if b > a
-    ]  # fmt: skip
-
-
-def straight_pieces(answer: Answer, stop: float) -> list[tuple[Array, Array, int]]:
-    """The straight state from F = 0 to `stop`, in pieces between its Hopf points: F and y of shape (2,)."""
-    data = answer.data
-    hopf = words_of(data["special_kind"]) == "hopf"
-    at = data["special_at"].values[hopf]
-    order = np.argsort(at)
-    after = data["special_unstable_after"].values[hopf][order]
-    counts = [int(data["unstable_at_start"]), *map(int, after)]
-    ends = [0.0, *at[order], stop]
-    return [
-        (np.array(piece), np.zeros(2), -1 if count < 0 else int(count == 0))
-        for piece, count in zip(pairwise(ends), counts, strict=True)
-    ]
+    found = drawn_branches(curves_of(view_of(answer.whole, Path(answer.rod)), 0))
+    found["pieces"] += straight_pieces(answer.data, state.largest_force())
+    return found | {"status": str(answer.status), "sentence": answer.sentence}
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
@@ -154,6 +123,7 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
     "cycle": cycle,
     "branch": branch,
     "diagram": diagram,
+    "cycles": cycle_diagram,
     "film": film,
 }
 ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {"bent": bent, "motion": motion}

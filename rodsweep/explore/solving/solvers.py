@@ -22,6 +22,7 @@ Done = Callable[[Reply], None]
 GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
+    "cycles": "diagram",
 }  # fmt: skip
 """The process that answers each kind: what follows a slider never waits for what takes seconds."""
 NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
