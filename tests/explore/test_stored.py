@@ -13,8 +13,8 @@ ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
 CYCLES = f"task: limit_cycle\nparameters: {{F: [20, 40, 50], {ROD}}}\nlimit_cycle: {{shapes: 16}}\n"
 BRANCH = f"task: branch\nparameters: {{{ROD}}}\nbranch: {{stop: 50}}\n"
 PLANE = """task: phase_diagram
-parameters: {F: {start: 0, stop: 240, num: 25}, k1: [150, 155, 160], k2: 1.0e4, gamma3: 1.0e-4}
-phase_diagram: {cycles: true}
+parameters: {F: {start: 60, stop: 110, num: 6}, k1: [150, 151], k2: 1.0e4, gamma3: 1.0e-4}
+phase_diagram: {cycles: true, certify: false, cycle_accuracy: 1.0e-4}
 """
 
 
