@@ -29,21 +29,23 @@ class StoredResults:
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
         self.path, self.data, self.state, self.diagram = path, data, state, diagram
-        self.task = str(data.attrs["task"])
+        points = data["status"].dims
+        self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == points
+        """Whether each point has one cycle."""
 
     def answer(self, kind: str, state: PageState) -> Found | None:
         """The stored answer to a question about a state; None if the file does not hold it."""
         if state.tab != "rod" or self.state.tab != "rod" or state.law != self.state.law:
             return None
-        if self.task == "limit_cycle" and kind == "cycle":
-            return self._cycle(state)
-        if self.task == "limit_cycle" and kind == "branch":
-            return self._cycles_over_force(state)
-        return self._branch(state) if self.task == "branch" and kind == "branch" else None
+        if kind == "cycle":
+            return self._cycle(state) if self.has_cycles else None
+        if kind == "branch":
+            return self._cycles_over_force(state) if self.has_cycles else self._branch(state)
+        return None
 
     def load_near(self, F: float) -> float:
         """The stored force that a click at F means, or F itself."""
-        if self.task != "limit_cycle" or self.data.sizes.get("F", 1) < 2:
+        if not self.has_cycles or self.data.sizes.get("F", 1) < 2:
             return F
         stored = self.data["F"].values
         nearest = float(stored[np.argmin(np.abs(stored - F))])

@@ -15,7 +15,7 @@ from .second_state import SecondState
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class MotionShapes:
     """The beginning of a motion: shapes (x, y), (2, frames, nodes), at times `step` apart, in tau2.
 
     is_whole: whether it goes on until the outcome of the motion is known.
@@ -94,7 +94,7 @@ class Cycle:
     energy: Array | None = None
     shape: Array | None = None
     transient: Array | None = None
-    motion: Motion | None = None
+    motion: MotionShapes | None = None
     neighbour: Neighbour | None = None
 
 

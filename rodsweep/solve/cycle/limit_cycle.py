@@ -24,7 +24,7 @@ from ..motion.time_scheme import CYCLE_PREFIX
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
 from .accuracy.refinement import RefinedCycle, refined_cycle
-from .cycle import Cycle, CycleRequest, Motion, first_of, measured
+from .cycle import Cycle, CycleRequest, MotionShapes, first_of, measured
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import Neighbour, followed_cycle
 from .second_state import second_state
@@ -153,7 +153,7 @@ def _after_motion(
     )
 
 
-def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> Motion:
+def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
     """The beginning of the motion as the request stores it."""
     returns = [time for time, _ in transient.past]
     return trace.motion(returns, transient.mode.period, request.frames, request.nodes)

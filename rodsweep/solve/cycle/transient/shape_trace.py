@@ -8,7 +8,7 @@ from ....arrays import Array
 from ....discretization.beam import Beam
 from ....discretization.elements.quadrature import lobatto_points
 from ...motion.integrator import Trajectory
-from ..cycle import Motion
+from ..cycle import MotionShapes
 
 MOST_STEPS = 4000
 """Time steps after which no more are kept: some 50 to 100 returns of the tip, or 4 MB."""
@@ -54,7 +54,7 @@ class ShapeTrace:
             self.states.append(states)
             self.steps += len(times)
 
-    def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> Motion:
+    def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
         """Shapes on `nodes` Lobatto nodes, `frames` per return of the tip, until the arm is at rest.
 
         returns: times of the tip's last returns. period: of the leading mode, in place of few returns.
@@ -72,4 +72,4 @@ class ShapeTrace:
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
         is_whole = not self.is_full and len(due) < MOST_FRAMES
         swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > AT_REST)
-        return Motion(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)
+        return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)
