@@ -31,7 +31,11 @@ function nearest_phase(data) {
   return best / count
 }
 function notice(now) {
-  if (bent.data !== bends) { bends = bent.data; if (bends.x.length) mode = "bent" }
+  if (bent.data !== bends) {
+    bends = bent.data
+    if (bends.x.length) mode = "bent"
+    else if (mode === "bent") mode = "beats"
+  }
   if (motion.data !== moves) {
     moves = motion.data
     if (moves.x.length) { mode = "moves"; since = now } else mode = "beats"
