@@ -7,6 +7,7 @@ from explore.test_page import ImmediateSolvers, page_with, run_callbacks
 import rodsweep as rs
 from rodsweep.explore.page import AT_ONCE, Page
 from rodsweep.explore.pictures.beating import SECONDS
+from rodsweep.explore.pictures.card import NO_TITLE
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
 from rodsweep.explore.state import PageState
 
@@ -72,7 +73,7 @@ def test_a_change_of_the_rod_forgets_the_motion():
     run_callbacks(page.document)
     picture = page.contents.beating
     assert (len(picture.motion.data["x"]), len(picture.bent.data["x"])) == (0, 0)
-    assert picture.card.figure.title.text == ""
+    assert picture.card.figure.title.text == NO_TITLE
 
 
 def test_an_answer_to_another_place_of_the_tip_is_not_shown():

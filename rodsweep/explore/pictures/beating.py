@@ -76,7 +76,7 @@ class BeatingPicture:
             f"{n} ({length.label})" for n in "xy"
         )
         is_stable = found["status"] == "cycle"
-        self.card.figure.title.text = "" if is_stable or not has_cycle else found["sentence"]
+        self.card.entitle("" if is_stable or not has_cycle else found["sentence"])
         if has_cycle:
             self.card.reveal()
         else:
@@ -100,7 +100,7 @@ class BeatingPicture:
         place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = ENDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
-        self.card.figure.title.text = f"Let go at ({place}) {self.length.label}: {end}{part}"
+        self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
 
     def let_go(self) -> None:
         """Forgets a bent arm and its motion."""

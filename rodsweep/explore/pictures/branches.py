@@ -74,7 +74,7 @@ class BranchPicture:
         names = ("F", "y", "kind", "period")
         self.special.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
         title = found["sentence"] if found["status"] != "ok" else found.get("source", "")
-        self.card.figure.title.text = title
+        self.card.entitle(title)
         self.card.reveal()
 
     def move_point(self, F: float) -> None:

@@ -17,6 +17,8 @@ TICKS = 5
 """Labels along the lower axis, about."""
 PLAIN_DIGITS = 7
 """Largest power of ten that labels write out."""
+NO_TITLE = "\u00a0"
+"""A title without words: a picture that is drawn with an empty title shows no later one."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
@@ -27,6 +29,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
+    made.title.text = NO_TITLE
     made.toolbar.autohide = True
     made.toolbar_inner = True
     made.toolbar.logo = None
@@ -77,6 +80,10 @@ class Card:
         figure.name = f"{name}_figure"
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
+
+    def entitle(self, text: str) -> None:
+        """Writes a title, which may be empty."""
+        self.figure.title.text = text or NO_TITLE
 
     def say(self, sentence: str) -> None:
         """Shows a sentence in place of the picture."""
