@@ -1,14 +1,17 @@
 """A drag of the arm's tip on the page, without a browser: the bent arm, and the motion after it is let go."""
 
+from io import BytesIO
+
 import numpy as np
 import pytest
 from explore.test_page import ImmediateSolvers, page_with, run_callbacks
+from PIL import Image
 
 import rodsweep as rs
 from rodsweep.explore.page import AT_ONCE, Page
 from rodsweep.explore.pictures.beating import SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
-from rodsweep.explore.solving.questions import Question, Reply, answer_to
+from rodsweep.explore.solving.questions import SHAPES, Question, Reply, answer_to
 from rodsweep.explore.state import PageState
 
 KINDS = (*AT_ONCE, "bent", "motion", "film")
@@ -96,19 +99,15 @@ def test_every_place_of_the_pointer_bends_the_arm(place):
     assert np.isfinite([found["x"], found["y"]]).all()
 
 
-def test_the_film_is_that_of_plot(tmp_path):
+def test_the_film_shows_the_shapes_of_a_period():
     page = page_with(ImmediateSolvers(KINDS))
     given = []
     page.contents.sharing.give_film = given.append
     page.solve("film")
     run_callbacks(page.document)
-    rs.plot(
-        rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).cycle(shapes=48), tmp_path / "film.gif", what="animation"
-    )
     assert len(given) == 1
-    # Newton's start differs after other rods, so frames agree, not every byte.
-    assert given[0][:6] == (tmp_path / "film.gif").read_bytes()[:6] == b"GIF89a"
-    assert len(given[0]) == pytest.approx((tmp_path / "film.gif").stat().st_size, rel=0.02)
+    film = Image.open(BytesIO(given[0]))
+    assert (film.format, film.n_frames) == ("GIF", SHAPES)
 
 
 def test_a_rod_without_a_cycle_has_no_film():
