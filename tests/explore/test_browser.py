@@ -130,7 +130,7 @@ def test_an_arm_that_is_dragged_by_its_tip_and_let_go_moves_into_its_cycle(brows
 
 def test_the_film_is_saved_as_a_gif(browser):
     browser.run(
-        "HTMLAnchorElement.prototype.click = function () { window.saved = [this.download, this.href] }"
+        "HTMLAnchorElement.prototype.click = function () { window.film = [this.download, this.href] }"
     )
     browser.run(
         "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('film_button')).el.shadowRoot"
