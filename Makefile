@@ -51,10 +51,16 @@ lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 check: lint test  ## lint and test: what must pass before a commit
-test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p and gfortran are found where they are on PATH
-test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran (Debian)
+test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p, gfortran and Chromium are found where they are on PATH
+test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran, Chromium (Debian)
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
+	browser=
+	for p in chromium chromium-driver; do  # Ubuntu has a snap instead
+	  if apt-cache show $$p >/dev/null 2>&1; then browser="$$browser $$p"
+	  else echo "make: apt-get knows no package $$p; without it the tests in a browser are skipped" >&2; fi
+	done
+	apt_install $$browser
 survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time; further Hopf points and branches (some minutes)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/solve/hopf/test_criticality.py tests/solve/branch/test_branch.py tests/solve/branch/test_branch_auto.py tests/solve/branch/test_coexistence.py tests/solve/cycle/test_torus.py tests/solve/cycle/test_marched.py tests/solve/spectrum/test_following.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_branch_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py tests/hard/test_random_rods.py tests/determinant/test_arm_count.py tests/solve/spectrum/test_arm_spectrum.py tests/solve/changes/test_arm_thresholds.py tests/hard/test_sentences.py tests/post/test_figure_layout.py tests/cli/test_start.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py

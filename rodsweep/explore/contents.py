@@ -45,6 +45,8 @@ class PageContents:
             for kind, name, label in (
                 ("diagram", "diagram", "Solve the diagram around this point"),
                 ("branch", "branches", "Solve the branches"),
+                ("cycles", "cycles", "Add folds and torus points of cycles (minutes)"),
+                ("film", "film", "Save a film of the cycle (GIF)"),
             )
         }
         self.numbers.root.stylesheets = [texts]
@@ -98,6 +100,12 @@ class PageContents:
             self.mode.show(found)
         elif kind == "cycle":
             self.beating.show(found, length_axis(state))
+        elif kind == "bent":
+            self.beating.show_bent(found)
+        elif kind == "motion":
+            self.beating.show_motion(found)
+        elif kind == "film":
+            self.sharing.give_film(found["gif"])
         elif kind == "thresholds":
             self.growth.show_thresholds(found, load_axis(state))
         elif kind == "growth":
@@ -113,6 +121,13 @@ class PageContents:
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.stop()
+        if kind == "cycles":
+            self.diagram.card.tell(sentence)
+            return
+        if kind in ("bent", "motion", "film"):
+            self.beating.let_go()
+            self.beating.card.tell(sentence)
+            return
         by_kind = {
             "spectrum": (self.spectrum, self.mode), "cycle": (self.beating,), "thresholds": (self.growth,),
             "growth": (self.growth,), "branch": (self.branches,), "diagram": (self.diagram,),

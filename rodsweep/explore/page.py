@@ -12,43 +12,53 @@ from .contents import PageContents
 from .scales import SCALES
 from .sharing import state_of_text
 from .solving.diagrams import uniform
+from .solving.letting_go import Tip
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
+from .stored_results import StoredResults
+
+Needs = tuple[PageState, Tip | None]
+"""What an answer depends on."""
 
 AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of questions that are asked after every change."""
 WHEN_IDLE = ("branch", "diagram")
 """Kinds of questions that take seconds, and are asked after a pause of `IDLE`."""
+ON_REQUEST = ("motion", "film", "cycles")
+"""Questions that only the user asks; a change of the rod drops them."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
-NAMES = {"thresholds": "thresholds", "growth": "growth rates", "branch": "branches"}
+OF_TIP = ("bent", "motion")
+"""Questions of a drag of the tip; an answer to another place of the tip is not shown."""
+NAMES = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
 """Names of kinds in the sign "solving ..."; a missing kind is its own name."""
 
 
 class Page:
     """Connects controls, solvers and pictures of one session.
 
-    session: name of the session. stored: answer to the question `diagram` from a result file, or None.
+    session: name of the session. stored: what a result file answers, or None.
     """
 
     def __init__(
-        self, document: Document, solvers: Solvers, state: PageState, stored: dict[str, Any] | None = None
+        self, document: Document, solvers: Solvers, state: PageState, stored: StoredResults | None = None
     ):
         self.document = document
         self.solvers = solvers
-        self.state = state
+        self.state, self.stored = state, stored
         self.session = f"page-{id(self)}"
         self.is_open = True
         self.solving: set[str] = set()
-        self.asked: dict[str, PageState] = {}
+        self.asked: dict[str, Needs] = {}
         """The part of the state, `needs`, that the latest question of each kind depends on."""
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
-        if stored is not None:
-            self.asked["diagram"] = needs("diagram", state)
-            self.contents.show("diagram", stored, state)
+        self.contents.beating.on_drag(self.bend, self.let_go)
+        if stored is not None and stored.diagram is not None:
+            self.asked["diagram"] = needs(Question("diagram", state))
+            self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
         """Shows the state of an address; query: the address after "?"."""
@@ -77,14 +87,36 @@ class Page:
 
     def solve(self, kind: str) -> None:
         """Asks a question now, even if its answer is already shown."""
+        if kind == "cycles":
+            self._drop("diagram")
+        self._drop(kind)
+        self._ask(kind, is_solved_again=True)
+
+    def bend(self, tip: Tip) -> None:
+        """Bends the arm so that its tip is at a place, in L."""
+        self._drop("motion")
+        self._ask("bent", tip)
+
+    def let_go(self, tip: Tip) -> None:
+        """Lets go the arm with its tip at a place, in L."""
+        self._drop("bent")
+        self._ask("motion", tip)
+
+    def _drop(self, kind: str) -> None:
+        """Drops a question, and its answer if it comes nevertheless."""
         self.asked.pop(kind, None)
-        self._ask(kind)
+        if kind in self.solving:
+            self.solving.discard(kind)
+            self.solvers.drop(self.session, kind)
+            self._show_solving()
 
     def _connections(self) -> dict[str, Callable[..., None]]:
         return {
             "branch": lambda: self.solve("branch"),
             "diagram": lambda: self.solve("diagram"),
             "diagram_point": self._move_in_diagram,
+            "film": lambda: self.solve("film"),
+            "cycles": lambda: self.solve("cycles"),
             "load": self._move_load,
         }
 
@@ -101,21 +133,21 @@ class Page:
             self._refuse(str(error))
             return
         self.contents.show_point(state, F)
+        for kind in (*OF_TIP, *ON_REQUEST):
+            self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
         """Shows a sentence instead of all pictures except a drawn diagram, and cancels all questions."""
+        for kind in (*OF_TIP, *ON_REQUEST):
+            self._drop(kind)
         for kind in (*AT_ONCE, *WHEN_IDLE):
             if kind != "diagram" or kind in self.solving:
-                self.asked.pop(kind, None)
-            if kind in self.solving:
-                self.solvers.drop(self.session, kind)
+                self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
                 self.contents.say(kind, sentence)
-        self.solving.clear()
-        self._show_solving()
 
     def _rest(self) -> None:
         """Schedules the slow questions after the pause `IDLE`; a further change restarts the pause."""
@@ -126,7 +158,7 @@ class Page:
     def _rested(self) -> None:
         self._idle = None
         for kind in WHEN_IDLE:
-            if needs(kind, self.state) == self.asked.get(kind):
+            if needs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
             if self.state.tab == "rod" and not uniform(self.state):
                 self.asked.pop(kind, None)
@@ -134,14 +166,21 @@ class Page:
                 continue
             self._ask(kind)
 
-    def _ask(self, kind: str) -> None:
-        wanted = needs(kind, self.state)
+    def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
+        """Asks a question that is not asked yet. A stored answer is shown instead, unless solved again."""
+        question = Question(kind, self.state, tip)
+        wanted = needs(question)
         if self.asked.get(kind) == wanted:
             return
         self.asked[kind] = wanted
+        stored = None if self.stored is None or is_solved_again else self.stored.answer(kind, self.state)
+        if stored is not None:
+            self._drop(kind)
+            self.asked[kind] = wanted
+            self.contents.show(kind, stored, self.state)
+            return
         self.solving.add(kind)
         self._show_solving()
-        question = Question(kind, self.state)
         self.solvers.ask(self.session, question, lambda reply: self._receive(question, reply))
 
     def _receive(self, question: Question, reply: Reply) -> None:
@@ -154,16 +193,22 @@ class Page:
         newest = self.asked.get(kind)
         if newest is None:  # the user has entered invalid values meanwhile
             return
-        if newest == needs(kind, question.state):
+        is_newest = newest == needs(question)
+        if is_newest:
             self.solving.discard(kind)
             self._show_solving()
+        elif kind in OF_TIP:
+            return
         if reply.outcome == "answer":
+            if kind == "cycles":
+                self.asked["diagram"] = needs(replace(question, kind="diagram"))
             self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.say(kind, reply.content["sentence"])
 
     def _show_solving(self) -> None:
-        names = [NAMES.get(kind, kind) for kind in (*AT_ONCE, *WHEN_IDLE) if kind in self.solving]
+        shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)
+        names = [NAMES.get(kind, kind) for kind in shown if kind in self.solving]
         self.contents.working.text = f"solving {', '.join(names)} ..." if names else ""
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
@@ -177,14 +222,17 @@ class Page:
     def _move_load(self, event: Tap) -> None:
         """Moves the load to the x of a click."""
         if event.x is not None:
-            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(event.x)})
+            stored = self.stored if self.state.tab == "rod" else None
+            at = event.x if stored is None else stored.load_near(event.x)
+            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(at)})
 
 
-def needs(kind: str, state: PageState) -> PageState:
-    """The state with blanks for all fields that the answer to a kind of question does not depend on."""
-    if kind in ("spectrum", "cycle"):
-        return replace(state, across="", F_max="")
+def needs(question: Question) -> Needs:
+    """The state, blank in all fields that do not affect the answer, and the place of the tip."""
+    kind, state = question.kind, question.state
+    if kind in ("spectrum", "cycle", "film", *OF_TIP):
+        return replace(state, across="", F_max=""), question.tip
     blank = {state.load: ""}
-    if kind == "diagram":
-        return state.with_values(**blank, **{state.second: ""})
-    return replace(state.with_values(**blank), across="")
+    if kind in ("diagram", "cycles"):
+        return state.with_values(**blank, **{state.second: ""}), None
+    return replace(state.with_values(**blank), across=""), None

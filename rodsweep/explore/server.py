@@ -20,6 +20,7 @@ from ..errors import InputError
 from .page import Page
 from .solving.solvers import Solvers
 from .state import PageState
+from .stored_results import StoredResults
 
 ADDRESS = "127.0.0.1"
 HOSTS = (ADDRESS, "localhost")
@@ -43,7 +44,7 @@ class ExploreServer:
     Raises InputError if the port is in use.
     """
 
-    def __init__(self, state: PageState, stored: dict[str, Any] | None = None, port: int = 0):
+    def __init__(self, state: PageState, stored: StoredResults | None = None, port: int = 0):
         self.state = state
         self.stored = stored
         sockets = _bound(port)
@@ -99,7 +100,7 @@ def _bound(port: int) -> list[socket.socket]:
         raise InputError(f"--port {port}: {error.strerror}; without --port any free port is taken") from None
 
 
-async def serve(state: PageState, stored: dict[str, Any] | None, port: int, is_opened: bool) -> None:
+async def serve(state: PageState, stored: StoredResults | None, port: int, is_opened: bool) -> None:
     """Serves the page until Ctrl-C; is_opened: whether to open a browser."""
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -1,6 +1,6 @@
 """Export and import of a page: address, config, Python lines, pictures."""
 
-from base64 import b64decode
+from base64 import b64decode, b64encode
 from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
@@ -18,6 +18,10 @@ from .stored import state_of
 SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Code of the browser that writes the state into the address."""
 SAVE = 'download(new Blob([yaml.tags[0]], {type: "application/yaml"}), "explore.yaml")'
+GIVE_FILM = """
+const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
+if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
+"""
 COPY = "navigator.clipboard.writeText(source.tags[0])"
 TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks to choose from for the config; the first is the default."""
@@ -53,10 +57,14 @@ class Sharing:
         ]
         for button, source in zip(copies, (self.yaml, self.python), strict=True):
             button.js_on_click(CustomJS(args={"source": source}, code=COPY))
+        self.film = Div(name="film", tags=[""], visible=False)
+        self.film.js_on_change(
+            "tags", CustomJS(args={"film": self.film}, code=read("download.js") + GIVE_FILM)
+        )
         self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=SHOW_ADDRESS))
         self.root = Column(
             self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
-            *_picture_buttons(cards), name="sharing", sizing_mode="stretch_width",
+            *_picture_buttons(cards), self.film, name="sharing", sizing_mode="stretch_width",
         )  # fmt: skip
 
     def show(self, state: PageState) -> None:
@@ -68,6 +76,11 @@ class Sharing:
         self.python.tags = [state.python()]
         self.python.text = f"<pre>{escape(state.python())}</pre>"
         self._show_yaml()
+
+    def give_film(self, gif: bytes) -> None:
+        """Lets the browser save a film."""
+        self.film.tags = [b64encode(gif).decode()]
+        self.film.tags = [""]  # a film of half a megabyte need not stay in the page
 
     def _show_yaml(self) -> None:
         text = self._state.yaml(self.task.value)

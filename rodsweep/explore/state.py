@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import isnan
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
@@ -75,6 +76,9 @@ class PageState:
         material: dict[str, Any] = dict(LAWS[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
+        for name, text in self.rod.items():
+            if overflows(text.strip()):
+                raise InputError(f"parameters.{name}: {short(text)} is too large for a floating-point number")
         return SoftRod(**self.parameters(), **material)
 
     def parameters(self) -> dict[str, Any]:
@@ -122,9 +126,10 @@ def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
 def number(text: str) -> Any:
     """A text as a number, or the text itself for a later error message."""
     try:
-        return text if overflows(text.strip()) else float(text)
+        value = float(text)
     except ValueError:
         return text
+    return text if isnan(value) or overflows(text.strip()) else value
 
 
 def from_address(query: str, default: PageState | None = None) -> PageState:

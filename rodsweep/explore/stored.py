@@ -13,6 +13,7 @@ from ..errors import InputError
 from .scales import SCALES
 from .solving.diagrams import Dataset, of_grid, of_phases, of_rows
 from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
+from .stored_results import StoredResults
 
 RESULTS = (".h5", ".hdf5", ".nc")
 """Suffixes of result files; all other files are configs."""
@@ -20,8 +21,8 @@ NOT_SHOWN = ("density_difference", "fluid_density", "law", "section")
 """Quantities of an arm that do not affect the page, or that have a control outside the arm's tab."""
 
 
-def opened(path: Path) -> tuple[PageState, dict[str, Any] | None]:
-    """(state of the first page, stored diagram or None) of a result file or a config.
+def opened(path: Path) -> tuple[PageState, StoredResults | None]:
+    """(state of the first page, what the file answers; None for a config) of a result file or a config.
 
     Raises InputError if it is neither, or holds arms that the page cannot show.
     """
@@ -32,7 +33,7 @@ def opened(path: Path) -> tuple[PageState, dict[str, Any] | None]:
         state = state_of(config_of(json.loads(data.attrs["config_resolved"])), path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
-    return state, stored_diagram(data, state)
+    return state, StoredResults(path, data, state, stored_diagram(data, state))
 
 
 def state_of(config: Config, path: Path) -> PageState:

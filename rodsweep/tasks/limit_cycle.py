@@ -138,7 +138,7 @@ class LimitCycleTask(Task):
         from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        request = self._request()
+        request = self.request()
         along, workspace = self.config.along if self.chains else None, NewtonWorkspace()
 
         def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
@@ -157,7 +157,7 @@ class LimitCycleTask(Task):
             chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
         )
 
-    def _request(self) -> "CycleRequest":
+    def request(self) -> "CycleRequest":
         """Request for every cycle."""
         from ..solve.cycle.limit_cycle import CycleRequest
 
@@ -170,7 +170,7 @@ class LimitCycleTask(Task):
         from ..solve.cycle.marched import solve_by_integration
         from ..solve.cycle.status import MarchedStatus
 
-        request = self._request()
+        request = self.request()
         return Solver(
             statuses=tuple(MarchedStatus),
             warm_up=warm_up,

@@ -7,6 +7,7 @@ import subprocess
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -69,6 +70,18 @@ class Browser:
 
     def click(self, figure: str, x: float, y: float) -> None:
         """Clicks into a figure, at data coordinates."""
+        self.drag(figure, [(x, y)])
+
+    def drag(self, figure: str, places: Sequence[tuple[float, float]]) -> None:
+        """Drags through places in a figure, given in data coordinates."""
+        moves = [self._move_to(figure, *place) for place in places]
+        press, release = ({"type": f"pointer{what}", "button": 0} for what in ("Down", "Up"))
+        actions = [moves[0], press, *moves[1:], release]
+        pointer = {"type": "pointer", "id": "mouse", "actions": actions}
+        self._call("POST", "/actions", {"actions": [pointer]})
+
+    def _move_to(self, figure: str, x: float, y: float) -> dict[str, Any]:
+        """The action that moves the pointer to data coordinates of a figure."""
         place = self.run(
             "const view = Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name(arguments[0]));"
             "view.el.scrollIntoView({block: 'center'});"
@@ -79,10 +92,7 @@ class Browser:
             x,
             y,
         )
-        move = {"type": "pointerMove", "x": round(place[0]), "y": round(place[1])}
-        actions = [move, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
-        pointer = {"type": "pointer", "id": "mouse", "actions": actions}
-        self._call("POST", "/actions", {"actions": [pointer]})
+        return {"type": "pointerMove", "duration": 30, "x": round(place[0]), "y": round(place[1])}
 
     def complaints(self) -> list[str]:
         """Warnings and errors on the console since the last call."""

@@ -94,11 +94,14 @@ def test_a_change_of_the_load_asks_no_thresholds_again():
     assert {question.kind for question in solvers.questions} == set(AT_ONCE)
 
 
-def test_a_rod_at_rest_says_so_in_place_of_the_arm():
+def test_a_rod_at_rest_says_so_above_the_straight_arm():
     page = page_with(ImmediateSolvers(), "F=20")
     card = page.contents.beating.card
-    assert (card.message.visible, card.figure.visible) == (True, False)
+    assert (card.message.visible, card.figure.visible) == (True, True)
     assert "straight" in card.message.text
+    shapes = page.contents.beating.shapes.data
+    assert shapes["x"][-1] == pytest.approx(1 - 20 / 1e4)
+    assert not np.any(shapes["y"])
     page.change({"F": "50"})
     run_callbacks(page.document)
     assert (card.message.visible, card.figure.visible) == (False, True)

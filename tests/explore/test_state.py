@@ -95,6 +95,24 @@ def test_a_bad_value_has_the_sentence_of_the_command_line(name, text):
     assert str(refusal.value) == str(same.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("F", "abc"), ("F", "1e5"), ("F", "nan"), ("F", "1e400"), ("k1", "-1"), ("k1", "0"), ("k1", "40"),
+        ("k2", "1,5"), ("k2", "<b>x</b>"), ("k2", "NaN"), ("gamma3", "-0.1"), ("gamma3", "inf"),
+        ("gamma1", "0"), ("taper", "0"), ("taper", "1e9"),
+    ],
+)  # fmt: skip
+def test_the_page_and_the_command_refuse_with_one_sentence(command, name, text):
+    command.write("rod.yaml", "task: limit_cycle\nparameters: {F: 50, k1: 1.0e4, k2: 100, gamma3: 0.01}\n")
+    done = command("check", "rod.yaml", "--set", f"parameters.{name}={text}")
+    assert done.returncode == 2
+    with pytest.raises(InputError) as refusal:
+        PageState().with_values(**{name: text}).subject()
+    sentence = str(refusal.value).partition(": ")[2] or str(refusal.value)
+    assert done.stderr.rstrip().endswith(sentence)
+
+
 @pytest.mark.parametrize("F_max", ["0", "-3", "inf", "nan", "x", ""])
 def test_a_largest_force_that_is_no_finite_number_above_0_is_refused(F_max):
     with pytest.raises(InputError, match="F_max"):

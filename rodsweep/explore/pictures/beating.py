@@ -1,78 +1,127 @@
-"""The beating arm: shapes over a period, solved once and animated in the browser."""
+"""The arm: beating, bent by its tip, and moving after it is let go; the browser moves solved shapes."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from bokeh.events import Pan, PanEnd
 from bokeh.models import CustomJS, Range1d
 
+from ...arrays import Array
+from ..look import read
 from ..scales import PictureAxis
+from ..solving.letting_go import Tip
 from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of
 
 SECONDS = 2.0
-"""Duration of one period on the screen."""
-ANIMATE = """
-const seconds = %s
-function draw(now) {
-  const {x, y, number} = shapes.data
-  const at = arm.data
-  if (number.length > 0) {
-    const nodes = number[0], times = x.length / nodes
-    const phase = (now / 1000 / seconds) %% 1 * times
-    const before = Math.floor(phase) %% times, after = (before + 1) %% times, part = phase - Math.floor(phase)
-    if (at.x.length !== nodes) { at.x = new Float64Array(nodes); at.y = new Float64Array(nodes) }
-    for (let i = 0; i < nodes; i++) {
-      at.x[i] = (1 - part) * x[before * nodes + i] + part * x[after * nodes + i]
-      at.y[i] = (1 - part) * y[before * nodes + i] + part * y[after * nodes + i]
-    }
-    arm.change.emit()
-  }
-  requestAnimationFrame(draw)
-}
-requestAnimationFrame(draw)
-"""
+"""Time of one period on the screen."""
+ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
+"""Ends of motions in words; a motion that ends otherwise has the sentence of its status."""
+SHAPE = ("x", "y", "number")
+"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each."""
 
 
 class BeatingPicture:
-    """The arm over a period, at a slow pace, and the path of its tip."""
+    """The arm through a period, slowed down, and the path of its tip."""
 
     def __init__(self) -> None:
         figure = new_figure(
             "x (L)", "y (L)", x_range=Range1d(-0.1, 1.1), y_range=Range1d(-0.7, 0.7), match_aspect=True
         )
-        self.shapes = empty_source(("x", "y", "number"), "shapes_source")
-        self.arm = empty_source(("x", "y"), "arm_source")
-        self.path = empty_source(("x", "y"), "path_source")
+        names = ("shapes", "motion", "reached")
+        self.shapes, self.motion, self.reached = (empty_source(SHAPE, f"{name}_source") for name in names)
+        names = ("arm", "bent", "path")
+        self.arm, self.bent, self.path = (empty_source(("x", "y"), f"{name}_source") for name in names)
+        self.grip = empty_source(("x", "y", "phase"), "grip_source")
+        self.length = PictureAxis("L", 1.0)
         figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
-        figure.scatter("x", "y", visible=False, source=self.shapes)  # sends the source to the browser
+        for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
+            figure.scatter("x", "y", visible=False, source=source)  # so that the source is on the page
         figure.line("x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm)
         figure.scatter([0], [0], marker="square", size=12, color=POINT)
+        for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
+            arguments = {"figure": figure, "grip": self.grip, "phase": phase}
+            figure.js_on_event(event, CustomJS(args=arguments, code=read("grip.js")))
         self.card = Card("beating", figure)
 
     def animation(self) -> CustomJS:
-        """Code that the browser runs once when the page is ready."""
-        return CustomJS(args={"shapes": self.shapes, "arm": self.arm}, code=ANIMATE % SECONDS)
+        """What the browser runs once when the page is ready."""
+        names = ("shapes", "motion", "reached", "arm", "bent")
+        sources: dict[str, Any] = {name: getattr(self, name) for name in names}
+        return CustomJS(args=sources | {"period": SECONDS}, code=read("beating.js"))
+
+    def on_drag(self, bend: Callable[[Tip], None], let_go: Callable[[Tip], None]) -> None:
+        """Calls what follows a drag of the tip, with its place in L."""
+
+        def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
+            if len(new["x"]) == 1:
+                tip = tuple(float(new[name][0]) / self.length.factor for name in "xy")
+                (let_go if new["phase"][0] == "let go" else bend)((tip[0], tip[1]))
+
+        self.grip.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws an answer of the task limit_cycle, or shows a sentence if there is no cycle."""
+        """Draws an answer of the task limit_cycle; where it has no cycle, the straight arm and a sentence."""
+        self.length = length
+        self.let_go()
         x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
-        if not np.isfinite(x).all():
-            self.stop()
-            self.card.say(sentence_of(found))
-            return
-        number = np.full(x.size, x.shape[1], dtype=float)
-        self.shapes.data = {"x": x.ravel(), "y": y.ravel(), "number": number}
-        self.path.data = {"x": np.append(x[:, -1], x[0, -1]), "y": np.append(y[:, -1], y[0, -1])}
-        reach = 1.15 * max(0.3 * length.factor, float(np.abs(y).max()))
-        self.card.figure.y_range.update(start=-reach, end=reach)
-        self.card.figure.x_range.update(
-            start=min(0.0, float(x.min())) - 0.1 * length.factor, end=1.1 * length.factor
-        )
+        has_cycle = bool(np.isfinite(x).all())
+        if not has_cycle:
+            x, y = (found[name][None] * length.factor for name in "xy")
+        self.shapes.data = source_of(x, y)
+        tips = (x[:, -1], y[:, -1]) if has_cycle else (x[:0, -1], y[:0, -1])
+        self.path.data = {name: np.append(tip, tip[:1]) for name, tip in zip("xy", tips, strict=True)}
+        self._fit(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
             f"{n} ({length.label})" for n in "xy"
         )
-        self.card.figure.title.text = "" if found["status"] == "cycle" else found["sentence"]
-        self.card.reveal()
+        is_stable = found["status"] == "cycle"
+        self.card.entitle("" if is_stable or not has_cycle else found["sentence"])
+        if has_cycle:
+            self.card.reveal()
+        else:
+            self.card.tell(sentence_of(found))
+
+    def show_bent(self, found: dict[str, Any]) -> None:
+        """Draws the arm bent by its tip."""
+        self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
+
+    def show_motion(self, found: dict[str, Any]) -> None:
+        """Begins the motion of an arm that is let go, and names its end above the picture."""
+        factor, step = self.length.factor, found["step"]
+        x, y = found["x"] * factor, found["y"] * factor
+        shape_x, shape_y = found["shape_x"] * factor, found["shape_y"] * factor
+        turn = found["period"] if len(shape_x) else step * found["frames"]
+        self.motion.tags = [SECONDS * step / turn, SECONDS]
+        self.reached.data = source_of(shape_x, shape_y)
+        self.motion.data = source_of(x, y)
+        self.path.data = {"x": x[:, -1], "y": y[:, -1]}
+        self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
+        place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
+        end = ENDS.get(found["status"], found["sentence"])
+        part = "" if found["is_whole"] else "; this is the beginning"
+        self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
+
+    def let_go(self) -> None:
+        """Forgets a bent arm and its motion."""
+        for source in (self.motion, self.reached, self.bent):
+            if len(source.data["x"]):
+                source.data = {name: [] for name in source.data}
 
     def stop(self) -> None:
         """Ends the motion."""
-        self.shapes.data = {"x": [], "y": [], "number": []}
+        self.let_go()
+        self.shapes.data = {name: [] for name in SHAPE}
+
+    def _fit(self, x: Array, y: Array) -> None:
+        """Ranges of the picture for shapes, (shapes, nodes), in its unit of length."""
+        factor = self.length.factor
+        reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
+        self.card.figure.y_range.update(start=-reach, end=reach)
+        self.card.figure.x_range.update(start=min(0.0, float(x.min())) - 0.1 * factor, end=1.1 * factor)
+
+
+def source_of(x: Array, y: Array) -> dict[str, Any]:
+    """Columns `SHAPE` of shapes, (shapes, nodes), in single precision, which is enough for a picture."""
+    number = np.full(x.size, x.shape[1], dtype=np.float32)
+    return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}

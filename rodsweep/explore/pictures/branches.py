@@ -10,6 +10,8 @@ from ..scales import PictureAxis
 from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, vertical_line
 
 COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
+NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
+"""Single cycles of an answer that has branches only."""
 DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 
 
@@ -21,10 +23,12 @@ class BranchPicture:
             "force F (k3/L^2)", "largest tip deflection (L)", x_range=Range1d(0, 1), y_range=Range1d(-0.05, 1)
         )
         self.pieces = empty_source(("F", "y", "colour", "dash"), "branch_source")
+        self.cycles = empty_source(("F", "y", "colour"), "stored_cycle_source")
         self.special = empty_source(("F", "y", "kind", "period"), "special_source")
         figure.multi_line(
             "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.pieces
         )  # fmt: skip
+        figure.scatter("F", "y", size=5, color="colour", source=self.cycles)
         marks = figure.scatter("F", "y", size=9, color=NEUTRAL, line_color=POINT, source=self.special)
         figure.add_tools(
             HoverTool(
@@ -53,8 +57,15 @@ class BranchPicture:
             "colour": [COLOURS[stable] for _, _, stable in pieces],
             "dash": [DASHES[stable] for _, _, stable in pieces],
         }
-        if pieces:
-            all_F, all_y = (np.concatenate([piece[i] for piece in pieces]) for i in range(2))
+        cycles = found.get("cycles", NO_CYCLES)
+        self.cycles.data = {
+            "F": cycles["F"] * load.factor,
+            "y": cycles["y"] * length.factor,
+            "colour": [COLOURS[stable] for stable in cycles["stable"]],
+        }
+        if pieces or len(cycles["F"]):
+            drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
+            all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
             self.card.figure.x_range.update(**ends(all_F * load.factor, 0.0))
             self.card.figure.y_range.update(**ends(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
@@ -62,7 +73,8 @@ class BranchPicture:
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]
         names = ("F", "y", "kind", "period")
         self.special.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
-        self.card.figure.title.text = found["sentence"] if found["status"] != "ok" else ""
+        title = found["sentence"] if found["status"] != "ok" else found.get("source", "")
+        self.card.entitle(title)
         self.card.reveal()
 
     def move_point(self, F: float) -> None:

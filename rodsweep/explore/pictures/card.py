@@ -11,10 +11,14 @@ from ...arrays import Array
 
 STABLE, UNSTABLE, NEUTRAL, POINT = "#2f86c6", "#e0672a", "#8a8a8a", "#c23b8f"
 """Colours with enough contrast on white and dark pages."""
+FOLD, TORUS = "#8a63d2", "#2a9d5c"
+"""Colours of curves of special points of cycles."""
 TICKS = 5
 """Approximate number of labels along the lower axis."""
 PLAIN_DIGITS = 7
 """Largest power of ten that labels show without an exponent."""
+NO_TITLE = "\u00a0"
+"""A title without words: a picture that is drawn with an empty title shows no later one."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
@@ -25,6 +29,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
+    made.title.text = NO_TITLE
     made.toolbar.autohide = True
     made.toolbar_inner = True
     made.toolbar.logo = None
@@ -77,11 +82,20 @@ class Card:
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
+    def entitle(self, text: str) -> None:
+        """Writes a title, which may be empty."""
+        self.figure.title.text = text or NO_TITLE
+
     def say(self, sentence: str) -> None:
         """Shows a sentence instead of the figure."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = False
+
+    def tell(self, sentence: str) -> None:
+        """Shows a sentence above the picture."""
+        self.message.text = escape(sentence)
+        self.message.visible, self.figure.visible = True, True
 
     def reveal(self) -> None:
         """Shows the figure."""

@@ -1,20 +1,23 @@
 """The diagram over the load and a second parameter, in which a click moves the point."""
 
 from itertools import groupby
+from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import Range1d
+from bokeh.models import Legend, LegendItem, Range1d
 
 from ...arrays import Array
 from ..scales import ControlScale
 from ..solving.diagrams import CRUSHED
-from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, new_figure
+from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure
 
 NOT_KNOWN = -1
 """Stored in `unstable_count` where the number is not known."""
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
 """Colours of boundaries; all others are those of stable states."""
+OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
+"""Words, colour and dash of curves of special points of cycles."""
 DEEPEST = 6
 """Number of unstable modes from which the colour stays the same."""
 
@@ -71,6 +74,7 @@ class DiagramPicture:
             ("left", "right", "bottom", "top", "unstable", "colour", "alpha"), "cell_source"
         )
         self.curves = empty_source(("x", "y", "colour"), "curve_source")
+        self.of_cycles = empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
         self.crossings = empty_source(("x", "y", "colour"), "crossing_source")
         self.point = empty_source(("x", "y"), "point_source")
         figure.quad(
@@ -78,6 +82,15 @@ class DiagramPicture:
             line_width=0, source=self.cells,
         )  # fmt: skip
         figure.multi_line("x", "y", color="colour", line_width=2, source=self.curves)
+        figure.multi_line(
+            "x", "y", color="colour", line_dash="dash", line_width=3, source=self.of_cycles
+        )  # fmt: skip
+        keys = [
+            LegendItem(label=text, renderers=[figure.line([nan], [nan], color=c, line_dash=d, line_width=3)])
+            for text, c, d in OF_CYCLES.values()
+        ]
+        self.legend = Legend(items=keys, location="top_left", visible=False)
+        figure.add_layout(self.legend)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossings)
         figure.scatter("x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point)
         self.card = Card("diagram", figure)
@@ -111,14 +124,26 @@ class DiagramPicture:
         self.card.reveal()
 
     def _show_curves(self, found: dict[str, Any]) -> None:
-        numbers = np.asarray(found["curve_number"])
-        lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
-        self.curves.data = {
-            "x": [found["curve_x"][line] for line in lines],
-            "y": [found["curve_y"][line] for line in lines],
-            "colour": [BOUNDARIES.get(found["curve_kind"][line[0]], STABLE) for line in lines],
+        x, y, kinds = _lines(found, "curve")
+        self.curves.data = {"x": x, "y": y, "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds]}
+        x, y, kinds = _lines(found, "cycle_curve")
+        looks = [OF_CYCLES[kind] for kind in kinds]
+        self.of_cycles.data = {
+            "x": x,
+            "y": y,
+            "colour": [colour for _, colour, _ in looks],
+            "dash": [dash for *_, dash in looks],
         }
+        self.legend.visible = len(kinds) > 0
 
     def move_point(self, x: float, y: float) -> None:
         """Moves the mark of the page's rod."""
         self.point.data = {"x": [x], "y": [y]}
+
+
+def _lines(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
+    """x and y of each curve of an answer, (points,), and its kind; name: prefix of the variables."""
+    numbers = np.asarray(found[f"{name}_number"])
+    lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
+    x, y = ([found[f"{name}_{axis}"][line] for line in lines] for axis in "xy")
+    return x, y, [str(found[f"{name}_kind"][line[0]]) for line in lines]

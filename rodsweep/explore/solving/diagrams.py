@@ -37,8 +37,8 @@ def diagram(state: PageState) -> dict[str, Any]:
     """The diagram around the point of a state, by name.
 
     x: load, (columns,). y: second parameter, (rows,). unstable_count: (rows, columns), -1 if not known.
-    curve_x, curve_y, curve_number, curve_kind: boundaries, (curve points,), empty for rods that are not
-    uniform and for arms. crossing_x, crossing_y, crossing_kind: crossings of the rows, (crossings,), empty
+    curve_x, curve_y, curve_number, curve_kind: boundaries, (curve points,), and the same of curves of cycles,
+    cycle_curve_*. crossing_x, crossing_y, crossing_kind: crossings of the rows, (crossings,), empty
     for uniform rods.
     """
     state.subject()
@@ -47,14 +47,24 @@ def diagram(state: PageState) -> dict[str, Any]:
     return _of_phases(state) if uniform(state) else _of_thresholds(state)
 
 
+def cycle_diagram(state: PageState) -> dict[str, Any]:
+    """The diagram with the curves of folds and torus points of cycles, of fewer rows."""
+    state.subject()
+    if state.tab == "arm" or not uniform(state):
+        raise InputError(
+            "folds and torus points of cycles are followed for uniform rods of linear material only, "
+            "on the tab Rod"
+        )
+    return _of_phases(state, with_cycles=True)
+
+
 def uniform(state: PageState) -> bool:
     """Whether all rods of the diagram are uniform and of linear material."""
     return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
 
 
-def span(state: PageState) -> np.ndarray:
+def span(state: PageState, rows: int = ROWS) -> np.ndarray:
     """Values of the second parameter, (rows,), around the present value."""
-    rows = ROWS if uniform(state) else SLOW_ROWS
     if state.second == "taper":
         return np.linspace(*TAPERS, rows)
     value = number(state.rod[state.second])
@@ -67,9 +77,11 @@ def _fixed(state: PageState) -> dict[str, Any]:
     return {n: v for n, v in state.parameters().items() if n not in ("F", "gamma1", state.second)}
 
 
-def _of_phases(state: PageState) -> dict[str, Any]:
+def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
     F = np.linspace(0, state.largest_force(), COLUMNS)
-    keywords: dict[str, Any] = {"F": F, state.second: span(state), **_fixed(state)}
+    rows = span(state, SLOW_ROWS if with_cycles else ROWS)
+    keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
+    keywords |= {"cycles": True, "gamma1": state.parameters()["gamma1"]} if with_cycles else {}
     data = sweep("phase_diagram", **keywords)
     return of_phases(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second)
 
@@ -77,10 +89,17 @@ def _of_phases(state: PageState) -> dict[str, Any]:
 def of_phases(data: Dataset, second: str) -> dict[str, Any]:
     """The diagram from a result of the task phase_diagram over F and a second parameter."""
     counts = data["unstable_count"].transpose(second, "F").values
-    crushed = data["class"].transpose(second, "F").values == _code(data["class"], "crushed")
+    crushed = data["class"].transpose(second, "F").values == code_of(data["class"], "crushed")
     curves = _no_curves()
+    if "cycle_curve_F" in data and f"cycle_curve_{second}" in data:
+        curves |= {
+            "cycle_curve_x": data["cycle_curve_F"].values,
+            "cycle_curve_y": data[f"cycle_curve_{second}"].values,
+            "cycle_curve_number": data["cycle_curve_number"].values,
+            "cycle_curve_kind": words_of(data["cycle_curve_kind"]),
+        }
     if "curve_F" in data and f"curve_{second}" in data:
-        curves = {
+        curves |= {
             "curve_x": data["curve_F"].values,
             "curve_y": data[f"curve_{second}"].values,
             "curve_number": data["curve_number"].values,
@@ -108,11 +127,11 @@ def of_grid(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def _of_thresholds(state: PageState) -> dict[str, Any]:
-    keywords: dict[str, Any] = {**_fixed(state), state.second: span(state)}
+    keywords: dict[str, Any] = {**_fixed(state), state.second: span(state, SLOW_ROWS)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force())
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
-    return of_rows(data, span(state), "crossing_F", state.largest_force())
+    return of_rows(data, span(state, SLOW_ROWS), "crossing_F", state.largest_force())
 
 
 def _of_arm(state: PageState) -> dict[str, Any]:
@@ -156,15 +175,16 @@ def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dic
 
 def _no_curves() -> dict[str, Any]:
     empty = np.zeros(0)
-    return {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
+    none = {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
+    return none | {f"cycle_{name}": values for name, values in none.items()}
 
 
 def _no_crossings() -> dict[str, Any]:
     return {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
 
 
-def _code(array: Dataset, word: str) -> int:
-    """The flag value of a word."""
+def code_of(array: Dataset, word: str) -> int:
+    """The flag value of a word of an array of flags."""
     words = str(array.attrs["flag_meanings"]).split()
     return int(np.atleast_1d(array.attrs["flag_values"])[words.index(word)])
 

@@ -2,21 +2,22 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...api.answers.answer import Answer
+from ...api.answers.picture import plot
 from ...api.dataset import view_of
 from ...api.sweeping import sweep
-from ...arrays import Array
 from ...config.axes import DEFAULTS
+from ...errors import InputError
 from ...post.branch_curves import curves_of
 from ..state import LAWS, PageState, rod_of
-from .diagrams import diagram, words_of
+from .branches import drawn_branches, straight_pieces
+from .diagrams import cycle_diagram, diagram, words_of
+from .letting_go import Tip, bent, motion, straight
 
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
@@ -32,10 +33,15 @@ BELOW_CRUSHING = 0.98
 
 @dataclass(frozen=True)
 class Question:
-    """A question of a page. kind: a key of `ANSWERS`. state: state of the page when asked."""
+    """A question of a page.
+
+    kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP`, which need the place of the tip, in L.
+    state: state of the page when asked.
+    """
 
     kind: str
     state: PageState
+    tip: Tip | None = None
 
 
 class Reply(NamedTuple):
@@ -83,8 +89,16 @@ def growth(state: PageState) -> Found:
 
 
 def cycle(state: PageState) -> Found:
-    """The limit cycle, with the shapes of the arm over a period."""
-    return variables(state.subject().cycle(shapes=SHAPES))
+    """The limit cycle, with the shapes of the arm over a period; x, y: the straight arm."""
+    return variables(state.subject().cycle(shapes=SHAPES)) | straight(state)
+
+
+def film(state: PageState) -> Found:
+    """gif: the film that `rodsweep plot` makes of the limit cycle; empty for a rod without a cycle."""
+    answer = state.subject().cycle(shapes=SHAPES)
+    if not np.isfinite(answer.data["shape_x"].values).all():
+        raise InputError(f"there is no cycle to film: {answer.sentence}")
+    return {"gif": plot(answer, what="animation").image}
 
 
 def branch(state: PageState) -> Found:
@@ -94,38 +108,9 @@ def branch(state: PageState) -> Found:
     known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force())
-    curves = curves_of(view_of(answer.whole, Path(answer.rod)), 0)
-    pieces = [piece for curve in curves for piece in pieces_of(curve.at, curve.y, curve.stable)]
-    special = [(p.at, p.tip_y_max, p.kind, p.period) for curve in curves for p in curve.special]
-    return {
-        "pieces": pieces + straight_pieces(answer, state.largest_force()),
-        "special": [each for each in special if each[2] != "end"],
-        "status": str(answer.status),
-        "sentence": answer.sentence,
-    }
-
-
-def pieces_of(at: Array, y: Array, stable: NDArray[np.integer]) -> list[tuple[Array, Array, int]]:
-    """Pieces of equal stability of a curve through (n,) vertices; stable: (n - 1,)."""
-    starts = [0, *(i for i in range(1, len(stable)) if stable[i] != stable[i - 1]), len(stable)]
-    return [
-        (at[a : b + 1], y[a : b + 1], int(stable[a])) for a, b in pairwise(starts) if b > a
-    ]  # fmt: skip
-
-
-def straight_pieces(answer: Answer, stop: float) -> list[tuple[Array, Array, int]]:
-    """The straight state from F = 0 to `stop`, in pieces between its Hopf points: F and y of shape (2,)."""
-    data = answer.data
-    hopf = words_of(data["special_kind"]) == "hopf"
-    at = data["special_at"].values[hopf]
-    order = np.argsort(at)
-    after = data["special_unstable_after"].values[hopf][order]
-    counts = [int(data["unstable_at_start"]), *map(int, after)]
-    ends = [0.0, *at[order], stop]
-    return [
-        (np.array(piece), np.zeros(2), -1 if count < 0 else int(count == 0))
-        for piece, count in zip(pairwise(ends), counts, strict=True)
-    ]
+    found = drawn_branches(curves_of(view_of(answer.whole, Path(answer.rod)), 0))
+    found["pieces"] += straight_pieces(answer.data, state.largest_force())
+    return found | {"status": str(answer.status), "sentence": answer.sentence}
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
@@ -140,9 +125,14 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
     "cycle": cycle,
     "branch": branch,
     "diagram": diagram,
+    "cycles": cycle_diagram,
+    "film": film,
 }
+ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {"bent": bent, "motion": motion}
 
 
 def answer_to(question: Question) -> Found:
     """The answer to a question; InputError for invalid values."""
+    if question.tip is not None:
+        return ANSWERS_TO_TIP[question.kind](question.state, question.tip)
     return ANSWERS[question.kind](question.state)

@@ -22,10 +22,11 @@ Done = Callable[[Reply], None]
 """Callback that receives the reply to a question."""
 GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
-    "branch": "branch", "diagram": "diagram",
+    "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
+    "cycles": "diagram",
 }  # fmt: skip
 """Process group of each kind of question, so that fast questions never wait for slow ones."""
-NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10}
+NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
 """Niceness of the process of each group: pictures that follow a slider have the highest priority."""
 INTERRUPT_RETRY = 0.1
 """Seconds until a cancellation is repeated that came before the process was ready."""

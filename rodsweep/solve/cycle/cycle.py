@@ -15,6 +15,18 @@ from .second_state import SecondState
 
 
 @dataclass(frozen=True, slots=True)
+class MotionShapes:
+    """The beginning of a motion: shapes (x, y), (2, frames, nodes), at times `step` apart, in tau2.
+
+    is_whole: whether it goes on until the outcome of the motion is known.
+    """
+
+    step: float
+    shapes: Array
+    is_whole: bool
+
+
+@dataclass(frozen=True, slots=True)
 class CycleRequest:
     """Request for each rod.
 
@@ -36,6 +48,13 @@ class CycleRequest:
     most_periods: int
     start: str = "mode"
     transient: int = 0
+    tip: tuple[float, float] | None = None
+    frames: int = 0
+
+    @property
+    def is_traced(self) -> bool:
+        """Whether the motion from the start is stored, and so always integrated."""
+        return self.transient > 0 or self.frames > 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +71,8 @@ class Cycle:
     tip: x, y, theta at equidistant times, (3, samples). energy: U in k3/L, injection, dissipation, (3,
     samples). shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
     transient: time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4,
-    transient); None if no motion was integrated. neighbour: data from which the next point of a chain starts.
+    transient); None if no motion was integrated. motion: shapes from the start, if requested. neighbour: data
+    from which the next point of a chain starts.
     """
 
     status: PointStatus
@@ -74,6 +94,7 @@ class Cycle:
     energy: Array | None = None
     shape: Array | None = None
     transient: Array | None = None
+    motion: MotionShapes | None = None
     neighbour: Neighbour | None = None
 
 

@@ -18,12 +18,13 @@ from ...discretization.stress.form import StressForm
 from ...errors import EnvironmentIncomplete
 from ...model.rod import Rod
 from ..backend.petsc import options
+from ..motion.held_tip import held_by_tip
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
 from .accuracy.refinement import RefinedCycle, refined_cycle
-from .cycle import Cycle, CycleRequest, first_of, measured
+from .cycle import Cycle, CycleRequest, MotionShapes, first_of, measured
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import Neighbour, followed_cycle
 from .second_state import second_state
@@ -31,7 +32,9 @@ from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
 from .transient.motion_mesh import motion_mesh
+from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
+from .transient.trace import TipTrace
 from .transient.transient import Transient, TransientOutcome
 
 __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "warm_up"]
@@ -113,13 +116,14 @@ def _solve(
     if neighbour is not None and along is not None:
         with suppress(Unsolvable):
             found = followed_cycle(neighbour, form, along, request.accuracy, workspace)
-    elif neighbour is None and not request.transient:
+    elif neighbour is None and not request.is_traced:
         found = small_cycle(form, w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
         return _with_chain_state(cycle, found, neighbour, along, request.accuracy)
-    decays = decay(rod, w, request.amplitude) if neighbour is None else ""
-    if decays and not request.transient:
+    by_mode = neighbour is None and request.tip is None
+    decays = decay(rod, w, request.amplitude) if by_mode else ""
+    if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
     transient = Transient(form, stability, request, along, unstable, workspace)
@@ -137,14 +141,22 @@ def _solve(
 def _after_motion(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome with the number of returns of the motion, its mesh, and its stored path if requested."""
+    """The outcome with the number of returns of the motion, its mesh, and what is stored of it."""
+    trace = transient.trace
     return replace(
         straight,
         periods=end.periods,
         elements=transient.form.mesh.elements,
         order=transient.form.mesh.order,
-        transient=transient.trace.at_equal_times(request.transient) if transient.trace else None,
+        transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
+        motion=_motion(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
     )
+
+
+def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
+    """The beginning of the motion as the request stores it."""
+    returns = [time for time, _ in transient.past]
+    return trace.motion(returns, transient.mode.period, request.frames, request.nodes)
 
 
 def _with_chain_state(
@@ -197,9 +209,11 @@ def _from_hopf(
 def _from_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
-    """Outcome of the motion from the leading mode, or from a state of the neighbour's cycle."""
+    """Outcome of the motion from the leading mode, a bent state, or a state of the neighbour's cycle."""
     beam = transient.beam
-    if neighbour is None:
+    if request.tip is not None:
+        start = held_by_tip(beam, *request.tip)
+    elif neighbour is None:
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.branch.orbit

@@ -20,6 +20,13 @@ class TipTrace:
         self.tips: list[Array] = []
         """Tip (x, y, theta) and velocity of each run, (6, steps)."""
 
+    is_full = False
+    """A path has any length."""
+
+    def shows(self, z: Array) -> bool:
+        """Whether the path goes on at a state z, (unknowns,), of which the outcome is known: it does not."""
+        return False
+
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
         """Adds a straight line between the tips of the start z and of its relaxed state, both (unknowns,).
 

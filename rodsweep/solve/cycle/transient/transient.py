@@ -19,14 +19,13 @@ from ....discretization.stress.form import StressForm
 from ....watch import SolvePosition, report
 from ...motion.integrator import RELAXATION_SHARE, Ending, Trajectory, integrator, relaxed
 from ...motion.leading_mode import leading_mode
-from ...motion.time_scheme import TimeScheme
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import Unsolvable
 from ..accuracy.refinement import RefinedCycle, refined_cycle
 from ..cycle import CycleRequest
 from ..status import CycleStatus
 from ..straight_rod import StraightRod, straight_rod
-from .amplitude_equation import SLOW_GROWTH, AmplitudeEquation
+from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import near_rod
 from .returns import (
@@ -38,14 +37,9 @@ from .returns import (
     section_crossings,
     until_returns,
 )
+from .schemes import schemes_of
+from .shape_trace import ShapeTrace
 from .trace import TipTrace
-
-USUAL_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-5)
-"""Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
-QUICK_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-4)
-"""Scheme of the first run of a fast-growing motion, which often closes: no decision uses the growth."""
-CAREFUL_SCHEME = TimeScheme("arkimex", "5", tolerance=1e-9)
-"""Scheme where the sign of a small growth per period must be correct, and for stored paths."""
 
 RETURNS_PER_RUN, FIRST_RETURNS = 5, 3
 """Returns per run, before the motion is classified, and returns of the first run, after which only closed
@@ -56,10 +50,6 @@ STORED_PATH_DISTANCE = 1e-3
 """NEWTON_DISTANCE for a stored path, in the first half of the allowed periods, to show the settling."""
 MAX_NEWTON_FAILURES = 5
 """Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
-WEAK_GROWTH = 0.01
-"""Linear growth per period below which the scheme is CAREFUL_SCHEME."""
-GROWTH_NOISE, CAREFUL_NOISE = 1e-3, 1e-5
-"""Growth per period that the integrator may add; 3e-4 and 8e-6 were measured."""
 MAX_JUMPS = 60
 """Maximum number of scaled or restarted states."""
 RESTART_DEFLECTION = 1e-3
@@ -89,8 +79,8 @@ class Transient:
 
     form: the rod whose cycle is solved for. beam: the integrated rod on the same mesh, different only where
     the rod is in a limit. straight: stability of the straight rod. along: parameter of the cycle's tangent.
-    unstable: a nearby unstable cycle. trace: path of the tip, if the request stores it. workspace: memory of
-    Newton's matrices.
+    unstable: a nearby unstable cycle. trace: path of the tip or shapes, if the request stores them.
+    workspace: memory of Newton's matrices.
     """
 
     def __init__(
@@ -105,14 +95,12 @@ class Transient:
         self.beam, self.form = Beam(near_rod(form.rod), form.mesh), form
         self.straight, self.along, self.workspace = straight, along, workspace
         self.accuracy, self.most_periods = request.accuracy, request.most_periods
-        self.trace = TipTrace(self.beam) if request.transient else None
         self.unstable = unstable
         self.mode = leading_mode(self.beam)
+        self.trace = self._trace(request)
         self.row = angle_weights(self.beam)
         rate, period = straight.growth_rate(self.mode.w.real), self.mode.period
-        careful = abs(rate) * period < WEAK_GROWTH or request.transient > 0
-        self.scheme, noise = (CAREFUL_SCHEME, CAREFUL_NOISE) if careful else (USUAL_SCHEME, GROWTH_NOISE)
-        self.first_scheme = QUICK_SCHEME if rate * period > SLOW_GROWTH and not careful else self.scheme
+        self.first_scheme, self.scheme, noise = schemes_of(rate * period, request.transient > 0)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / 1000
         """First time step of the next run, tau2."""
@@ -120,6 +108,12 @@ class Transient:
         """Times and bending moments of the last returns since the last jump."""
         self.clock = 0.0
         self.waited = self.jumps = self.failures = self.next_newton = 0
+
+    def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
+        """The part of the motion that the request stores."""
+        if request.frames:
+            return ShapeTrace(self.beam)
+        return TipTrace(self.beam) if request.transient else None
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from z, shape (unknowns,)."""
@@ -143,10 +137,11 @@ class Transient:
             early, first = first, False
             if len(times) < 3 or (early and self.small.slow(times, states)):
                 continue
-            if not early and self.small.decays_as_linear(times, states):
+            shown = self.trace is not None and self.trace.shows(z)
+            if not early and not shown and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = None if early or self.jumps >= MAX_JUMPS else self.small.jump(times, states)
-            if factor is not None and self.trace:
+            if factor is not None and self.trace and not self.trace.is_full:
                 continue  # a stored path has no jumps
             if factor is not None:
                 scaled = factor * z

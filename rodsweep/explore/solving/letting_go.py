@@ -1,0 +1,51 @@
+"""The arm bent by its tip, and its motion after it is let go."""
+
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+from ...tasks.released_motion import FRAMES, ReleasedMotion, bent_shape, released_motion
+from ...tasks.rod_portrait import PortraitRequest
+from ...tasks.running.job import Job
+from ..state import LAWS, PageState, rod_of
+
+Tip = tuple[float, float]
+"""Place (x, y) of the tip, in lengths of the arm."""
+
+
+def bent(state: PageState, tip: Tip) -> dict[str, Any]:
+    """x, y: the shape of the arm with its tip at a place, (nodes,) in L."""
+    x, y = bent_shape(_job(state), tip)
+    return {"x": x, "y": y}
+
+
+def straight(state: PageState) -> dict[str, Any]:
+    """x, y: the straight arm, (nodes,) in L."""
+    x, y = bent_shape(_job(state), None)
+    return {"x": x, "y": y}
+
+
+def motion(state: PageState, tip: Tip) -> dict[str, Any]:
+    """The motion from there, with the shapes of the cycle that it reaches: fields of `ReleasedMotion`.
+
+    frames: shapes per return of the tip. period: of the cycle, tau2; NaN without one.
+    shape_x, shape_y: (shapes, nodes) over a period; no shapes where the motion ends otherwise.
+    """
+    found = released_motion(_job(state, shapes=48), tip)
+    if found is None:
+        raise InputError("the motion from there could not be integrated")
+    own = {"tip": tip, "frames": FRAMES, "period": float(found.cycle["period"])}
+    return vars(found) | _shapes(found) | own
+
+
+def _shapes(found: ReleasedMotion) -> dict[str, Any]:
+    x, y = (np.asarray(found.cycle[name]) for name in ("shape_x", "shape_y"))
+    known = x.ndim == 2 and np.isfinite(x).all()
+    nothing = np.zeros((0, found.x.shape[1]))
+    return {"shape_x": x if known else nothing, "shape_y": y if known else nothing}
+
+
+def _job(state: PageState, **options: int) -> Job:
+    rod = dict(rod_of(state.subject()))
+    return PortraitRequest(parameters=rod, material=LAWS[state.law]).job("limit_cycle", options, rod.pop("F"))

@@ -1,0 +1,75 @@
+"""Shapes at equal times from the start of a motion, for an animation."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ....arrays import Array
+from ....discretization.beam import Beam
+from ....discretization.elements.quadrature import lobatto_points
+from ...motion.integrator import Trajectory
+from ..cycle import MotionShapes
+
+MOST_STEPS = 4000
+"""Time steps after which no more are kept: some 50 to 100 returns of the tip, or 4 MB."""
+MOST_FRAMES = 1600
+"""Largest number of shapes: 50 periods of 32 shapes."""
+AT_REST = 2e-3
+"""Deflection of the tip, in L, below which an arm is drawn straight."""
+FEW_RETURNS = 3
+"""Returns of the tip below which the period of the motion is that of the leading mode."""
+
+
+class ShapeTrace:
+    """The first steps of the successive runs of one motion, in tau2, and shapes between them."""
+
+    def __init__(self, beam: Beam) -> None:
+        self.beam = beam
+        self.times: list[Array] = []
+        self.states: list[Array] = []
+        self.steps = 0
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no further step is kept."""
+        return self.steps >= MOST_STEPS
+
+    def shows(self, z: Array) -> bool:
+        """Whether the motion is kept further at a state z, (unknowns,), of which the outcome is known."""
+        return not self.is_full and abs(float(self.beam.tip(z)[1])) > AT_REST
+
+    def begin(self, z: Array, relaxed: Array, duration: float) -> None:
+        """Keeps the start z, which relaxes to a state, both (unknowns,), in a time too short to be seen."""
+        self._keep(np.zeros(1), z[None])
+
+    def add(self, run: Trajectory, clock: float) -> None:
+        """Keeps a run that begins at the time `clock`, in tau2."""
+        # A run that left the model may end with a state that is not finite.
+        finite = np.isfinite(run.states).all(axis=1)
+        self._keep(clock + run.times[finite], run.states[finite])
+
+    def _keep(self, times: Array, states: Array) -> None:
+        if not self.is_full:
+            self.times.append(times)
+            self.states.append(states)
+            self.steps += len(times)
+
+    def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
+        """Shapes on `nodes` Lobatto nodes, `frames` per return of the tip, until the arm is at rest.
+
+        returns: times of the tip's last returns. period: of the leading mode, in place of few returns.
+        """
+        from scipy.interpolate import CubicSpline  # a tenth of a second of every start
+
+        step = (float(np.median(np.diff(returns))) if len(returns) >= FEW_RETURNS else period) / frames
+        due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, MOST_FRAMES))
+        run_of = np.searchsorted([times[0] for times in self.times], due, side="right") - 1
+        states = np.empty((len(due), self.beam.unknowns))
+        for number, (times, steps) in enumerate(zip(self.times, self.states, strict=True)):
+            within = run_of == number
+            if within.any():
+                states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
+        shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
+        is_whole = not self.is_full and len(due) < MOST_FRAMES
+        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > AT_REST)
+        return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

@@ -1,0 +1,99 @@
+"""The rod bent with its tip at a chosen place: the start of a motion from a shape that a user sets.
+
+Of all curvatures Pi that put the tip at (x, y) these have the least integral of Pi^2. A force at the tip,
+without moment, bends a rod of constant bending stiffness so (an elastica). Stretch and shear are those of the
+straight rod under its follower force. Pi vanishes at the tip, so the state satisfies the rod's own conditions
+there. Newton's method solves for the curvatures and the force f, with W the weights of the quadrature,
+
+    W Pi - f . d(x, y)/dPi = 0,    (x, y)(Pi) = the place,
+
+along a path of places from the tip of a slightly bent rod.
+"""
+
+from math import atan2, hypot
+
+import numpy as np
+
+from ...arrays import Array
+from ...discretization.beam import Beam
+from ...discretization.elements.mesh import configuration
+
+REACH = 0.98
+"""Largest distance of the tip from the clamp, in lengths of the straight rod: at 1 the rod cannot be bent."""
+FIRST_ANGLE = 0.8
+"""Angle of the tip, rad, where the path begins: the tip of a straight rod cannot move towards the clamp."""
+FIRST_STEP, LEAST_STEP = 0.1, 1e-3
+"""Length of the first step as a share of the path, and the length at which the path is given up."""
+MOST_ITERATIONS, PLACED = 12, 1e-10
+"""Newton iterations of a step, and the distance of the tip from its place, in L, at which they end."""
+MOST_TURNED = 1.0
+"""Change of the angle by one Newton step, rad, beyond which the step leads to another shape."""
+
+
+def held_by_tip(beam: Beam, x: float, y: float) -> Array:
+    """The state z, (unknowns,), of the rod bent so that its tip is at (x, y) in L.
+
+    A place beyond `REACH` is drawn towards the clamp. Where the path cannot be followed to its end, the state
+    is that of its last place.
+    """
+    bending = _Bending(beam)
+    side = -1.0 if y < 0 else 1.0
+    Pi = 2 * side * FIRST_ANGLE * (1 - beam.mesh.positions)
+    first = bending.tip(Pi)
+    start = np.array([hypot(*first), atan2(first[1], first[0])])
+    end = np.array([min(hypot(x, y), REACH * bending.length), atan2(y, x)])
+    force, reached, step = np.zeros(2), 0.0, FIRST_STEP
+    while reached < 1 and step > LEAST_STEP:
+        share = min(1.0, reached + step)
+        radius, angle = start + share * (end - start)
+        found = bending.placed(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
+        if found is None:
+            step /= 2
+        else:
+            reached, (Pi, force) = share, found
+    return beam.unknown(np.stack([*beam.strains(np.zeros(beam.unknowns))[:2], Pi]))
+
+
+class _Bending:
+    """A rod that bends only: places of its tip and their derivatives. length: of the straight rod, in L."""
+
+    def __init__(self, beam: Beam) -> None:
+        self.mesh = beam.mesh
+        self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
+        size = beam.mesh.nodes + 1
+        self.length = float(self.h1 @ beam.mesh.quadrature)
+        unit = np.zeros((3, size, size))
+        unit[2] = np.eye(size)
+        self.angles = configuration(beam.mesh, unit, np.zeros(3))[2].T
+        """Matrix from Pi to theta, both at all nodes."""
+
+    def tip(self, Pi: Array) -> Array:
+        """(x, y) of the tip, (2,), for curvatures at all nodes, (nodes + 1,)."""
+        end: Array = configuration(self.mesh, np.stack([self.h1, self.h2, Pi]), np.zeros(3))[:2, -1]
+        return end
+
+    def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
+        """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""
+        size, weights = len(Pi), self.mesh.quadrature
+        matrix = np.zeros((size + 2, size + 2))
+        for _ in range(MOST_ITERATIONS):
+            first, second = self._derivatives(Pi, force)
+            matrix[:size, :size] = np.diag(weights) - second
+            matrix[:size, size:] = -first.T
+            matrix[size:, :size] = first
+            misplaced = place - self.tip(Pi)
+            change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
+            if not np.abs(self.angles @ change[:size]).max() < MOST_TURNED:
+                return None
+            Pi, force = Pi + change[:size], force + change[size:]
+            if np.abs(misplaced).max() < PLACED:
+                return Pi, force
+        return None
+
+    def _derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
+        """d(x, y)/dPi, (2, nodes + 1), and d^2(f . (x, y))/dPi^2, (nodes + 1, nodes + 1), by quadrature."""
+        A, w = self.angles, self.mesh.quadrature
+        c, s = np.cos(A @ Pi), np.sin(A @ Pi)
+        reach = np.array([c * self.h1 - s * self.h2, s * self.h1 + c * self.h2])
+        turned = np.array([-reach[1], reach[0]])
+        return (w * turned) @ A, -A.T @ ((w * (force @ reach))[:, None] * A)

@@ -1,0 +1,118 @@
+"""A drag of the arm's tip on the page, without a browser: the bent arm, and the motion after it is let go."""
+
+from io import BytesIO
+
+import numpy as np
+import pytest
+from explore.test_page import ImmediateSolvers, page_with, run_callbacks
+from PIL import Image
+
+import rodsweep as rs
+from rodsweep.explore.page import AT_ONCE, Page
+from rodsweep.explore.pictures.beating import SECONDS
+from rodsweep.explore.pictures.card import NO_TITLE
+from rodsweep.explore.solving.questions import SHAPES, Question, Reply, answer_to
+from rodsweep.explore.state import PageState
+
+KINDS = (*AT_ONCE, "bent", "motion", "film")
+
+
+def drag(page: Page, phase: str, x: float, y: float) -> None:
+    """What the browser tells of a drag, in the picture's unit of length."""
+    page.contents.beating.grip.data = {"x": [x], "y": [y], "phase": [phase]}
+    run_callbacks(page.document)
+
+
+def ends(source) -> np.ndarray:
+    """Tips of the shapes of a source, (shapes, 2)."""
+    nodes = int(source.data["number"][0])
+    return np.stack([np.reshape(source.data[name], (-1, nodes))[:, -1] for name in "xy"], axis=1)
+
+
+def test_the_tip_follows_the_drag():
+    page = page_with(ImmediateSolvers(KINDS))
+    drag(page, "bent", 0.6, 0.5)
+    bent = page.contents.beating.bent.data
+    assert (bent["x"][-1], bent["y"][-1]) == pytest.approx((0.6, 0.5), abs=1e-6)
+
+
+def test_a_fluttering_arm_that_is_let_go_moves_from_there_into_its_cycle():
+    page = page_with(ImmediateSolvers(KINDS))
+    drag(page, "let go", 0.6, 0.5)
+    picture = page.contents.beating
+    assert ends(picture.motion)[0] == pytest.approx((0.6, 0.5), abs=1e-6)
+    cycle = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).cycle(shapes=48)
+    assert ends(picture.reached)[:, 1] == pytest.approx(cycle.data["shape_y"].values[:, -1], abs=1e-5)
+    assert picture.card.figure.title.text == "Let go at (0.6, 0.5) L: it beats"
+    per_shape, period = picture.motion.tags
+    assert period == SECONDS
+    # Returns of a motion that is not settled yet differ from the period by some percent.
+    assert per_shape == pytest.approx(SECONDS / 32, rel=0.1)
+
+
+def test_an_arm_below_flutter_that_is_let_go_comes_to_rest():
+    page = page_with(ImmediateSolvers(KINDS), "F=20")
+    drag(page, "let go", 0.6, -0.5)
+    picture = page.contents.beating
+    assert picture.card.figure.title.text == "Let go at (0.6, -0.5) L: it comes to rest"
+    assert len(picture.reached.data["x"]) == 0
+    tips = ends(picture.motion)
+    assert tips[0] == pytest.approx((0.6, -0.5), abs=1e-6)
+    assert abs(tips[-1, 1]) < 0.01
+
+
+def test_a_drag_in_the_picture_of_an_arm_is_in_centimetres():
+    page = page_with(ImmediateSolvers(KINDS), "tab=arm&length=12+cm")
+    drag(page, "let go", 6.0, 5.0)
+    picture = page.contents.beating
+    assert ends(picture.motion)[0] == pytest.approx((6, 5), abs=1e-5)
+    assert picture.card.figure.title.text.startswith("Let go at (6, 5) cm: ")
+
+
+def test_a_change_of_the_rod_forgets_the_motion():
+    page = page_with(ImmediateSolvers(KINDS))
+    drag(page, "let go", 0.6, 0.5)
+    page.change({"F": "60"})
+    run_callbacks(page.document)
+    picture = page.contents.beating
+    assert (len(picture.motion.data["x"]), len(picture.bent.data["x"])) == (0, 0)
+    assert picture.card.figure.title.text == NO_TITLE
+
+
+def test_an_answer_to_another_place_of_the_tip_is_not_shown():
+    kept = []
+    solvers = ImmediateSolvers()
+    page = page_with(solvers)
+    solvers.ask = lambda session, question, done: kept.append((question, done))
+    drag(page, "let go", 0.6, 0.5)
+    drag(page, "let go", 0.5, -0.5)
+    question, done = kept[0]
+    done(Reply("answer", answer_to(question), 0.0))
+    run_callbacks(page.document)
+    assert len(page.contents.beating.motion.data["x"]) == 0
+    assert page.contents.working.text == "solving motion ..."
+
+
+@pytest.mark.parametrize("place", [(40.0, -3.0), (0.0, 0.0), (-1.0, 0.0)])
+def test_every_place_of_the_pointer_bends_the_arm(place):
+    found = answer_to(Question("bent", PageState(), place))
+    assert np.isfinite([found["x"], found["y"]]).all()
+
+
+def test_the_film_shows_the_shapes_of_a_period():
+    page = page_with(ImmediateSolvers(KINDS))
+    given = []
+    page.contents.sharing.give_film = given.append
+    page.solve("film")
+    run_callbacks(page.document)
+    assert len(given) == 1
+    film = Image.open(BytesIO(given[0]))
+    assert (film.format, film.n_frames) == ("GIF", SHAPES)
+
+
+def test_a_rod_without_a_cycle_has_no_film():
+    page = page_with(ImmediateSolvers(KINDS), "F=20")
+    page.solve("film")
+    run_callbacks(page.document)
+    assert "no cycle to film" in page.contents.beating.card.message.text
+    assert page.contents.working.text == ""

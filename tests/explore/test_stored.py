@@ -1,0 +1,111 @@
+"""The page of a result file: its cycles, branches and curves are drawn, and only the rest is solved."""
+
+import numpy as np
+import pytest
+from explore.test_page import ImmediateSolvers, page_with, run_callbacks, shown
+
+import rodsweep as rs
+from rodsweep.explore.page import Page
+from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.stored import opened
+
+ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
+CYCLES = f"task: limit_cycle\nparameters: {{F: [20, 40, 50], {ROD}}}\nlimit_cycle: {{shapes: 16}}\n"
+BRANCH = f"task: branch\nparameters: {{{ROD}}}\nbranch: {{stop: 50}}\n"
+PLANE = """task: phase_diagram
+parameters: {F: {start: 60, stop: 110, num: 6}, k1: [150, 151], k2: 1.0e4, gamma3: 1.0e-4}
+phase_diagram: {cycles: true, certify: false, cycle_accuracy: 1.0e-4}
+"""
+
+
+class NoSolvers(ImmediateSolvers):
+    """Answers nothing, and keeps what was asked."""
+
+    def __init__(self) -> None:
+        super().__init__(())
+
+
+def opened_page(command, text: str, query: str = "") -> tuple[Page, NoSolvers]:
+    """The page of the result of a config, after it has rested."""
+    command.write("result.yaml", text)
+    state, stored = opened(command.solved("result.yaml"))
+    solvers = NoSolvers()
+    page = page_with(solvers, query, state, stored)
+    run_callbacks(page.document, seconds=True)
+    return page, solvers
+
+
+def asked(solvers: NoSolvers) -> set[str]:
+    return {question.kind for question in solvers.questions}
+
+
+def test_stored_cycles_are_drawn_and_not_solved_again(command):
+    page, solvers = opened_page(command, CYCLES)
+    data = rs.open(command.directory / "result.h5").squeeze()
+    assert page.state.rod["F"] == "40"
+    assert not {"cycle", "branch"} & asked(solvers)
+    assert shown(page)["period"] == written(data["period"].sel(F=40).values)
+    picture = page.contents.beating.shapes.data
+    assert picture["y"] == pytest.approx(data["shape_y"].sel(F=40).values.ravel(), abs=1e-7)
+    drawn = page.contents.branches.cycles.data
+    assert drawn["F"] == pytest.approx([20, 40, 50])
+    assert drawn["y"] == pytest.approx([0, *data["tip_y_max"].sel(F=[40, 50]).values])
+
+
+def test_a_click_beside_a_stored_force_shows_its_cycle(command):
+    page, solvers = opened_page(command, CYCLES)
+    page._move_load(type("Click", (), {"x": 51.3}))
+    assert page.state.rod["F"] == "50"
+    assert "cycle" not in asked(solvers)
+
+
+def test_a_stored_rod_at_rest_is_drawn_straight(command):
+    page, solvers = opened_page(command, CYCLES, "F=20")
+    assert "cycle" not in asked(solvers)
+    assert page.contents.beating.card.message.text.startswith("the rod returns to the straight state")
+    assert page.contents.beating.shapes.data["x"][-1] == pytest.approx(1 - 20 / 1e4)
+
+
+@pytest.mark.parametrize("query", ["F=41", "k2=110", "gamma1=2", "law=fixed", "taper=0.9"])
+def test_what_the_file_does_not_hold_is_solved(command, query):
+    _, solvers = opened_page(command, CYCLES, query)
+    assert "cycle" in asked(solvers)
+
+
+def test_cycles_without_stored_shapes_are_solved_for_the_picture(command):
+    _, solvers = opened_page(command, CYCLES.replace("{shapes: 16}", "{samples: 0}"))
+    assert "cycle" in asked(solvers)
+
+
+def test_stored_branches_are_drawn_and_solved_again_by_their_button_only(command):
+    page, solvers = opened_page(command, BRANCH)
+    data = rs.open(command.directory / "result.h5").squeeze()
+    assert "branch" not in asked(solvers)
+    pieces = page.contents.branches.pieces.data
+    of_cycles = max(pieces["y"], key=np.max)
+    assert np.max(of_cycles) == pytest.approx(np.nanmax(data["tip_y_max"].values))
+    assert pieces["dash"].count("dashed") == 1
+    assert page.contents.branches.card.figure.title.text == "stored in result.h5"
+    page.solve("branch")
+    assert "branch" in asked(solvers)
+
+
+def test_stored_curves_of_folds_are_drawn_in_the_diagram(command):
+    page, solvers = opened_page(command, PLANE)
+    data = rs.open(command.directory / "result.h5")
+    assert not {"diagram", "cycles"} & asked(solvers)
+    curves = page.contents.diagram.of_cycles.data
+    assert np.concatenate(curves["x"]) == pytest.approx(data["cycle_curve_F"].values)
+    assert np.concatenate(curves["y"]) == pytest.approx(data["cycle_curve_k1"].values)
+    assert set(curves["dash"]) == {"solid"}
+    assert page.contents.diagram.legend.visible
+
+
+def test_curves_of_folds_are_solved_by_their_button_only():
+    solvers = NoSolvers()
+    page = page_with(solvers)
+    run_callbacks(page.document, seconds=True)
+    assert "cycles" not in asked(solvers)
+    page.solve("cycles")
+    assert "cycles" in asked(solvers)
+    assert "folds and torus points" in page.contents.working.text
