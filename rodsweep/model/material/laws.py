@@ -51,8 +51,8 @@ class Law:
 def _neo_hookean_shortening(x: Values) -> Values:
     """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Newton's method on nu, then on e where e is small."""
     x = np.asarray(x, dtype=float)
-    # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0. For x > 0 the first
-    # guess goes over from 1 - x to (3 x)^(-1/2).
+    # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0. For x > 0 the
+    # first guess goes over from 1 - x to (3 x)^(-1/2).
     pushed = np.maximum(x, 0.0)
     nu = np.where(x < 0, 1 - 3 * x, 1 / np.sqrt(1 + 2 * pushed + pushed**2 / (1 + pushed)))
     for _ in range(MAX_STEPS):
