@@ -69,8 +69,7 @@ class BranchConfig(Config):
 
     @property
     def names(self) -> tuple[str, ...]:
-        given = (name for name in OPTIONAL_PARAMETERS if name in self.parameters.given_axes)
-        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *given)
+        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *self.parameters.optional)
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

@@ -51,8 +51,8 @@ class Config(Strict):
         """Parameters of a point of the sweep: what the task needs, and what the config adds."""
         arm = self.parameters.arm
         made = () if arm is None else arm.tapering
-        given = (n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_axes or n in made)
-        return (*self.taken_of_a_rod({}), *given)
+        given = self.parameters.optional
+        return (*self.taken_of_a_rod({}), *(n for n in OPTIONAL_PARAMETERS if n in given or n in made))
 
     @property
     def build(self) -> Build:
@@ -65,6 +65,8 @@ class Config(Strict):
     def standard(self) -> bool:
         """Whether all rods are uniform and of linear material."""
         if self.parameters.arm is not None and not self.parameters.arm.standard:
+            return False
+        if "taper" in (self.parameters.columns or ()):
             return False
         tapers = self.parameters.given_axes.get("taper")
         return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))
