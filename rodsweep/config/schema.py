@@ -55,11 +55,16 @@ class Config(Strict):
         return (*self.taken_of_a_rod({}), *(n for n in OPTIONAL_PARAMETERS if n in given or n in made))
 
     @property
+    def stated_build(self) -> Build | None:
+        """Law and profile that stand beside the parameters; None without a section `material`."""
+        return None if self.material is None else self.material.build
+
+    @property
     def build(self) -> Build:
         """Law and profile of the arm."""
-        if self.material is None:
-            return STANDARD if self.parameters.arm is None else self.parameters.arm.build
-        return self.material.build
+        if self.stated_build is not None:
+            return self.stated_build
+        return STANDARD if self.parameters.arm is None else self.parameters.arm.build
 
     @property
     def standard(self) -> bool:
