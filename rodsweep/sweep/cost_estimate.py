@@ -119,7 +119,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
     points: the rods; the branch's parameter is no column. accuracy: relative accuracy of the cycles.
     """
-    indices = _sample(points)
+    indices = sampled(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
     F = np.clip(values["F"], 0.0, values["k1"])  # a rod under tension has no cycles
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
@@ -149,7 +149,7 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
     """Cost of spectra, from sampled points spread evenly over the sweep."""
-    rods = [points.rod(int(index)) for index in _sample(points)]
+    rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
         return Estimate(0.0)
@@ -171,7 +171,7 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
     return resolution_for(expected_wave_number(modes, wave), accuracy).unknowns
 
 
-def _sample(points: Points) -> NDArray[np.int64]:
+def sampled(points: Points) -> NDArray[np.int64]:
     """Flat indices, (n,), of evenly spread points of a sweep, without points that have no rod."""
     indices = np.unique(np.linspace(0, points.count - 1, min(MAX_SAMPLE, points.count)).astype(np.int64))
     return indices[[points.has_rod(int(index)) for index in indices]]

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
@@ -32,6 +34,9 @@ class CriticalityTask(NonlinearTask):
             ("Hopf points and their normal forms", True, f"at most {most} are stored for each rod"),
             ("cycles", False, "to third order in their amplitude only; task: limit_cycle computes them"),
         ]
+
+    def searched(self) -> dict[str, np.ndarray]:
+        return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> Estimate:
         return estimate_criticality(self.points.count, self.config.criticality.certify)

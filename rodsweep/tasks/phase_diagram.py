@@ -69,6 +69,9 @@ class PhaseDiagramTask(ProvedTask):
             ("stable states, with cycles", options.cycles, cycles),
         ]
 
+    def searched(self) -> dict[str, np.ndarray]:
+        return {self.config.plane[0]: self.line[[0, -1]]}
+
     def certificate(self) -> tuple[bool, str]:
         return self.certificate_of_lines()
 

@@ -6,6 +6,10 @@ from functools import cached_property
 
 from ...arrays import Complex
 
+LEADING_MODES = 4
+"""Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
+PLACE_ACCURACY = 1e-6
+"""Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
 EXPLAINED = 0.25
 """Share of a quantity that its cubic model may miss between two anchors."""
 

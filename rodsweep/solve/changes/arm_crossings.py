@@ -11,16 +11,12 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import EXPLAINED, lowest_between
+from .anchors import EXPLAINED, LEADING_MODES, PLACE_ACCURACY, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
-MODES = 4
-"""Leading eigenvalues known at a place, at least; two more than are unstable."""
 MOST_MODES = 40
 """Largest number of modes known at a place."""
-ACCURACY = 1e-6
-"""Accuracy of these eigenvalues; Newton's method on D does the rest."""
 CLOSEST = 1e-6
 """Distance of places, in units of the path, below which a window of flutter may hide undecided."""
 BESIDE = 1e-5
@@ -63,11 +59,11 @@ class CrossingSearch:
     def place(self, p: float) -> AxisPlace:
         """The place at p; Unsolvable where its eigenvalues or their number cannot be had."""
         if p not in self.places:
-            modes = MODES
-            found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
+            modes = LEADING_MODES
+            found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             while modes < _needed(found) <= MOST_MODES:
                 modes = _needed(found)
-                found = self.problem.spectrum(p, SpectrumRequest(modes, ACCURACY, self.certify))
+                found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
             slopes = found.eigenvalues.copy()

@@ -30,7 +30,7 @@ from .second_state import second_state
 from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
-from .transient.motion_mesh import motion_mesh
+from .transient.motion_mesh import MOTION_ACCURACY, motion_mesh
 from .transient.torus import classify_quasiperiodic
 from .transient.transient import Transient, TransientOutcome
 
@@ -39,9 +39,6 @@ __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "
 KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
 """Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
 displacement-form code, and the relative deviation accepted by `warm_up`."""
-MOTION_ACCURACY = 1e-5
-"""Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction; Newton's
-method supplies the digits of the cycle."""
 STORED_MULTIPLIERS, LEAST_MULTIPLIER = 6, 1e-6
 """Number of stored Floquet multipliers, and the smallest modulus of a stored multiplier."""
 NO_MULTIPLIER = complex(nan, nan)
