@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..model.balance import Material
+from ..model.material.jump import COLUMNS
 from .elements.mesh import Mesh
 
 Integers = NDArray[np.int64]
@@ -18,7 +19,9 @@ class NodalRod(NamedTuple):
 
     tip_stress: Sigma(1), (d,). rest: E0, with compliance and drag (d, nodes + 1); mobility: 1/drag, but 0
     where V is unknown. second: -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: which components of V are
-    unknowns. law: number of the constitutive law, see `rodsweep.model.material.response`.
+    unknowns. law: number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at
+    which the material of a rod jumps whose law is not linear, increasing, (k,). sides: of these nodes, see
+    `rodsweep.model.material.jump`, (k, 2, 6).
     """
 
     tip_stress: Array
@@ -29,6 +32,21 @@ class NodalRod(NamedTuple):
     second: Array
     kept: Integers
     law: int
+    jumps: Integers
+    sides: Array
+
+
+class Jumps(NamedTuple):
+    """`jumps` and `sides` of a `NodalRod`."""
+
+    nodes: Integers
+    sides: Array
+
+
+NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
+"""Of a rod without jumps, or of linear material, of which the mean over both sides is all that counts."""
+NO_CHANGE = np.zeros((0, 2, 3))
+"""`sides` of a change of such a rod."""
 
 
 class NodalChange(NamedTuple):
@@ -38,20 +56,24 @@ class NodalChange(NamedTuple):
     rest: Array
     compliance: Array
     drag: Array
+    sides: Array
+    """Of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
 
 
-def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0) -> NodalRod:
+def nodal_rod(
+    material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0, jumps: Jumps = NO_JUMPS
+) -> NodalRod:
     """A material on a mesh, of which these components of V are unknowns."""
     size = grid.nodes + 1
     rest, compliance = _at_nodes(material.rest, size), _at_nodes(material.compliance, size)
     resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, kept)
-    return NodalRod(material.tip_stress, rest, compliance, *resistance, law)
+    return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
 
 
-def nodal_change(change: Material, grid: Mesh) -> NodalChange:
-    """A change of a material on a mesh."""
+def nodal_change(change: Material, grid: Mesh, sides: Array = NO_CHANGE) -> NodalChange:
+    """A change of a material on a mesh; sides: as in `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
-    return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields))
+    return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields), sides)
 
 
 @lru_cache(maxsize=64)

@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.rod import Rod
-from .arm_on_mesh import material_on
+from .arm_on_mesh import jumps_on, material_on
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
@@ -55,7 +55,9 @@ class RodOnMesh(ABC):
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod as the compiled functions take it."""
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, self.kept, self.rod.build.law_number)
+        rod, mesh = self.rod, self.mesh
+        law, jumps = rod.build.law_number, jumps_on(rod, mesh)
+        return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
 
     def strains(self, x: Values) -> Values:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""

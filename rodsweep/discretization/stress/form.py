@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array
-from ..arm_on_mesh import material_change_on
+from ..arm_on_mesh import jump_change_on, material_change_on
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
 
@@ -43,7 +43,8 @@ class StressForm(RodOnMesh):
 
     def change(self, name: str) -> NodalChange:
         """Derivative of `nodal` by the parameter `name`; for a stiffness k, by 1/k."""
-        return nodal_change(material_change_on(self.rod, name, self.mesh), self.mesh)
+        change = material_change_on(self.rod, name, self.mesh)
+        return nodal_change(change, self.mesh, jump_change_on(self.rod, name, self.mesh))
 
     @cached_property
     def mass(self) -> Array:
