@@ -73,7 +73,8 @@ def nodal_rod(
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_CHANGE) -> NodalChange:
     """A change of a material on a mesh; sides: as in `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
-    return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields), sides)
+    rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
+    return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
 @lru_cache(maxsize=64)

@@ -10,8 +10,10 @@ import numpy as np
 
 from ...arrays import Array
 from ..arm_on_mesh import jump_change_on, material_change_on
+from ..elements.mesh import Mesh, transfer
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
+from ..state_layout import COMPONENTS, plane_layout
 
 LEAST_ELIMINATED_DRAG = 1e-5
 """Rotational drag from which Omega is eliminated: below, the division by it costs multipliers their digits,
@@ -40,6 +42,16 @@ class StressForm(RodOnMesh):
 
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
+
+    def states_on(self, grid: Mesh, x: Array) -> Array:
+        """States x on another mesh, (..., unknowns there)."""
+        E = transfer(self.mesh, grid)
+        if not len(self.nodal.jumps):
+            return self.layout.carried(x, E)
+        layout = plane_layout(grid.nodes, self.kept)
+        V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))
+        V[list(self.kept)] = self.layout.velocities(x) @ E.T
+        return layout.state(self.stresses_on(grid, x), V)
 
     def change(self, name: str) -> NodalChange:
         """Derivative of `nodal` by the parameter `name`; for a stiffness k, by 1/k."""

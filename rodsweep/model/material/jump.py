@@ -70,9 +70,7 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
         b = behind_jump(sides, q, a)
         s, t = stress(law, one, a.q1, a.q3), stress(law, other, b.q1, b.q3)
         S, T = tangent(law, one, a.q1, a.q3), tangent(law, other, b.q1, b.q3)
-        J = Tangent(
-            S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3
-        )
+        J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solved(J, t.N - s.N, t.M - s.M)
         share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
         a = Unknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
@@ -134,25 +132,3 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
         moved3 += sides[i, 4] * back.q3
     out = _solved(_compliance_at_jump(law, sides, a, b), moved1, moved3)
     return Stress(out.q1, out.q3)
-
-
-@compiled
-def unknowns_of(law: int, at: LocalSection, N: float, M: float) -> Unknowns:
-    """q1 and q3 of the stresses beyond those at rest, where the material does not jump, by Newton's method."""
-    q = _solved(tangent(law, at, 0.0, 0.0), N, M)
-    q = Unknowns(_allowed(at, 0.0, q.q1) * q.q1, q.q3)
-    for _ in range(MOST_ITERATIONS):
-        s = stress(law, at, q.q1, q.q3)
-        step = _solved(tangent(law, at, q.q1, q.q3), N - s.N, M - s.M)
-        share = _allowed(at, q.q1, step.q1)
-        q = Unknowns(q.q1 + share * step.q1, q.q3 + share * step.q3)
-        if _small(step, q):
-            break
-    return q
-
-
-@compiled
-def unknowns_at_jump(law: int, sides: Array, N: float, M: float) -> Unknowns:
-    """The mean unknowns of the stresses beyond those at rest, at a jump."""
-    a, b = unknowns_of(law, _section(sides[0]), N, M), unknowns_of(law, _section(sides[1]), N, M)
-    return Unknowns(sides[0, 3] * a.q1 + sides[1, 3] * b.q1, sides[0, 4] * a.q3 + sides[1, 4] * b.q3)

@@ -12,6 +12,8 @@ from math import isfinite, isnan
 import numpy as np
 
 from ...determinant.parameter_path import Path
+from ...discretization.at_jumps import carried
+from ...discretization.elements.mesh import transfer
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.path_problem import PathProblem, path_problem
@@ -204,6 +206,6 @@ def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency
     """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
     X = normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
     S, V = normal.form.fields(X)
-    E = normal.form.mesh.evaluation(form.mesh.positions)
-    states = form.layout.state(S @ E.T, V @ E.T)
+    source, target = normal.form.mesh, form.mesh
+    states = form.layout.state(carried(form.rod, S, source, target), V @ transfer(source, target).T)
     return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, STAGES)

@@ -200,8 +200,7 @@ def _from_motion(
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.branch.orbit
-        to_mesh = orbit.form.mesh.evaluation(beam.mesh.positions).T
-        start = beam.scaled(orbit.form.stresses(orbit.start) @ to_mesh)
+        start = beam.scaled(orbit.form.stresses_on(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 

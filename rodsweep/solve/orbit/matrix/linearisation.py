@@ -62,7 +62,7 @@ def over_period(returns: Complex, orbit: Orbit) -> Complex:
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)), NO_CHANGE)
+STILL = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_CHANGE)
 """Placeholder for no change of the rod, which compiled code never reads."""
 
 
