@@ -1,4 +1,4 @@
-"""An arm that varies along its length or is of rubber, in words: shape, law, and what is not computed."""
+"""An arm that varies along its length or is of rubber, in words: shape and law."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
@@ -11,16 +11,6 @@ def shape_words(arm: SlenderArm) -> str:
     """A cone, segments or a uniform arm, and its material: "a cone of rubber"."""
     shape = "an arm" if not arm.shape.varies else "a cone" if arm.taper != 1 else "an arm of segments"
     return shape if arm.law == LINEAR.law else f"{shape} of rubber"
-
-
-def no_cycles(arm: SlenderArm) -> list[str]:
-    """Sentence on what no task computes; empty where cycles are known."""
-    if arm.law == LINEAR.law or arm.build.continuous:
-        return []
-    return [
-        f"How far and how fast {shape_words(arm)} beats beyond flutter is not computed: cycles of segments "
-        "are known for linear material only."
-    ]
 
 
 def law_words(arm: SlenderArm) -> str:

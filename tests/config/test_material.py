@@ -182,15 +182,6 @@ def test_compression_is_judged_where_the_arm_is_weakest_and_not_for_rubber():
     assert found[0.5, "neo_hookean"][0] != "compression"
 
 
-@pytest.mark.parametrize("task", ["limit_cycle", "criticality", "branch"])
-def test_jumps_of_rubber_are_refused_where_the_motion_is_solved(task):
-    profile = {"u": [0, 0.5, 0.5, 1], "k3": [1, 1, 2, 2]}
-    force = {"F": 30} if task == "limit_cycle" else {}
-    sentence = f"material.profile has a jump and the law is neo_hookean, but the task {task} solves jumps of"
-    with pytest.raises(InputError, match=sentence):
-        rs.sweep(task, k1=[1e3, 1e4], k2=1e4, gamma3=1e-4, law="neo_hookean", profile=profile, **force)
-
-
 def test_cycles_of_cones_are_stored_with_their_hopf_points(command):
     rest = "material: {profile: steps.csv}\nlimit_cycle: {start: neighbour}\naccuracy: 1.0e-5"
     (command.directory / "steps.csv").write_text(STEPPED)

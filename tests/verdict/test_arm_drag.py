@@ -145,6 +145,12 @@ def test_a_law_beside_the_arm_moves_the_flutter_of_relative_loads():
     assert beside.F.item() != pytest.approx(rs.sweep("spectrum", arm=loaded, modes=1).F.item(), rel=1e-3)
 
 
+def test_a_taper_beside_an_arm_whose_load_is_relative_is_refused():
+    loaded = SILICONE | {"pressure": "1.2 of flutter"}
+    with pytest.raises(rs.InputError, match=r"parameters\.taper stands beside the arm; give .*tip_radius"):
+        rs.sweep("modes", arm=loaded, taper=0.5)
+
+
 def test_an_arm_without_flutter_is_a_point_with_a_status():
     section = ArmSection(**SILICONE | {"length": ["10 cm", "14 cm"], "pressure": "1.2 of flutter"})
     stiff = SlenderArm(**SILICONE).k1
