@@ -47,6 +47,11 @@ LINE_CERTIFICATE_MS = 16.0
 """Time of the certificate of a search, in ms: mean over the 72 rods."""
 LINE_OF_ARM_MS = 500.0
 """Time of a search along F of an arm that is not uniform, in ms."""
+CURVES_OF_ARMS_SECONDS = 4.5
+"""Time of the boundaries of a diagram of arms that are not uniform, with some 100 points in all: 3.3, 4.6 and
+5.3 s in diagrams of cones, rubber and rubber segments. It hardly depends on the number of rows."""
+CRITICALITY_OF_ARMS_SECONDS = 2.5
+"""Time of the normal forms along the Hopf curves of such a diagram: 0.7 to 3.8 s for some 50 points."""
 HOPF_SEARCH_MS = 25.0
 """Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
@@ -108,9 +113,17 @@ def estimate_lines_of_arms(lines: int) -> Estimate:
     return Estimate(lines * 1e-3 * LINE_OF_ARM_MS)
 
 
-def estimate_criticality(rods: int, certify: bool) -> Estimate:
-    """Cost of the Hopf points of `rods` rods with their normal forms."""
-    each = HOPF_SEARCH_MS + HOPF_POINTS_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+def estimate_diagram_of_arms(rows: int, curves: bool, criticality: bool) -> Estimate:
+    """Cost of a diagram of arms that are not uniform, without its cycles."""
+    lines = estimate_lines_of_arms(rows)
+    more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
+    return replace(lines, seconds=lines.seconds + more)
+
+
+def estimate_criticality(rods: int, certify: bool, of_arms: bool = False) -> Estimate:
+    """Cost of the Hopf points of rods with their normal forms; of_arms: whether some are not uniform."""
+    search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+    each = HOPF_POINTS_MS + (LINE_OF_ARM_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
 
 

@@ -39,7 +39,8 @@ class CriticalityTask(NonlinearTask):
         return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> Estimate:
-        return estimate_criticality(self.points.count, self.config.criticality.certify)
+        of_arms = not self.config.standard
+        return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.hopf.criticality import (
