@@ -261,7 +261,7 @@ def common_keys() -> str:
     assert isinstance(points, type)
     rows = [["`task`", code(", ".join(CONFIGS)), "", "What is computed."]]
     rows += [key_row(name, config.model_fields[name], meanings[name]) for name in ("title", "accuracy")]
-    for name in ("points", "arm"):
+    for name in ("points", "columns", "arm"):
         rows.append(key_row(f"parameters.{name}", points.model_fields[name], meanings_of(points)[name]))
     meanings = meanings_of(ArmSection)
     fields = ArmSection.model_fields

@@ -6,9 +6,10 @@ from typing import Any, TypeVar
 
 from ..config.arm.section import ArmSection
 from ..config.document.call_arguments import unknown
+from ..config.document.files import with_files_read
 from ..config.document.reading import validated, yaml_of
 from ..config.document.refusals import nearest
-from ..config.material import MaterialSection, with_profile_read
+from ..config.material import MaterialSection
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
@@ -84,7 +85,7 @@ def known_load(arm: ArmKind) -> ArmKind:
 @signals_held
 def job_from(tree: Tree) -> Job:
     """The validated job of a config tree; InputError, in the words of the command line, for bad input."""
-    config = validated(with_profile_read(tree, Path()))
+    config = validated(with_files_read(tree, Path()))
     job = job_of(Path(config.task), config, yaml_of(tree))
     size = job.points.count * job.layout.bytes_per_point
     if size > memory():
@@ -100,7 +101,7 @@ def refuse_unfit(tree: Tree) -> None:
 
     Points with a load relative to flutter are left to the run, whose ranks share the search for flutter.
     """
-    arm = validated(with_profile_read(tree, Path())).parameters.arm
+    arm = validated(with_files_read(tree, Path())).parameters.arm
     if arm is None or arm.load_axis not in RELATIVE:
         job_from(tree)
 

@@ -80,7 +80,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
     """The Dataset made by `rodsweep run` on `ranks` ranks in a temporary directory."""
     points = tree["parameters"].get("points")
     if points is not None:
-        tree = tree | {"parameters": {"points": str(Path(points).absolute())}}
+        tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         config, output = Path(place, f"{task}.yaml"), Path(place, f"{task}.h5")
         config.write_text(yaml_of(tree), encoding="utf-8")

@@ -8,6 +8,7 @@ import click
 
 from ..config.schema import Config
 from ..results.file.creation import Plan
+from ..solve.backend.availability import require_solvers
 from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod, rods_of_flutter
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
@@ -49,7 +50,9 @@ def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> Flutter
 
     Empty without such loads. None if a stop signal came first.
     """
-    rods = team.on_first(lambda: rods_of_flutter(config.parameters.arm))
+    rods = team.on_first(lambda: rods_of_flutter(config.parameters.arm, config.stated_build))
+    if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together
+        team.require_on_all_ranks(require_solvers)
     shared = _SharedWork(team, stop)
     found = shared.in_order(rods, flutter_of_rod)
     return None if shared.stopped else dict(zip(rods, found, strict=True))

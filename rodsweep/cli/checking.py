@@ -26,6 +26,8 @@ def describe_job(job: Job) -> None:
     console = Console(highlight=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip(), markup=False)
     console.print(job.task.headline())
+    if arms := job.task.arms():
+        console.print(arms)
     for line in _arm_lines(job) if job.quantities else []:
         console.print(line, markup=False, soft_wrap=True)
     table = Table("part", "modelled", "why", box=None, pad_edge=False)

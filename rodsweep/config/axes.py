@@ -1,7 +1,7 @@
 """The section `parameters` of a config: one axis per parameter, an arm, or a file of points."""
 
 import math
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model, model_validator
 
@@ -28,6 +28,11 @@ class Axes(LinearAxes):
 
     points: Annotated[Text | None, Field(min_length=1, description="the name of a CSV file")] = None
     """CSV file with a list of points, instead of axes. Its header names the parameters."""
+    columns: Annotated[
+        list[Literal[OPTIONAL_PARAMETERS]] | None,  # type: ignore[valid-type]  # read at run time, from the table
+        Field(description=f"a list of {' and '.join(OPTIONAL_PARAMETERS)}"),
+    ] = None
+    """Columns of `points` beside those that every list has; by default as its header names them."""
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given beside it replaces the arm's value."""
 
@@ -45,6 +50,18 @@ class Axes(LinearAxes):
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
+
+    @model_validator(mode="after")
+    def _columns_of_points(self) -> "Axes":
+        if self.columns is not None and self.points is None:
+            raise ValueError("parameters.columns is given but parameters.points is not; remove it")
+        return self
+
+    @property
+    def optional(self) -> tuple[str, ...]:
+        """Optional parameters that are given as an axis or as a column of a list."""
+        given = (*self.given_axes, *(self.columns or ()))
+        return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
 
     @property
     def axes(self) -> dict[str, Axis]:

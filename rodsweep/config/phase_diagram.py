@@ -173,17 +173,6 @@ class PhaseDiagramConfig(LinearConfig):
         return self
 
     @model_validator(mode="after")
-    def _more_than_curves_of_uniform_arms_only(self) -> "PhaseDiagramConfig":
-        options = self.phase_diagram
-        if self.standard or not (options.criticality or options.cycles):
-            return self
-        asked = "phase_diagram.criticality" if options.criticality else "phase_diagram.cycles"
-        raise ValueError(
-            f"{asked} is true, but a phase diagram computes criticality and cycles for uniform arms of "
-            "linear material only; remove it and use the task criticality or branch"
-        )
-
-    @model_validator(mode="after")
     def _third_beside_the_plane(self) -> "PhaseDiagramConfig":
         if self.phase_diagram.third is None:
             return self

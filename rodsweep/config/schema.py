@@ -56,19 +56,26 @@ class Config(Strict):
         """Optional parameters that the config gives, by name or by the shape of its arm."""
         arm = self.parameters.arm
         made = () if arm is None else arm.tapering
-        return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_axes or n in made)
+        return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.optional or n in made)
+
+    @property
+    def stated_build(self) -> Build | None:
+        """Law and profile of the section `material`; None without that section."""
+        return None if self.material is None else self.material.build
 
     @property
     def build(self) -> Build:
         """Law and profile of the arm."""
-        if self.material is None:
-            return STANDARD if self.parameters.arm is None else self.parameters.arm.build
-        return self.material.build
+        if self.stated_build is not None:
+            return self.stated_build
+        return STANDARD if self.parameters.arm is None else self.parameters.arm.build
 
     @property
     def standard(self) -> bool:
         """Whether all rods are uniform and of linear material."""
         if self.parameters.arm is not None and not self.parameters.arm.standard:
+            return False
+        if "taper" in (self.parameters.columns or ()):
             return False
         tapers = self.parameters.given_axes.get("taper")
         return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))

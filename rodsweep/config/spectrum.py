@@ -5,7 +5,6 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from ..model.arm.quantities import RELATIVE
 from ..model.parameters import LINEAR_PARAMETERS
 from .schema import LinearConfig, Modes, Nodes
 from .values import Strict
@@ -86,12 +85,6 @@ class SpectrumConfig(LinearConfig):
             raise ValueError(
                 "spectrum.longitudinal is true, but longitudinal modes are known for uniform arms of linear "
                 "material only; remove it"
-            )
-        arm = self.parameters.arm
-        if not self.standard and arm is not None and arm.load_axis in RELATIVE:
-            raise ValueError(
-                f"parameters.arm.{arm.load} is relative to flutter, which is searched for uniform arms of "
-                "linear material only; give the load in its unit"
             )
         self.refuse_unused()
         return self

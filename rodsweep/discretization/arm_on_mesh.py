@@ -1,32 +1,30 @@
-"""Compliances, drags and straight state of an arm at the nodes of a mesh, and their parameter derivatives.
+"""Compliances, drags and rest of an arm at the nodes of a mesh, and their derivatives by a parameter.
 
-A coefficient may jump at a node between two elements. The mass is lumped, so the equations of the node
-contain the mean of both sides, weighted by the quadrature. For a linear law this keeps the accuracy of the
-mesh if elements end at the jumps. For another law s(S) differs on both sides, and jumps are refused.
+At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
+contain the mean strain of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if
+elements end at the jumps. For a linear law the mean compliance gives the stress of the mean strain; with
+another law both sides are needed (`rodsweep.model.material.jump`).
 """
 
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..model.balance import Material
-from ..model.material.build import Sections
+from ..model.material.build import Build, Sections
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
+from .nodal_rod import NO_JUMPS, NO_SIDE_CHANGE, Integers, Jumps
 
 
 def material_on(rod: Rod, grid: Mesh) -> Material:
-    """The material of a rod on a mesh: (3,) arrays for a standard rod, (3, nodes + 1) for other arms.
+    """The material of a rod on a mesh; an arm has arrays over the nodes, (3, nodes + 1).
 
-    The elements must end at the breaks of the profile. Raises ValueError for a jump combined with a law that
-    is not linear.
+    The elements of an arm must end at the breaks of its profile.
     """
-    if not (rod.build.continuous or rod.build.constitutive_law is LINEAR):
-        raise ValueError("the nonlinear motion of an arm whose profile jumps needs law = linear")
     if rod.standard:
         return rod.material
     compliance, drag, rest = _at_nodes(rod.sections(grid.points_inside.ravel()), grid)
@@ -41,12 +39,45 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
+def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
+    """The nodes at which the material of a rod jumps, with both sides; none for a linear law."""
+    inside, at = _beside_jumps(rod.build, grid)
+    if not len(at):
+        return NO_JUMPS
+    points, weights = grid.points_inside.ravel()[inside], _places_of(grid)[1][inside]
+    sections = rod.sections(points.ravel())
+    c1, _, c3 = sections.compliance.reshape(3, *points.shape)
+    soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
+    shares = [values / values.sum(axis=1, keepdims=True) for values in (weights * soft[0], weights * soft[2])]
+    mean = weights / weights.sum(axis=1, keepdims=True)
+    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *shares, mean], axis=-1)
+    return Jumps(at, np.ascontiguousarray(sides))
+
+
+def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
+    """The derivatives of nu, c1 and c3 on both sides of the jumps by the coordinate of a parameter."""
+    inside, at = _beside_jumps(rod.build, grid)
+    if not len(at):
+        return NO_SIDE_CHANGE
+    changes = rod.section_changes(name, grid.points_inside.ravel()[inside].ravel())
+    c1, _, c3 = changes.compliance
+    return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
+
+
+def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
+    """(places in `points_inside` before and behind each jump, (k, 2); its node, (k,)); none if linear."""
+    jumps = () if build.constitutive_law is LINEAR else build.jumps
+    ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
+    size = grid.order + 1
+    return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
+
+
 def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     """Compliance, drag and strain at rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
-    node, weights = _node_weights(grid)
+    place, weights = _places_of(grid)
 
     def mean(values: Array) -> Array:
-        return np.array([np.bincount(node, weights * row) for row in values]) / grid.quadrature
+        return np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
 
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
@@ -54,8 +85,8 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def _node_weights(grid: Mesh) -> tuple[NDArray[np.int64], Array]:
-    """(node, quadrature weight) of each of the mesh's `points_inside`, (elements (order + 1),) each."""
+def _places_of(grid: Mesh) -> tuple[Integers, Array]:
+    """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
     nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
     return nodes.ravel(), weights.ravel()

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..model.balance import Material
+from ..model.material.jump import COLUMNS
 from .elements.mesh import Mesh
 
 Integers = NDArray[np.int64]
@@ -19,7 +20,9 @@ class NodalRod(NamedTuple):
     tip_stress: Sigma(1), (d,). rest: E0, the strain of the straight rod; rest, compliance and drag have the
     shape (d, nodes + 1). mobility: 1/drag, but 0 for components of V that are unknowns. second:
     -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: indices of the components of V that are unknowns. law:
-    number of the constitutive law, see `rodsweep.model.material.response`.
+    number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at which the
+    material jumps, increasing, (k,); none for a linear law. sides: both sides of these nodes, (k, 2, 6), see
+    `rodsweep.model.material.jump`.
     """
 
     tip_stress: Array
@@ -30,6 +33,21 @@ class NodalRod(NamedTuple):
     second: Array
     kept: Integers
     law: int
+    jumps: Integers
+    sides: Array
+
+
+class Jumps(NamedTuple):
+    """`jumps` and `sides` of a `NodalRod`."""
+
+    nodes: Integers
+    sides: Array
+
+
+NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
+"""Of a rod without jumps, or of linear material, of which the mean over both sides is all that counts."""
+NO_SIDE_CHANGE = np.zeros((0, 2, 3))
+"""`sides` of a change of such a rod."""
 
 
 class NodalChange(NamedTuple):
@@ -39,21 +57,26 @@ class NodalChange(NamedTuple):
     rest: Array
     compliance: Array
     drag: Array
+    sides: Array
+    """Of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
 
 
-def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0) -> NodalRod:
+def nodal_rod(
+    material: Material, grid: Mesh, kept: tuple[int, ...] = (), law: int = 0, jumps: Jumps = NO_JUMPS
+) -> NodalRod:
     """The `NodalRod` of a material on a mesh; kept: indices of the components of V that are unknowns."""
     size = grid.nodes + 1
     rest = _at_nodes(material.rest, size)
     compliance = _at_nodes(material.compliance, size)
     resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, kept)
-    return NodalRod(material.tip_stress, rest, compliance, *resistance, law)
+    return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
 
 
-def nodal_change(change: Material, grid: Mesh) -> NodalChange:
-    """The `NodalChange` of the derivative of a material on a mesh."""
+def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) -> NodalChange:
+    """The `NodalChange` of the derivative of a material on a mesh; sides: as in `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
-    return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields))
+    rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
+    return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
 @lru_cache(maxsize=64)

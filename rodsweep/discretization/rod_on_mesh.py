@@ -14,7 +14,8 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.rod import Rod
-from .arm_on_mesh import material_on
+from .arm_on_mesh import jumps_on, material_on
+from .at_jumps import carried, parted
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
@@ -55,12 +56,14 @@ class RodOnMesh(ABC):
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod as argument of compiled functions."""
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, self.kept, self.rod.build.law_number)
+        rod, mesh = self.rod, self.mesh
+        law, jumps = rod.build.law_number, jumps_on(rod, mesh)
+        return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
 
     def strains(self, x: Values) -> Values:
         """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1)."""
-        S = self.stresses(x)
-        return _along(self.nodal.rest, S) + _along(self.nodal.compliance, S) * S
+        S, c = self.stresses(x), self.nodal
+        return _along(c.rest, S) + _along(c.compliance, S) * S
 
     def shape(self, x: Values) -> Values:
         """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
@@ -75,25 +78,28 @@ class RodOnMesh(ABC):
 
         For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
-        S = self.stresses(x)
-        law = self.rod.build.constitutive_law
-        compliance = _along(self.nodal.compliance, S)
-        h1 = _along(self.nodal.rest, S)[0] + compliance[0] * S[0]
-        push = S[0] - _along(self._shortening[None], S)[0]  # (h1 - 1)/c1
-        stretched = compliance[0] * push**2 * law.energy_over_square(h1)
-        bent = compliance[1] * S[1] ** 2 / 2 + law.bending(h1) * compliance[2] * S[2] ** 2 / 2
-        energy: Array = (stretched + bent) @ self.mesh.quadrature
+        S, c = self.stresses(x), self.nodal
+        nu, (c1, c2, c3) = _along(c.rest, S)[0], _along(c.compliance, S)
+        density = self._stored(nu, c1, c3, S[0], S[2])
+        for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
+            density[..., node] = 0.0
+            for (q1, q3), (nu, c1, c3, _, _, share) in zip(sides, numbers, strict=True):
+                density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
+        energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
         return energy
 
-    @cached_property
-    def _shortening(self) -> Array:
-        """(1 - nu)/c1 of the straight rod, (nodes + 1,); the limit F for c1 = 0."""
-        F = self.rod.F
-        law = self.rod.build.constitutive_law
-        load = F * self.nodal.compliance[0]
+    def _stored(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
+        """Energy per length of stretching and bending of the unknowns q1, q3 of sections, without shear."""
+        F, law = self.rod.F, self.rod.build.constitutive_law
+        load, h1 = F * c1, nu + c1 * q1
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
-        shortening: Array = F * ratio
-        return shortening
+        push = q1 - F * ratio  # (h1 - 1)/c1
+        stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
+        return stored
+
+    def stresses_on(self, grid: Mesh, x: Array) -> Array:
+        """S of states x at all nodes of another mesh, shape (3, ..., nodes there + 1)."""
+        return carried(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
         """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive."""

@@ -51,6 +51,11 @@ LINE_CERTIFICATE_MS = 16.0
 LINE_OF_ARM_MS = 200.0
 """Time of a search along F of an arm that is not uniform, in ms: mean over 64 random arms, of which half take
 40 and a few soft ones 2000."""
+CURVES_OF_ARMS_SECONDS = 4.5
+"""Time of the boundaries of a diagram of arms that are not uniform, with some 100 points in all: 3.3, 4.6 and
+5.3 s in diagrams of cones, rubber and rubber segments. It hardly depends on the number of rows."""
+CRITICALITY_OF_ARMS_SECONDS = 2.5
+"""Time of the normal forms along the Hopf curves of such a diagram: 0.7 to 3.8 s for some 50 points."""
 HOPF_SEARCH_MS = 25.0
 """Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
@@ -112,9 +117,17 @@ def estimate_lines_of_arms(lines: int) -> Estimate:
     return Estimate(lines * 1e-3 * LINE_OF_ARM_MS)
 
 
-def estimate_criticality(rods: int, certify: bool) -> Estimate:
-    """Cost of the Hopf points of `rods` rods with their normal forms."""
-    each = HOPF_SEARCH_MS + HOPF_POINTS_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+def estimate_diagram_of_arms(rows: int, curves: bool, criticality: bool) -> Estimate:
+    """Cost of a diagram of arms that are not uniform, without its cycles."""
+    lines = estimate_lines_of_arms(rows)
+    more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
+    return replace(lines, seconds=lines.seconds + more)
+
+
+def estimate_criticality(rods: int, certify: bool, of_arms: bool = False) -> Estimate:
+    """Cost of the Hopf points of rods with their normal forms; of_arms: whether some are not uniform."""
+    search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+    each = HOPF_POINTS_MS + (LINE_OF_ARM_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
 
 
@@ -123,7 +136,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
     points: the rods; the branch's parameter is no column. accuracy: relative accuracy of the cycles.
     """
-    indices = _sample(points)
+    indices = sampled(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
     F = np.clip(values["F"], 0.0, values["k1"])  # a rod under tension has no cycles
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
@@ -157,7 +170,7 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
     """Cost of spectra, from sampled points spread evenly over the sweep."""
-    rods = [points.rod(int(index)) for index in _sample(points)]
+    rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
         return Estimate(0.0)
@@ -179,7 +192,7 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
     return resolution_for(expected_wave_number(modes, wave), accuracy).unknowns
 
 
-def _sample(points: Points) -> NDArray[np.int64]:
+def sampled(points: Points) -> NDArray[np.int64]:
     """Flat indices, (n,), of evenly spread points of a sweep, without points that have no rod."""
     indices = np.unique(np.linspace(0, points.count - 1, min(MAX_SAMPLE, points.count)).astype(np.int64))
     return indices[[points.has_rod(int(index)) for index in indices]]

@@ -50,6 +50,10 @@ class BranchTask(NonlinearTask):
             ("cycles on no such branch", False, "task: limit_cycle finds stable ones from a motion"),
         ]
 
+    def searched(self) -> dict[str, np.ndarray]:
+        options = self.config.branch
+        return {options.along: np.array([options.start, options.stop])}
+
     def cost(self) -> Estimate:
         options = self.config.branch
         reach = (options.start, options.stop)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
@@ -33,8 +35,12 @@ class CriticalityTask(NonlinearTask):
             ("cycles", False, "to third order in their amplitude only; task: limit_cycle computes them"),
         ]
 
+    def searched(self) -> dict[str, np.ndarray]:
+        return {"F": np.array([self.config.criticality.F_max])}
+
     def cost(self) -> Estimate:
-        return estimate_criticality(self.points.count, self.config.criticality.certify)
+        of_arms = not self.config.standard
+        return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.hopf.criticality import (

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Complex
 from ..config.limit_cycle import LimitCycleConfig
+from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..model.parameters import Range
 from ..results.layouts.limit_cycle import (
@@ -24,11 +25,12 @@ from ..results.layouts.limit_cycle import (
 from ..results.layouts.variables import Filled, Variable, recorded
 from ..solve.backend.availability import require_solvers
 from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
+from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import count_of, material_parts, rod_parts
+from .parts import arms_line, count_of, material_parts, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
@@ -96,12 +98,25 @@ class LimitCycleTask(Task):
             f"{counted(chains.count, 'rank')} can share the work"
         )
 
+    def arms(self) -> str:
+        return arms_line(self.config, self.points.of_rods, self._first_mesh)
+
+    def _first_mesh(self) -> Elements | None:
+        """The largest first mesh of the motions, or of the branches from Hopf points."""
+        from ..solve.cycle.transient.motion_mesh import MOTION_ACCURACY, coarse_mesh, motion_mesh
+
+        options = self.config.limit_cycle
+        if options.start == "hopf":
+            return largest_first_mesh(self.points, coarse_mesh)
+        accuracy = self.config.accuracy if options.method == "integration" else MOTION_ACCURACY
+        return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
+
     def parts(self) -> list[Part]:
         options = self.config.limit_cycle
         gamma1, marched = np.unique(self.points.of_rods["gamma1"])[:5], options.method == "integration"
         return [
             *rod_parts(self.points.of_rods),
-            *material_parts(self.config, self.points),
+            *material_parts(self.config, self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),

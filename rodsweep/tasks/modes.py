@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..config.modes import ModesConfig
+from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
@@ -16,6 +17,7 @@ from ..results.layouts.modes import GROWTH, MODE_NUMBERS
 from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
+from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
 from .protocol import Part, Solver
@@ -52,6 +54,12 @@ class ModesTask(ProvedTask):
             ("transient growth, numerical abscissa", growth, why),
             ("longitudinal modes", False, "they decouple; the task spectrum has them"),
         ]
+
+    def first_mesh(self) -> Elements | None:
+        accuracy = mesh_accuracy(self.config.accuracy, vectors=False)
+        return largest_first_mesh(
+            self.points, lambda rod: spectrum_mesh(rod, self.config.modes.modes, accuracy)
+        )
 
     def certificate(self) -> tuple[bool, str]:
         return self.certificate_of_counts()

@@ -1,14 +1,19 @@
 """The output of `check` common to all tasks, and the common base of tasks with a certificate."""
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from ..config.schema import Config
+from ..discretization.elements.elements import Elements
+from ..discretization.elements.resolution import mesh_accuracy
 from ..model.parameters import PARAMETERS, Parameter
+from ..model.rod import Rod
+from ..solve.changes.anchors import LEADING_MODES, PLACE_ACCURACY
+from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
 from .protocol import Part, Task
@@ -34,6 +39,25 @@ class ProvedTask(Task):
     def moved(self) -> dict[str, np.ndarray]:
         """Values of the parameters of the task's rods, each of any shape."""
         return self.points.of_rods | self.coordinates()
+
+    def arms(self) -> str:
+        return arms_line(self.config, self.moved, self.first_mesh)
+
+    def first_mesh(self) -> Elements | None:
+        """The largest first mesh of the eigenvalues of the rods; None without a rod.
+
+        By default rods are searched along a line, `searched`, for places where eigenvalues cross the axis.
+        """
+        accuracy = mesh_accuracy(PLACE_ACCURACY, vectors=False)
+
+        def mesh_of(rod: Rod) -> Elements:
+            return spectrum_mesh(rod, LEADING_MODES, accuracy)
+
+        return largest_first_mesh(self.points, mesh_of, self.searched())
+
+    def searched(self) -> dict[str, np.ndarray]:
+        """Ends, (2,), of the parameter along which every rod is searched, by its name; empty for points."""
+        return {}
 
     def certificate(self) -> tuple[bool, str]:
         """(whether completeness is proved, the proof or the reason for its absence)."""
@@ -64,7 +88,7 @@ class ProvedTask(Task):
         what, why = self.left_out
         return [
             *rod_parts(self.moved),
-            *material_parts(self.config, self.points),
+            *material_parts(self.config, self.moved),
             *self.asked(),
             ("certificate", *self.certificate()),
             (what, False, why),
@@ -108,22 +132,52 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
     ]
 
 
-def material_parts(config: Config, points: Points) -> list[Part]:
-    """What varies along the arm, and its law; empty for uniform arms of linear material."""
+def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Part]:
+    """What varies along the arm, and its law; empty for uniform arms of linear material.
+
+    columns: values of the parameters of the rods, each of any shape.
+    """
     if config.standard:
         return []
-    tapers = points.by_name.get("taper", np.ones(1))
-    shapes = [] if (tapers == 1).all() else [f"a cone of radius ratio {_span(tapers)}"]
+    shapes = _shapes(config, columns)
+    return [
+        ("variation along the arm", bool(shapes), " with ".join(shapes) or "uniform"),
+        ("law", True, _law(config)),
+    ]
+
+
+def arms_line(
+    config: Config, columns: Mapping[str, np.ndarray], first_mesh: Callable[[], Elements | None]
+) -> str:
+    """What is modelled of arms that vary or are of rubber, and their first mesh; empty for other arms."""
+    if config.standard:
+        return ""
+    shapes = _shapes(config, columns) or ["a uniform arm"]
+    if len(shapes) == 1 and shapes[0].startswith("a profile"):
+        shapes = ["an arm", *shapes]
+    arms, mesh = f"{' with '.join(shapes)} of {_law(config)}", first_mesh()
+    if mesh is None:
+        return arms
+    count, several = counted(mesh.elements, "element"), any(len(np.unique(c)) > 1 for c in columns.values())
+    return f"{arms}; at first {count} of order {mesh.order}{', for the arm that needs most' * several}"
+
+
+def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
+    """What varies along the arms, in words; empty for uniform arms."""
+    tapers = columns.get("taper", np.ones(1))
+    ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
+    shapes = [] if (tapers == 1).all() else [f"{ratios} {_span(tapers)}"]
     profile = config.build.profile
     if profile is not None:
         jumps = len(profile.u) - len(profile.breaks)
         shapes.append(f"a profile of {counted(len(profile.u), 'row')} with {counted(jumps, 'jump')}")
+    return shapes
+
+
+def _law(config: Config) -> str:
+    """The constitutive law in words."""
     law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
-    swelling = " with a swelling section" if config.build.section == "swelling" else ""
-    return [
-        ("variation along the arm", bool(shapes), " and ".join(shapes) or "uniform"),
-        ("law", True, law + swelling),
-    ]
+    return f"{law} with a swelling section" if config.build.section == "swelling" else law
 
 
 def _span(values: np.ndarray) -> str:

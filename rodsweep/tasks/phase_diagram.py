@@ -10,7 +10,7 @@ from ..model.rod import Rod
 from ..results.layouts.phase_diagram import (
     MAX_CYCLE_SPECIAL,
 )
-from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_lines, estimate_lines_of_arms
+from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram_of_arms, estimate_lines
 from .diagram.curves import DiagramCurves
 from .diagram.cycles import cycles_record
 from .parts import ProvedTask
@@ -69,6 +69,9 @@ class PhaseDiagramTask(ProvedTask):
             ("stable states, with cycles", options.cycles, cycles),
         ]
 
+    def searched(self) -> dict[str, np.ndarray]:
+        return {self.config.plane[0]: self.line[[0, -1]]}
+
     def certificate(self) -> tuple[bool, str]:
         return self.certificate_of_lines()
 
@@ -82,9 +85,9 @@ class PhaseDiagramTask(ProvedTask):
 
     def cost(self) -> Estimate:
         options, rows = self.config.phase_diagram, self.points.count
-        lines = (
-            estimate_lines(rows, options.certify) if self.config.standard else estimate_lines_of_arms(rows)
-        )
+        lines = estimate_lines(rows, options.certify)
+        if not self.config.standard:
+            lines = estimate_diagram_of_arms(rows, options.curves, options.criticality)
         if not options.cycles:
             return lines
         reach = (float(self.line[0]), float(self.line[-1]))

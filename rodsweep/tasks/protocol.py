@@ -138,6 +138,10 @@ class Task(ABC):
     def headline(self) -> str:
         """One line: the number of points and the request for each point."""
 
+    def arms(self) -> str:
+        """A line on arms that vary or are of rubber: what they are, and the first mesh; empty for others."""
+        return ""
+
     @abstractmethod
     def parts(self) -> list[Part]:
         """Modelled and neglected parts."""

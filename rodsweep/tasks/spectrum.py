@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config.spectrum import SpectrumConfig
+from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
 from ..errors import InputError
@@ -15,6 +16,7 @@ from ..model.longitudinal import longitudinal_rates
 from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
+from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
@@ -83,6 +85,13 @@ class SpectrumTask(ProvedTask):
             ("longitudinal modes", options.longitudinal, longitudinal),
             ("eigenvectors", options.vectors, vectors),
         ]
+
+    def first_mesh(self) -> Elements | None:
+        options = self.config.spectrum
+        accuracy = self.config.accuracy
+        if options.vectors or options.method == "determinant":
+            accuracy = mesh_accuracy(accuracy, options.vectors)
+        return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, options.modes, accuracy))
 
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":

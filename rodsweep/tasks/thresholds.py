@@ -39,6 +39,9 @@ class ThresholdsTask(ProvedTask):
             ("all other crossings", True, f"at most {most} are stored for each point"),
         ]
 
+    def searched(self) -> dict[str, np.ndarray]:
+        return {"F": np.array([self.config.thresholds.F_max])}
+
     def certificate(self) -> tuple[bool, str]:
         return self.certificate_of_lines()
 

@@ -11,7 +11,6 @@ from .folding import folded
 from .load import Load
 from .planes import planes_of, with_load
 from .sentences import verdict_sentences
-from .shape import no_cycles
 from .table import NumberRow, number_rows
 from .validity import Assessment
 
@@ -82,7 +81,7 @@ def report_on(arm: SlenderArm) -> ArmReport:
     return ArmReport(
         validity=assessment.of_verdict,
         warnings=above,
-        verdict=(headline, *others, *no_cycles(arm)),
+        verdict=(headline, *others),
         rows=tuple(number_rows(first)),
         checks=tuple(check for check in checks if check not in above),
     )

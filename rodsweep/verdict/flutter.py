@@ -5,17 +5,13 @@ from math import inf, pi
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
-from ..model.rod import Rod
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind
 from ..solve.exclusive import solving
-from .relative import FARTHEST
+from .relative import ENDS_OF_VARIED, FARTHEST, rod_with
 
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
 """Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
-ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
-"""Ends of successive searches for an arm that varies along its length, in k3/L^2 of the base. A search far
-beyond the first flutter, where many modes are unstable, takes up to half a minute for each drag."""
 BEYOND_FLUTTER = 2.0
 """Smallest ratio of the last search's end to the first flutter and to the load, for an arm that varies."""
 
@@ -95,15 +91,7 @@ def span_of(values: list[float | None]) -> Span | None:
 
 def flutter_forces(arm: SlenderArm, drag: Drag, end: float = FARTHEST) -> FlutterForces:
     """All changes of stability of an arm with one drag, up to the force `end`."""
-    rod = Rod(
-        F=0.0,
-        k1=arm.k1,
-        k2=arm.k2,
-        gamma3=arm.gamma3_with(drag),
-        taper=arm.taper,
-        build=arm.build_with(drag),
-    )
-    thresholds = solve_thresholds(rod, replace(REQUEST, F_max=end))
+    thresholds = solve_thresholds(rod_with(arm, drag), replace(REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 

@@ -1,6 +1,7 @@
 """Reference of a load relative to flutter: the smallest flutter load over all planes, with likeliest drag.
 
-The module must not need PETSc: rank 0 alone makes the points, but PETSc has to start on all ranks together.
+Uniform arms of linear material must not need PETSc here. The search for another arm starts it, so that all
+ranks must have started it before they share such searches.
 """
 
 from dataclasses import replace
@@ -15,17 +16,21 @@ from ..determinant.newton import Zero
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
+from ..model.arm.drag import Drag
+from ..model.material.build import Build
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import CRUSHING_MARGIN
+from ..solve.changes.unstable_modes import CRUSHING_MARGIN, Kind
 
 A = TypeVar("A", bound=SlenderArm)
-PlaneRod = tuple[float, float, float]
-"""(k1, k2, gamma3) of an arm moving in one plane."""
 FARTHEST = 1000.0
 """Largest force of the search, in k3/L^2, 25 times flutter of a filament; less for an arm crushed before."""
 NEAR = 200.0
 """Largest force of a first search, in k3/L^2, which takes half of the time. Few arms flutter at larger
 forces."""
+ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
+"""Largest forces of the search for an arm that is not uniform or not of linear material, in k3/L^2 at its
+base, tried in turn: a search far beyond the first flutter, where many modes are unstable, takes up to half a
+minute a drag."""
 REFERENCE_DIGITS = 10
 """Digits of the reference threshold: more than the data of an arm, and few enough for equal results on all
 machines. A run resumed on another machine therefore has the same points."""
@@ -40,22 +45,28 @@ def turned(arm: A) -> A:
     return replace(arm, width=arm.height, height=arm.width)
 
 
-def plane_rods(arm: SlenderArm) -> list[tuple[PlaneRod, float]]:
-    """(rod with the likeliest drag, unit of force) for each plane of an arm.
+def plane_rods(arm: SlenderArm, build: Build | None = None) -> list[tuple[Rod, float]]:
+    """(rod in a plane with the likeliest drag, its k3/L^2 in units of the arm's) for each plane of an arm.
 
-    The unit of force is k3/L^2 in the plane, over k3/L^2 of the arm.
+    The rods have no load. build: law and profile in place of the arm's.
     """
-    planes = [(_in_its_plane(arm), 1.0)]
+    planes = [(_in_its_plane(arm, build), 1.0)]
     if not arm.isotropic:
         other = turned(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
-        planes.append((_in_its_plane(other), scale))
+        planes.append((_in_its_plane(other, build), scale))
     return planes
 
 
-def _in_its_plane(arm: SlenderArm) -> PlaneRod:
+def _in_its_plane(arm: SlenderArm, build: Build | None) -> Rod:
     """The rod in the plane of the arm's height."""
-    return arm.k1, arm.k2, arm.gamma3_with(arm.drags[0])
+    return rod_with(arm, arm.drags[0], build)
+
+
+def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
+    """The arm with one drag as a rod without load, in the plane of its height; build: as in `plane_rods`."""
+    own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
+    return Rod(F=0.0, **own, build=build or arm.build_with(drag))
 
 
 def first_flutter(arm: SlenderArm) -> float:
@@ -63,26 +74,27 @@ def first_flutter(arm: SlenderArm) -> float:
 
     Raises FlutterUnknown if the search fails.
     """
-    return min(first_hopf_force(*rod) * scale for rod, scale in plane_rods(arm))
+    return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
 
 
 @cache
-def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
+def first_hopf_force(rod: Rod) -> float:
     """Smallest F at which a pair of modes becomes unstable, to REFERENCE_DIGITS digits.
 
-    inf without flutter up to FARTHEST. Raises FlutterUnknown if the covering cannot exclude a smaller F, or
-    for overflow.
+    inf without flutter up to FARTHEST. Raises FlutterUnknown if the search cannot exclude a smaller F, or for overflow.
     """
-    path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
+    path = Path(rod, "F")
+    first_up_to = _first_up_to if rod.standard else _first_of_varied
     try:
-        for end in (NEAR, FARTHEST):
-            first = _first_up_to(path, min(end, k1 * (1 - CRUSHING_MARGIN)))
+        for end in (NEAR, FARTHEST) if rod.standard else ENDS_OF_VARIED:
+            first = first_up_to(path, min(end, rod.crushing_force * (1 - CRUSHING_MARGIN)))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         why = str(error) or type(error).__name__
-        sentence = f"the search for the flutter threshold of a relative load fails: {why}"
-        raise FlutterUnknown(sentence) from error
+        raise FlutterUnknown(
+            f"the search for the flutter threshold of a relative load fails: {why}"
+        ) from error
     return inf
 
 
@@ -96,6 +108,22 @@ def _first_up_to(path: Path, end: float) -> float:
     if any(min(box.p_from, box.p_to) < first for box in left):
         raise FlutterUnknown("the flutter threshold of a relative load is not decided")
     return first
+
+
+def _first_of_varied(path: Path, end: float) -> float:
+    """The same for an arm that is not uniform or not of linear material."""
+    from ..solve.changes.along_path import pair_crossings
+    from ..solve.point import FAILURES, cause_of
+
+    try:
+        found = pair_crossings(path, 0.0, end)
+    except FAILURES as error:
+        raise FlutterUnknown(
+            f"the search for the flutter threshold of a relative load fails: {cause_of(error)}"
+        ) from error
+    if not found.proved:
+        raise FlutterUnknown("the flutter threshold of a relative load is not decided")
+    return min((crossing.at for crossing in found.crossings if crossing.kind == Kind.hopf), default=inf)
 
 
 def _grows(path: Path, zero: Zero) -> bool:

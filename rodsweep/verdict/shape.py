@@ -1,4 +1,4 @@
-"""An arm that varies along its length or is of rubber, in words: shape, law, and missing results."""
+"""An arm that varies along its length or is of rubber, in words: shape and law."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
@@ -11,16 +11,6 @@ def shape_words(arm: SlenderArm) -> str:
     """Shape and material of an arm, like "a cone of rubber"."""
     shape = "an arm" if not arm.shape.varies else "a cone" if arm.taper != 1 else "an arm of segments"
     return shape if arm.law == LINEAR.law else f"{shape} of rubber"
-
-
-def no_cycles(arm: SlenderArm) -> list[str]:
-    """A sentence if no task can compute cycles of the arm; otherwise empty."""
-    if arm.law == LINEAR.law or arm.build.continuous:
-        return []
-    return [
-        f"Amplitude and frequency of {shape_words(arm)} beyond flutter are not computed: cycles of segments "
-        "need linear material."
-    ]
 
 
 def law_words(arm: SlenderArm) -> str:

@@ -5,6 +5,7 @@ import os
 import numpy as np
 import pytest
 
+from rodsweep.config.document.reading import config_of, text_of
 from rodsweep.config.document.refusals import nearest
 from rodsweep.errors import InputError
 from rodsweep.tasks.running.job import make_job
@@ -393,3 +394,36 @@ def test_file_that_is_no_text_is_refused(tmp_path):
 )
 def test_only_near_keys_are_suggested(key, known, meant):
     assert nearest(key, known) == meant
+
+
+TASKS_OF_LISTS = {
+    "spectrum": "F,k1,k2,gamma3",
+    "modes": "F,k1,k2,gamma3",
+    "thresholds": "k1,k2,gamma3",
+    "limit_cycle": "F,k1,k2,gamma3,gamma1",
+    "criticality": "k1,k2,gamma3,gamma1",
+    "branch": "k1,k2,gamma3,gamma1",
+}
+
+
+@pytest.mark.parametrize("task", TASKS_OF_LISTS)
+def test_a_list_may_have_a_column_of_tapers_in_every_task(tmp_path, task):
+    names = TASKS_OF_LISTS[task].split(",")
+    given = {"F": "7", "k1": "1e4", "k2": "50", "gamma3": "0.5", "gamma1": "1"}
+    rows = [",".join([taper, *(given[name] for name in names)]) for taper in ("0.5", "0.8")]
+    (tmp_path / "p.csv").write_text("\n".join([",".join(["taper", *names]), *rows]) + "\n")
+    made = job(tmp_path, f"task: {task}\nparameters: {{points: p.csv}}")
+    assert [made.points.rod(i).taper for i in range(2)] == [0.5, 0.8]
+    assert made.points.rod(1).k2 == 50
+    assert made.layout.parameters == (*names, "taper")
+    assert not made.config.standard
+    assert config_of(made.resolved) == made.config
+    assert job(tmp_path, text_of(made.config)).points.identity[-1].tolist() == [0.5, 0.8]
+
+
+def test_columns_are_those_of_the_header(tmp_path):
+    (tmp_path / "p.csv").write_text("F,k1,k2,gamma3\n10,inf,50,0.5\n")
+    with pytest.raises(InputError, match=r"the header is 'F,k1,k2,gamma3'; it must name .* and taper"):
+        job(tmp_path, "task: spectrum\nparameters: {points: p.csv, columns: [taper]}")
+    with pytest.raises(InputError, match=r"parameters.columns is given but parameters.points is not"):
+        job(tmp_path, "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1, columns: [taper]}")

@@ -9,6 +9,8 @@ import pytest
 import rodsweep as rs
 from rodsweep.config import load_config
 from rodsweep.errors import InputError
+from rodsweep.tasks.running.job import make_job
+from rodsweep.wording import counted
 
 BASE = """
 task: {task}
@@ -121,7 +123,7 @@ def test_a_run_stores_what_was_asked_and_continues_only_that(command):
     assert other.returncode == 2
     assert "material.profile.gamma3" in other.stderr
     checked = " ".join(command("check", "arm.yaml").stdout.split())
-    assert "a cone of radius ratio 0.7 to 1 and a profile of 4 rows with 1 jump" in checked
+    assert "cones of radius ratios 0.7 to 1 with a profile of 4 rows with 1 jump" in checked
 
 
 def test_rod_of_python_repeats_its_material():
@@ -180,15 +182,6 @@ def test_compression_is_judged_where_the_arm_is_weakest_and_not_for_rubber():
     assert found[0.5, "neo_hookean"][0] != "compression"
 
 
-@pytest.mark.parametrize("task", ["limit_cycle", "criticality", "branch"])
-def test_jumps_of_rubber_are_refused_where_the_motion_is_solved(task):
-    profile = {"u": [0, 0.5, 0.5, 1], "k3": [1, 1, 2, 2]}
-    force = {"F": 30} if task == "limit_cycle" else {}
-    sentence = f"material.profile has a jump and the law is neo_hookean, but the task {task} solves jumps of"
-    with pytest.raises(InputError, match=sentence):
-        rs.sweep(task, k1=[1e3, 1e4], k2=1e4, gamma3=1e-4, law="neo_hookean", profile=profile, **force)
-
-
 def test_cycles_of_cones_are_stored_with_their_hopf_points(command):
     rest = "material: {profile: steps.csv}\nlimit_cycle: {start: neighbour}\naccuracy: 1.0e-5"
     (command.directory / "steps.csv").write_text(STEPPED)
@@ -220,3 +213,51 @@ def test_branches_are_followed_in_the_taper():
     alone = rs.Rod(F=30, k1=500, k2=1e4, gamma3=1e-3, taper=middle.branch_taper).cycle(accuracy=1e-8)
     assert middle.period == pytest.approx(alone.period, rel=1e-6)
     assert middle.tip_y_max == pytest.approx(alone.tip_y_max, rel=1e-6)
+
+
+ALONE = "parameters: {F: 9, k1: 1e4, k2: 1e4, gamma3: 1e-4}"
+CONE = ALONE.replace("}", ", taper: 0.5}")
+RUBBER = "material: {law: neo_hookean, section: swelling}"
+JUMP = "material: {profile: {u: [0, 0.4, 0.4, 1], k3: [1, 1, 0.2, 0.2]}}"
+SAID = [
+    (CONE, RUBBER, "a cone of radius ratio 0.5 of neo-Hookean rubber with a swelling section"),
+    (ALONE, RUBBER, "a uniform arm of neo-Hookean rubber with a swelling section"),
+    (ALONE, JUMP, "an arm with a profile of 4 rows with 1 jump of linear material"),
+]
+
+
+@pytest.mark.parametrize(("parameters", "material", "arm"), SAID)
+def test_check_states_the_arm_and_the_mesh_on_which_it_is_solved(tmp_path, parameters, material, arm):
+    """These arms need no finer mesh than the first."""
+    (tmp_path / "a.yaml").write_text(f"task: spectrum\n{parameters}\n{material}")
+    made = make_job(tmp_path / "a.yaml", ())
+    solved = made.solver().solve(0)
+    mesh = f"{counted(solved.elements, 'element')} of order {solved.order}"
+    assert made.task.arms() == f"{arm}; at first {mesh}"
+
+
+def test_check_states_the_largest_mesh_of_a_grid(tmp_path):
+    """The thinnest tip under the largest force needs more than any other arm."""
+    cones = BASE.format(task="spectrum", more=", taper: [0.1, 1.1]", rest="")
+    hardest = cones.replace("[1, 2]", "2").replace("[0.1, 1.1]", "0.1")
+    said = []
+    for text in (cones, hardest):
+        (tmp_path / "a.yaml").write_text(text)
+        said.append(make_job(tmp_path / "a.yaml", ()).task.arms())
+    assert said[0].startswith("cones of radius ratios 0.1 to 1.1 of linear material; ")
+    assert said[0].split("; ")[1] == f"{said[1].split('; ')[1]}, for the arm that needs most"
+
+
+def test_check_states_no_mesh_of_uniform_arms_of_linear_material(tmp_path):
+    (tmp_path / "a.yaml").write_text(BASE.format(task="spectrum", more="", rest=""))
+    assert make_job(tmp_path / "a.yaml", ()).task.arms() == ""
+
+
+@pytest.mark.parametrize("start", ["mode", "hopf"])
+def test_check_states_the_first_mesh_of_cycles(tmp_path, start):
+    text = f"task: limit_cycle\n{CONE}\nlimit_cycle: {{start: {start}}}"
+    (tmp_path / "a.yaml").write_text(text)
+    assert re.fullmatch(
+        r"a cone of radius ratio 0.5 of linear material; at first 1 element of order \d+",
+        make_job(tmp_path / "a.yaml", ()).task.arms(),
+    )

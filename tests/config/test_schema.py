@@ -136,6 +136,7 @@ TOGETHER = [
     ("spectrum", f"arm: {{{ROUND}, presure: 2 kPa}}", False),
     ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa}}, points: a.csv", False),
     ("spectrum", "points: a.csv, F: 3", False),
+    ("spectrum", "F: 3, k1: 200, k2: 100, gamma3: 0, columns: [taper]", False),
     ("spectrum", "F: 3, k1: 200, k2: 100", False),
     ("spectrum", "F: 3, k1: -200, k2: 100, gamma3: 0", False),
     ("spectrum", "F: 3, k1: [0, 200], k2: 100, gamma3: 0", False),

@@ -11,6 +11,7 @@ from ranks import PATIENCE, pause_until
 from rodsweep.config import load_config
 from rodsweep.config.arm.axes import FLUTTER_UNKNOWN
 from rodsweep.errors import BUG_STATUS, InputError
+from rodsweep.model.rod import Rod
 from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_of_flutter
 from rodsweep.tasks.running.job import job_of
 from rodsweep.verdict import relative
@@ -35,11 +36,11 @@ import rodsweep.verdict.relative as relative
 
 search, rank = relative.first_hopf_force, os.environ.get("OMPI_COMM_WORLD_RANK", "0")
 
-def first_hopf_force(k1, k2, gamma3):
+def first_hopf_force(rod):
     with open(f"searches-{{rank}}", "a") as file:
-        file.write(f"{{k1!r}} {{k2!r}} {{gamma3!r}}\\n")
+        file.write(f"{{rod.k1!r}} {{rod.k2!r}} {{rod.gamma3!r}}\\n")
     {first}
-    return search(k1, k2, gamma3)
+    return search(rod)
 
 relative.first_hopf_force = first_hopf_force
 """
@@ -72,7 +73,7 @@ def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
         assert run.returncode == 0, run.stderr
         files[ranks] = content(command.directory / f"{ranks}.h5")
         parts = [searches(command, rank) for rank in range(ranks)]
-        assert sorted(sum(parts, [])) == sorted(" ".join(map(repr, rod)) for rod in rods)
+        assert sorted(sum(parts, [])) == sorted(f"{rod.k1!r} {rod.k2!r} {rod.gamma3!r}" for rod in rods)
         assert max(map(len, parts)) - min(map(len, parts)) <= 1
     assert same(files[1], files[2])
     assert same(files[1], files[3])
@@ -82,8 +83,7 @@ def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
 def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task, ranks):
     """Of the second length in its second plane; all other points are as they are without the failure."""
     command.write("a.yaml", ARMS.format(task=task))
-    k1 = rods[3][0]
-    failure = f"if k1 == {k1!r}: raise relative.FlutterUnknown('no box is left')"
+    failure = f"if rod.k1 == {rods[3].k1!r}: raise relative.FlutterUnknown('no box is left')"
     assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
     run = command("run", "a.yaml", "-o", "part.h5", ranks=ranks, patch=searching(failure))
     assert run.returncode == 1
@@ -100,7 +100,7 @@ def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task
 
 
 def test_an_exception_in_the_search_on_one_rank_ends_all_ranks(command, rods):
-    bug = f"if k1 == {rods[3][0]!r}: raise RuntimeError('a bug')"
+    bug = f"if rod.k1 == {rods[3].k1!r}: raise RuntimeError('a bug')"
     run = command("run", "a.yaml", ranks=2, patch=searching(bug))
     assert run.returncode == BUG_STATUS
     assert "rank 1 failed" in run.stderr
@@ -136,4 +136,4 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
 
     monkeypatch.setattr(relative, "cover", overflowing)
     with pytest.raises(relative.FlutterUnknown, match="relative to fails: (too large|ZeroDivisionError)"):
-        relative.first_hopf_force(1234.5, 1e3, 1e-4)
+        relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))

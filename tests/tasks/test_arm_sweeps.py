@@ -322,3 +322,24 @@ def test_quantities_of_pint_keep_their_units():
     assert rs.Arm(**LOADED | {"length": units.Quantity(10, "cm")}).k1 == pytest.approx(1600, rel=1e-12)
     with pytest.raises(rs.InputError, match="length = '10 kilogram' is not measured in m"):
         rs.Arm(**LOADED | {"length": units.Quantity(10, "kg")})
+
+
+def test_the_curves_of_a_diagram_of_arms_are_part_of_its_cost():
+    """Of uniform rods they take milliseconds."""
+    cost = {}
+    for taper in (1.0, 0.5):
+        for curves in (False, True):
+            tree = {
+                "task": "phase_diagram",
+                "parameters": {
+                    "F": [0.0, 10.0],
+                    "k1": [100.0, 200.0],
+                    "k2": 1e3,
+                    "gamma3": 0.1,
+                    "taper": taper,
+                },
+                "phase_diagram": {"curves": curves},
+            }
+            cost[taper, curves] = job_from(tree).task.cost().seconds
+    assert cost[1.0, True] == cost[1.0, False]
+    assert cost[0.5, True] > cost[0.5, False] + 1

@@ -17,6 +17,7 @@ from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAGS
 from rodsweep.model.arm.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effect
+from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.arm_grid import grid_of_arms
@@ -103,10 +104,51 @@ def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():
     arm = {"length": "15 cm", "width": "6 mm", "height": "8 mm", "young": "60 kPa", "viscosity": "40 Pa s"}
     flat, tall = SlenderArm(**arm), SlenderArm(**arm | {"width": "8 mm", "height": "6 mm"})
     assert first_flutter(flat) * flat.force_scale == pytest.approx(first_flutter(tall) * tall.force_scale)
-    assert first_flutter(tall) == first_hopf_force(tall.k1, tall.k2, tall.gamma3)
+    own = Rod(F=0.0, k1=tall.k1, k2=tall.k2, gamma3=tall.gamma3)
+    assert first_flutter(tall) == first_hopf_force(own)
     data = rs.sweep("spectrum", arm=arm | {"pressure": "1.2 of flutter"}, modes=2)
     known = rs.Arm(**arm, pressure="1.2 of flutter").loaded
     assert data.pressure.item() == pytest.approx(known.si.pressure, rel=1e-9)
+
+
+VARIED = {
+    "cone": {"tip_radius": "2 mm"},
+    "rubber": {"law": "neo_hookean", "section": "swelling"},
+    "segments": {
+        "radius": None,
+        "length": None,
+        "young": None,
+        "segments": ["6 cm: radius 4 mm, young 100 kPa", "8 cm: radius 3 mm, young 80 kPa"],
+        "law": "neo_hookean",
+    },
+}
+
+
+@pytest.mark.parametrize("kind", VARIED)
+def test_a_relative_load_is_one_of_the_arm_as_it_is_built(kind):
+    """Just below and just above the threshold that `rodsweep arm` finds by another search."""
+    arm = {name: value for name, value in (SILICONE | VARIED[kind]).items() if value is not None}
+    given = arm | {"pressure": ["0.9999 of flutter", "1.0001 of flutter"]}
+    data = rs.sweep("modes", arm=given, modes=1, nodes=5)
+    flutter = rs.Arm(**arm).flutter.forces[0].force(Kind.hopf)
+    assert data.F.values.ravel() == pytest.approx([0.9999 * flutter, 1.0001 * flutter], rel=2e-6)
+    below, above = data.growth_rate.values.ravel()
+    assert below < 0 < above
+
+
+def test_a_law_beside_the_arm_moves_the_flutter_of_relative_loads():
+    rubber = {"law": "neo_hookean", "section": "swelling"}
+    loaded = SILICONE | {"pressure": "1.2 of flutter"}
+    beside = rs.sweep("spectrum", arm=loaded, material=rubber, modes=1)
+    own = rs.sweep("spectrum", arm=loaded | rubber, modes=1)
+    assert beside.F.item() == own.F.item()
+    assert beside.F.item() != pytest.approx(rs.sweep("spectrum", arm=loaded, modes=1).F.item(), rel=1e-3)
+
+
+def test_a_taper_beside_an_arm_whose_load_is_relative_is_refused():
+    loaded = SILICONE | {"pressure": "1.2 of flutter"}
+    with pytest.raises(rs.InputError, match=r"parameters\.taper stands beside the arm; give .*tip_radius"):
+        rs.sweep("modes", arm=loaded, taper=0.5)
 
 
 def test_an_arm_without_flutter_is_a_point_with_a_status():

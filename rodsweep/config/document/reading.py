@@ -11,10 +11,10 @@ from ...errors import InputError
 from ..arm.quantities import drags_written
 from ..arm.section import ArmSection
 from ..axes import words
-from ..material import with_profile_read
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import Axis, axis_of, named, short
+from .files import with_files_read
 from .parsing import DEEPEST, parse, read_text
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 
@@ -30,7 +30,7 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
         _override(tree, override)
         text += f"\n# --set {override}"
     try:
-        return validated(with_profile_read(tree, path.parent)), text
+        return validated(with_files_read(tree, path.parent)), text
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 

@@ -102,7 +102,8 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
     loaded = {"properties": {"arm": {"anyOf": loads}}}
     unloaded = {"properties": {"arm": none_of(LOAD_AXES)}}
     load = {"oneOf": [given("F"), loaded]} if "F" in axes else unloaded
-    ways = [all_of(axes, none_of(["points", "arm"])), all_of(["arm"], none_of(["points"]), load)]
+    none_listed = none_of(["points", "columns"])
+    ways = [all_of(axes, none_of(["arm"]), none_listed), all_of(["arm"], none_listed, load)]
     if lists:
         ways.append(all_of(["points"], none_of(["arm", *LINEAR_PARAMETERS])))
     return {"anyOf": ways} if "F" in axes else {"anyOf": ways, **none_of(["F"])}

@@ -1,8 +1,9 @@
-"""D(w) of one arm at any w: elements that suit the size of w, made when they are first needed.
+"""D(w) of one arm at any w, from elements whose length depends on |w|.
 
-The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements.
-They are so short that the fastest local exponential grows by exp(`LONGEST`) at most and that the Gauss
-points resolve the coefficients; a break of the profile is always an end of an element.
+The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements,
+computed at first use. Elements are so short that the fastest local exponential grows at most by
+exp(`LARGEST_EXPONENT`) and that the Gauss points resolve the coefficients; every break of the profile is an
+end of an element.
 """
 
 import cmath
@@ -27,11 +28,11 @@ LONGEST = 2.4
 TO_THE_TIP = 0.5
 """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
 RESOLVED = 1e-9
-"""Tail of the coefficients' Legendre series, relative, above which an element is halved. The error of a Gauss
+"""Relative tail of the coefficients' Legendre series above which an element is halved. The error of a Gauss
 method is about the square of the tail."""
 MAX_HALVINGS = 12
 MIN_LEVEL = 2
-"""The smallest level is W = 4^2: below, elements are bounded by the load and the taper."""
+"""The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
 REUSED = 4
 """Number of levels above the own one whose elements are used if they exist: to make elements costs as much as
 some thirty evaluations on twice as many."""
@@ -41,7 +42,7 @@ KEPT = 16
 
 
 class ArmDeterminant:
-    """D(w) of one arm; raises FloatingPointError where no `MAX_ELEMENTS` elements resolve it."""
+    """D(w) of one arm. Methods raise FloatingPointError if `MAX_ELEMENTS` elements do not resolve the arm."""
 
     def __init__(self, rod: Rod):
         self.rod = rod
@@ -56,7 +57,7 @@ class ArmDeterminant:
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
-        """The number of elements that D takes at |w| = size."""
+        """The number of elements for D at |w| = size."""
         return len(self.level(size)[1])
 
     def wave_number(self, w: complex) -> float:
@@ -64,7 +65,7 @@ class ArmDeterminant:
         return mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[0]
 
     def length(self, w: complex) -> float:
-        """How far w moves until an exponent of D, integrated along the arm, changes by about one."""
+        """Change of w that changes an exponent of D, integrated along the arm, by about one."""
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
 
     def level(self, size: float) -> tuple[float, Array]:
@@ -144,7 +145,7 @@ def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
 
 
 def _as_uniform(w: complex, F: Any, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
-    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that the arm is at each point."""
+    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that equal the arm at each point."""
     return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
 
 
@@ -159,7 +160,7 @@ def bound_of_waves(W: float, F: Any, local: LocalCoefficients) -> Array:
 def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[float, float]:
     """(mean |q| of both pairs of exponents, mean of the larger |dq/dw|) along an arm.
 
-    local: the `LocalCoefficients` at points, (6, points); weights: of these points, (points,).
+    local: the `LocalCoefficients` at points, (6, points). weights: quadrature weights, (points,).
     """
     number, rate = 0.0, 0.0
     for i in range(len(weights)):
@@ -179,5 +180,5 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
 
 @lru_cache(maxsize=KEPT)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
-    """D of the arm, kept for the next question about it."""
+    """D of the arm `rod`, cached."""
     return ArmDeterminant(rod)

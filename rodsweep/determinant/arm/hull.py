@@ -38,21 +38,21 @@ POINTS = 25
 MARGIN = 1.05
 """Factor on a, for extremes between the points and for rounding."""
 INSIDE = 1e-9
-"""Distance of the first and last point from the ends of a piece, in units of its length."""
+"""Distance of the first and last point from the ends of a piece, in units of the piece's length."""
 LARGEST_SHARE = 0.9
 """Largest c: the region grows beyond use where c approaches 1."""
 WIDE_SHARE = 0.15
 """The c from which on a region counts as wide, whatever its a."""
 MIDDLES = (0.0, 0.5, 1.0)
-"""Factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha that are tried."""
+"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
 WEIGHTS = 41
-"""Constant weights alpha that are tried, between the smallest and the largest g/nu."""
+"""Number of constant weights alpha to try, between the smallest and the largest g/nu."""
 DIRECTIONS = 48
-"""Normals of the region that are tried for the distance of a point."""
+"""Number of normals of the region to try for the distance of a point."""
 
 
 class Hull(NamedTuple):
-    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf where none is known."""
+    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf if no bound is known."""
 
     a: float
     c: float
@@ -67,14 +67,14 @@ class Hull(NamedTuple):
 
 
 UNKNOWN = Hull(inf, 0.0)
-"""The region where no bound applies."""
+"""The whole plane, when no bound applies."""
 
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """(distance of w, Im w >= 0, from the hull, unit normal towards w); at most 0 for w inside.
+    """(distance, normal): lower bound of the distance of w, Im w >= 0, from the hull; unit normal towards w.
 
-    The distance is a lower bound, and the normal n has <n, w - v> >= distance for every v in the hull.
+    The distance is at most 0 for w inside. <normal, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
     best, normal = -inf, 1 + 0j
@@ -92,7 +92,7 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest of the regions that contain the spectrum of the arm; `UNKNOWN` where none is found."""
+    """The smallest known region that contains the spectrum of the arm; `UNKNOWN` without a bound."""
     return _hull(_arms([rod]))
 
 
@@ -161,7 +161,7 @@ def _part(arms: Arms, chosen: slice) -> Arms:
 
 
 def _constant(arms: Arms) -> Iterator[Hull]:
-    """The regions by constant alpha; none where gamma3 = 0 lets an arm that shears rotate freely."""
+    """The regions for constant alpha; no region if an arm with shear has gamma3 = 0 somewhere."""
     nu, c2, c3, gamma2, gamma3, g = (x.ravel() for x in arms.local)
     push = float((arms.F**2 * arms.local.c3 / arms.local.gamma2).max())
     if not c2.any():  # then g = nu
@@ -185,7 +185,7 @@ def _constants(ratio: Array) -> Array:
 
 
 def _following(arms: Arms) -> Iterator[Hull]:
-    """The regions by an alpha that follows g/nu, which must be above 0 and without jumps."""
+    """The regions for alpha = g/(nu + ...); no region unless g > 0 and alpha has no jumps."""
     if not (arms.local.g > 0).all() or not (arms.local.c2 > 0).all() or not arms.continuous:
         return
     for factor in MIDDLES:
@@ -210,7 +210,7 @@ def _norm(arms: Arms, factor: float) -> float:
 
 @cache
 def _chebyshev() -> tuple[Array, Array]:
-    """(derivative, integral from -1) of the interpolant through the points in [-1, 1], as matrices."""
+    """Matrices (derivative, integral from -1) of the interpolant through the points in [-1, 1]."""
     x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1))
     to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, POINTS - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)

@@ -5,10 +5,10 @@ is built)
 
     y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
 
-Over one element X(b) = Phi(w) X(a), with Phi entire in w. Its Taylor polynomial in w comes from collocation
-at the Gauss points of the element. Coefficients are sampled at these points alone, so that any profile and
-law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a linear system gives (s, m), then
-quadrature gives theta and y.
+Over one element X(b) = Phi(w) X(a), with Phi entire in w. The Taylor polynomial of Phi in w comes from
+collocation at the Gauss points of the element. Coefficients are sampled at the Gauss points alone, so every
+profile and law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a linear system gives
+(s, m), then quadrature gives theta and y.
 """
 
 from collections.abc import Sequence
@@ -21,10 +21,10 @@ from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.material.build import LocalCoefficients
 
 STAGES = 12
-"""Gauss points of an element. Ten leave 1e-17 of exp(2.4); two more cover what the coefficients vary."""
+"""Gauss points of an element. Ten integrate exp(2.4) to 1e-17; two more allow for varying coefficients."""
 MAX_TERMS = 24
 NEGLIGIBLE = 1e-18
-"""Most terms in w/W, and the size of a term, relative to the first one, behind which none is needed."""
+"""Size of a term, relative to the first term, at which the polynomial is truncated."""
 TINY = 1e-300
 """Divisor in place of 0."""
 
@@ -212,7 +212,7 @@ def _invert(A: Array, inverse: Array) -> None:
 
 @cache
 def _last_terms(stages: int) -> Array:
-    """Matrix from values at the Gauss points to the last two Legendre coefficients, (stages, 2)."""
+    """Matrix from values at the Gauss points to the two highest Legendre coefficients, (stages, 2)."""
     x, weights = np.polynomial.legendre.leggauss(stages)
     last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
     terms: Array = weights[:, None] * last

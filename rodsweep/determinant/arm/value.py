@@ -22,7 +22,7 @@ from ..parameter_path import ValueAlong
 from ..value import Value
 
 UNIT = 4.440892098500626e-16
-"""Unit of the noise of D, two roundings."""
+"""Unit of the noise of D: two relative rounding errors."""
 BY_W, BY_P = range(2)
 """Places of the derivatives of the columns."""
 

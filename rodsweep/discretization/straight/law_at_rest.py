@@ -1,6 +1,7 @@
 """Taylor coefficients of the constitutive law s(S) about S = 0, at the nodes of a mesh.
 
-s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2.
+s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2. At a node where the
+material jumps they are those of `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass
@@ -27,8 +28,8 @@ class LawAtRest:
     """Derivatives of s(S) at S = 0.
 
     nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1). change:
-    derivatives with respect to F. N11, N33, M13: second derivatives; N111, N133, M113: third derivatives,
-    (nodes + 1,) each.
+    derivatives with respect to F. N11, N33, M13: second derivatives; N111, N133, M113, M333: third
+    derivatives, (nodes + 1,) each.
     """
 
     nonlinear: bool
@@ -40,6 +41,7 @@ class LawAtRest:
     N111: Array
     N133: Array
     M113: Array
+    M333: Array
 
     def second(self, S: Values, T: Values) -> Values:
         """The second derivative of s applied to S and T; all (3, ..., nodes + 1)."""
@@ -54,6 +56,7 @@ class LawAtRest:
         mixed = S[0] * T[2] * R[2] + S[2] * T[0] * R[2] + S[2] * T[2] * R[0]
         out[0] = self.N111 * S[0] * T[0] * R[0] + self.N133 * mixed
         out[2] = self.M113 * (S[2] * T[0] * R[0] + S[0] * T[2] * R[0] + S[0] * T[0] * R[2])
+        out[2] += self.M333 * S[2] * T[2] * R[2]
         return out
 
 
@@ -70,7 +73,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
     change = ChangeWithForce(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
-    return LawAtRest(
+    found = LawAtRest(
         nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
         change=change,
@@ -80,4 +83,72 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
         N111=law.stiffness_curvature(nu) * c1**2,
         N133=bending_curvature * c1 * c3,
         M113=bending_curvature * c1**2,
+        M333=0 * ones,
     )
+    if len(nodal.jumps):
+        _fill_jumps(found, law, nodal)
+    return found
+
+
+def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
+    """Fills in the derivatives at the nodes at which the material jumps."""
+    at, sides = nodal.jumps, nodal.sides
+    nu, c1, means = sides[..., 0], sides[..., 1], sides[..., 5]
+    shares, T = np.moveaxis(sides[..., 3:5], -1, 0), np.array([law.stiffness(nu), law.bending(nu)])
+    slopes = np.array([law.stiffness_slope(nu), law.bending_slope(nu)])
+    first, second, third = stress_at_rest(law, sides)
+    moved = -c1 / T[0]
+    tangent = 1 / (shares / T).sum(axis=-1)
+    for component, (own, change) in enumerate(
+        zip(tangent, tangent**2 * (shares * slopes * moved / T**2).sum(axis=-1), strict=True)
+    ):
+        found.tangent[2 * component, at] = own
+        found.change.tangent[2 * component, at] = change
+    found.change.nu[at] = (means * moved).sum(axis=-1)
+    found.N11[at], found.N33[at], found.M13[at] = second[:, 0, 0, 0], second[:, 0, 1, 1], second[:, 1, 0, 1]
+    found.N111[at], found.N133[at] = third[:, 0, 0, 0, 0], third[:, 0, 0, 1, 1]
+    found.M113[at], found.M333[at] = third[:, 1, 0, 0, 1], third[:, 1, 1, 1, 1]
+
+
+Derivatives = tuple[Array, Array, Array]
+"""First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2) and so
+on; the first index after the leading ones is the function's."""
+
+
+def stress_at_rest(law: Law, sides: Array) -> Derivatives:
+    """Derivatives of N and M at rest by the mean unknowns, at jumps; sides: (k, 2, 6).
+
+    The unknowns of each side are functions of the stresses, and their mean is one: its inverse is the law.
+    """
+    shares = sides[..., 3:5]
+    unknowns = inverse_derivatives(_on_sides(law, *np.moveaxis(sides[..., :3], -1, 0)))
+    mean = [np.einsum("ksa,ksa...->ka...", shares, each) for each in unknowns]
+    return inverse_derivatives((mean[0], mean[1], mean[2]))
+
+
+def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
+    """Derivatives of N and M at rest where the material does not jump, from arrays of any shape."""
+    first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
+    first[..., 0, 0], first[..., 1, 1] = law.stiffness(nu), law.bending(nu)
+    second[..., 0, 0, 0] = law.stiffness_slope(nu) * c1
+    second[..., 0, 1, 1] = law.bending_slope(nu) * c3
+    second[..., 1, 0, 1] = second[..., 1, 1, 0] = law.bending_slope(nu) * c1
+    third[..., 0, 0, 0, 0] = law.stiffness_curvature(nu) * c1**2
+    bending = law.bending_curvature(nu)
+    for mixed in ((0, 1, 1), (1, 0, 1), (1, 1, 0)):
+        third[(..., 0, *mixed)] = bending * c1 * c3
+    for mixed in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        third[(..., 1, *mixed)] = bending * c1**2
+    return first, second, third
+
+
+def inverse_derivatives(of: Derivatives) -> Derivatives:
+    """Derivatives of the inverse function, from those of a function f: those of f(g(y)) = y vanish."""
+    f1, f2, f3 = of
+    g1 = np.linalg.inv(f1)
+    g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)
+    inner = np.einsum("...ijkl,...jb,...kc,...ld->...ibcd", f3, g1, g1, g1)
+    for places in ("bcd", "bdc", "cdb"):
+        pair, last = places[:2], places[2]
+        inner = inner + np.einsum(f"...ijk,...j{pair},...k{last}->...ibcd", f2, g2, g1)
+    return g1, g2, -np.einsum("...ai,...ibcd->...abcd", g1, inner)

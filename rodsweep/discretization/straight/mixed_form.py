@@ -26,7 +26,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
-from ..arm_on_mesh import material_on
+from ..arm_on_mesh import jumps_on, material_on
 from ..elements.mesh import Mesh, reconstruction
 from ..nodal_rod import NodalRod, nodal_rod
 from ..state_layout import COMPONENTS, StateLayout, plane_layout
@@ -65,7 +65,8 @@ class MixedForm:
     @cached_property
     def nodal(self) -> NodalRod:
         """Compliance, drag and strain at rest at all nodes, and the tip stress."""
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, tuple(range(COMPONENTS)))
+        kept, jumps = tuple(range(COMPONENTS)), jumps_on(self.rod, self.mesh)
+        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, kept, jumps=jumps)
 
     @cached_property
     def law(self) -> LawAtRest:

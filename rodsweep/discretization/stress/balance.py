@@ -10,7 +10,9 @@ straight rod under its force,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
 
 The constitutive law is s(S), local at each node (`rodsweep.model.material.response`); s(S) = S for a linear
-rod. The strain is affine in S for every law, so the matrix W C of dS/dt is constant and diagonal.
+rod. The strain is affine in S for every law, so the matrix W C of dS/dt is constant and diagonal. At a node
+where the material jumps E is the mean of both sides, and s(S) the stress that both have
+(`rodsweep.model.material.jump`).
 
 A compliance of 0 is allowed, since no formula divides by it; the stress then has no time derivative. At the
 tip G is the reaction r, and -r is the velocity of the tip: -r converges twice as fast as V(1), and
@@ -31,6 +33,7 @@ from ...arrays import Array
 from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import OverAlgebra
+from ...model.material.jump import stress_at_jump, stress_change_at_jump
 from ...model.material.response import LINEAR_LAW, LocalSection, stress, stress_change
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalChange, NodalRod
@@ -53,9 +56,14 @@ def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
 @compiled
 def apply_law(S: Array, c: NodalRod) -> None:
     """Replaces S by s(S) at all nodes, (3, nodes + 1), of a rod in the plane."""
+    k = 0
     for i in range(S.shape[1]):
-        at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
-        S[0, i], S[2, i] = stress(c.law, at, S[0, i], S[2, i])
+        if k < len(c.jumps) and c.jumps[k] == i:
+            S[0, i], S[2, i] = stress_at_jump(c.law, c.sides[k], S[0, i], S[2, i])
+            k += 1
+        else:
+            at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
+            S[0, i], S[2, i] = stress(c.law, at, S[0, i], S[2, i])
 
 
 @OverAlgebra
@@ -142,9 +150,13 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 
     x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to a parameter.
     """
-    n = dS.shape[1] - 1
+    n, k = dS.shape[1] - 1, 0
     for i in range(n + 1):
         q1, q3 = (x[stress_place(0, i, n)], x[stress_place(2, i, n)]) if i < n else (0.0, 0.0)
+        if k < len(c.jumps) and c.jumps[k] == i:
+            dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.sides[k], change.sides[k], q1, q3)
+            k += 1
+            continue
         at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
         moved = LocalSection(change.rest[0, i], change.compliance[0, i], change.compliance[2, i])
         dS[0, i], dS[2, i] = stress_change(c.law, at, moved, q1, q3)

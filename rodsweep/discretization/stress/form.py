@@ -9,9 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array
-from ..arm_on_mesh import material_change_on
+from ..arm_on_mesh import jump_change_on, material_change_on
+from ..elements.mesh import Mesh, transfer
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
+from ..state_layout import COMPONENTS, plane_layout
 
 LEAST_ELIMINATED_DRAG = 1e-5
 """Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers their
@@ -42,9 +44,20 @@ class StressForm(RodOnMesh):
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
 
+    def states_on(self, grid: Mesh, x: Array) -> Array:
+        """States x on another mesh, (..., unknowns there)."""
+        E = transfer(self.mesh, grid)
+        if not len(self.nodal.jumps):
+            return self.layout.carried(x, E)
+        layout = plane_layout(grid.nodes, self.kept)
+        V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))
+        V[list(self.kept)] = self.layout.velocities(x) @ E.T
+        return layout.state(self.stresses_on(grid, x), V)
+
     def change(self, name: str) -> NodalChange:
         """Derivative of `nodal` with respect to the coordinate of a parameter, 1/k for a stiffness k."""
-        return nodal_change(material_change_on(self.rod, name, self.mesh), self.mesh)
+        change = material_change_on(self.rod, name, self.mesh)
+        return nodal_change(change, self.mesh, jump_change_on(self.rod, name, self.mesh))
 
     @cached_property
     def mass(self) -> Array:

@@ -19,6 +19,7 @@ from ...arrays import Array
 from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import OverAlgebra
+from ...model.material.jump import tangent_at_jump
 from ...model.material.response import LINEAR_LAW, LocalSection, tangent
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
@@ -50,11 +51,15 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
 @compiled
 def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
     """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at x."""
-    n = c.compliance.shape[1] - 1
+    n, k = c.compliance.shape[1] - 1, 0
     for i in range(n):
         p1, p3 = stress_place(0, i, n), stress_place(2, i, n)
-        at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
-        T = tangent(c.law, at, x[p1], x[p3])
+        if k < len(c.jumps) and c.jumps[k] == i:
+            T = tangent_at_jump(c.law, c.sides[k], x[p1], x[p3])
+            k += 1
+        else:
+            at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
+            T = tangent(c.law, at, x[p1], x[p3])
         for r in range(len(J)):
             by_pull, by_moment = P[r, p1], P[r, p3]
             J[r, p1] += by_pull * (T.N1 - 1) + by_moment * T.M1

@@ -14,7 +14,7 @@ from ..solving.letting_go import Tip
 from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of
 
 SECONDS = 2.0
-"""Time of one period on the screen."""
+"""Duration of one period on the screen."""
 ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
 """Ends of motions in words; a motion that ends otherwise has the sentence of its status."""
 SHAPE = ("x", "y", "number")
@@ -22,7 +22,7 @@ SHAPE = ("x", "y", "number")
 
 
 class BeatingPicture:
-    """The arm through a period, slowed down, and the path of its tip."""
+    """The arm over a period, at a slow pace, and the path of its tip."""
 
     def __init__(self) -> None:
         figure = new_figure(
@@ -45,7 +45,7 @@ class BeatingPicture:
         self.card = Card("beating", figure)
 
     def animation(self) -> CustomJS:
-        """What the browser runs once when the page is ready."""
+        """Code that the browser runs once when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
         return CustomJS(args=sources | {"period": SECONDS}, code=read("beating.js"))

@@ -90,7 +90,13 @@ class Build:
     @cached_property
     def continuous(self) -> bool:
         """Whether no coefficient jumps along the arm."""
-        return self.profile is None or len(self.profile.breaks) == len(self.profile.u)
+        return not self.jumps
+
+    @cached_property
+    def jumps(self) -> tuple[float, ...]:
+        """The u at which the profile has two rows."""
+        u = () if self.profile is None else self.profile.u
+        return tuple(a for a, b in zip(u[:-1], u[1:], strict=True) if a == b)
 
     @cached_property
     def breaks(self) -> Array:
@@ -134,6 +140,14 @@ class Build:
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
         nu = 1 - self.constitutive_law.shortening(F / stiffness["k1"])
         return Sections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
+
+    def relative_compliances(self, taper: float, u: Array) -> Array:
+        """Compliances of stretching, shear and bending at points u, (points,), over those at the base.
+
+        Shape (3, points). They are known where a compliance is 0.
+        """
+        factors = self._factors(taper, u)
+        return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
     def section_changes(
         self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array

@@ -5,10 +5,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ...model.parameters import OPTIONAL_PARAMETERS
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
-from .variables import Increase, Layout, Variable
+from .variables import Increase, Layout, Variable, optional_in
 
 MODULES = {
     "spectrum": spectrum,
@@ -43,8 +42,8 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
     layout = LAYOUTS[task](config)
-    optional = tuple(name for name in OPTIONAL_PARAMETERS if name in config["parameters"])
-    return with_si(replace(layout, parameters=(*layout.parameters, *optional)), config)
+    parameters = (*layout.parameters, *optional_in(config))
+    return with_si(replace(layout, parameters=parameters), config)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:

@@ -18,6 +18,7 @@ from .variables import (
     Variable,
     has_covering,
     integer,
+    optional_in,
     real,
     with_meaning,
     word,
@@ -166,8 +167,7 @@ INCREASES = {
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Hopf points of the lines through the points of a resolved config."""
-    optional = tuple(name for name in OPTIONAL_PARAMETERS if name in config["parameters"])
-    found = hopf_points_of((*LINEAR_PARAMETERS, *optional))
+    found = hopf_points_of((*LINEAR_PARAMETERS, *optional_in(config)))
     if has_covering(config):
         return found
     meaning = "number of searched lines whose list of Hopf points is confirmed by counts of unstable modes"

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
 """Default of `recorded`: fields have the names of their variables."""
@@ -206,11 +206,19 @@ class Layout:
         return tuple(self.extents[d] for d in variable.extra)
 
 
+def optional_in(config: Mapping[str, Any]) -> tuple[str, ...]:
+    """Optional parameters of the points of a resolved config: those with an axis or a column of a list."""
+    parameters = config["parameters"]
+    given = (*parameters, *parameters.get("columns", ()))
+    return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
+
+
 def estimates_counts(config: Mapping[str, Any]) -> bool:
     """Whether a resolved config has rods that vary along their length, for which counts are estimates."""
     parameters = config.get("parameters", {})
     arm, taper = parameters.get("arm", {}), parameters.get("taper")
     tapered = "tip_radius" in arm if taper is None else taper.get("values") != [1.0]
+    tapered = tapered or "taper" in parameters.get("columns", ())
     followed = config.get("branch", {}).get("along") == "taper"
     return tapered or followed or "segments" in arm or "profile" in config.get("material", {})
 

@@ -6,6 +6,10 @@ from functools import cached_property
 
 from ...arrays import Complex
 
+LEADING_MODES = 4
+"""Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
+PLACE_ACCURACY = 1e-6
+"""Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
 EXPLAINED = 0.25
 """Tolerance of the interpolation between two places: the interpolant stays above this fraction of the smaller
 end value, so that no zero hides, and the slopes explain the change but for this fraction."""

@@ -11,16 +11,12 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import EXPLAINED, lowest_between
+from .anchors import EXPLAINED, LEADING_MODES, PLACE_ACCURACY, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
-MIN_KNOWN_MODES = 4
-"""Smallest number of leading eigenvalues known at a place; at least two more than are unstable."""
 MAX_KNOWN_MODES = 40
 """Largest number of leading eigenvalues known at a place."""
-PLACE_ACCURACY = 1e-6
-"""Accuracy of the eigenvalues at a place; Newton's method on D refines them."""
 SMALLEST_INTERVAL = 1e-6
 """Length of an interval, in units of the path, that is not divided further: two crossings in it stay
 undecided."""
@@ -66,7 +62,7 @@ class CrossingSearch:
     def place(self, p: float) -> AxisPlace:
         """The place at p; raises Unsolvable if its eigenvalues or their count cannot be computed."""
         if p not in self.places:
-            modes = MIN_KNOWN_MODES
+            modes = LEADING_MODES
             found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
                 modes = _needed(found)

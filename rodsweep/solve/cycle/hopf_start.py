@@ -12,8 +12,8 @@ from math import isfinite, isnan
 import numpy as np
 
 from ...determinant.parameter_path import Path
-from ...discretization.elements.mesh import Mesh, mesh, mesh_on
-from ...discretization.straight.arm_resolution import arm_elements
+from ...discretization.at_jumps import carried
+from ...discretization.elements.mesh import transfer
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.path_problem import PathProblem, path_problem
@@ -28,7 +28,7 @@ from ..spectrum.problem import problem_of
 from ..spectrum.spectrum import SpectrumRequest
 from .along_parameter import in_steps, predictor_from
 from .straight_rod import straight_rod
-from .transient.motion_mesh import WAVES_PER_ROOT_FORCE
+from .transient.motion_mesh import coarse_mesh
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 """Spectrum request for the leading eigenvalue, without a proof."""
@@ -52,10 +52,6 @@ order. In most rods the normal form's amplitude is off by a quarter at the first
 DIRECT_DISTANCE = 1e-2
 """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
 rod itself: the amplitude is off by 1 percent there in most rods."""
-ORDER_PER_WAVE, MIN_COARSE_ORDER = 0.55, 12
-"""Order of the coarse mesh in units of a cycle's largest wave number; and the smallest order."""
-COARSE_ACCURACY = 1e-4
-"""Accuracy of the linear problem on the coarse mesh of an arm."""
 START_INTERVALS, START_STAGES = 8, 3
 """Time intervals over half a period, and collocation stages, of the coarse mesh."""
 BRANCH_TOLERANCE = 3e-3
@@ -151,22 +147,13 @@ def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} leads to smaller forces")
     if rod.F <= hopf.F * (1 + DIRECT_DISTANCE):
         return orbit_of(normal, replace(form, mesh=normal.form.mesh))
-    coarse = replace(form, mesh=_coarse_mesh(rod))
+    coarse = replace(form, mesh=coarse_mesh(rod))
     for distance in START_DISTANCES:
         try:
             return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why
-
-
-def _coarse_mesh(rod: Rod) -> Mesh:
-    """Mesh of the intermediate orbits on the branch."""
-    wave_number = WAVES_PER_ROOT_FORCE * abs(rod.F) ** 0.5
-    if rod.standard:
-        return mesh(1, max(MIN_COARSE_ORDER, int(ORDER_PER_WAVE * wave_number)))
-    elements = arm_elements(rod, wave_number, COARSE_ACCURACY)
-    return mesh_on(elements.edges, elements.order)
 
 
 def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
@@ -220,6 +207,6 @@ def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency
     """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
     X = normal.motion(amplitude, np.pi * node_times(START_INTERVALS, START_STAGES))
     S, V = normal.form.fields(X)
-    E = normal.form.mesh.evaluation(form.mesh.positions)
-    states = form.layout.state(S @ E.T, V @ E.T)
+    source, target = normal.form.mesh, form.mesh
+    states = form.layout.state(carried(form.rod, S, source, target), V @ transfer(source, target).T)
     return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, START_STAGES)

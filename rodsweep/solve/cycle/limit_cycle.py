@@ -31,7 +31,7 @@ from .second_state import second_state
 from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
-from .transient.motion_mesh import motion_mesh
+from .transient.motion_mesh import MOTION_ACCURACY, motion_mesh
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.trace import TipTrace
@@ -42,9 +42,6 @@ __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "
 KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
 """Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
 displacement-form code, and the relative deviation accepted by `warm_up`."""
-MOTION_ACCURACY = 1e-5
-"""Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction; Newton's
-method supplies the digits of the cycle."""
 STORED_MULTIPLIERS, MIN_STORED_MULTIPLIER = 6, 1e-6
 """Number of stored Floquet multipliers, and the smallest modulus of a stored multiplier."""
 NO_MULTIPLIER = complex(nan, nan)
@@ -217,8 +214,7 @@ def _from_motion(
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.branch.orbit
-        to_mesh = orbit.form.mesh.evaluation(beam.mesh.positions).T
-        start = beam.scaled(orbit.form.stresses(orbit.start) @ to_mesh)
+        start = beam.scaled(orbit.form.stresses_on(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 

@@ -134,8 +134,7 @@ class _Marching:
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + ORDERS_PER_REFINEMENT)
         self.scheme = replace(self.scheme, tolerance=TOLERANCE_RATIO * self.scheme.tolerance)
         self.beam = self._beam()
-        stresses = before.stresses(settled.z) @ before.mesh.evaluation(self.beam.mesh.positions).T
-        z = self.beam.scaled(stresses)
+        z = self.beam.scaled(before.stresses_on(self.beam.mesh, settled.z))
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _Settled:

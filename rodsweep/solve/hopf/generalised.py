@@ -13,10 +13,11 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
-from ...determinant.parameter_path import determinant_along
+from ...determinant.parameter_path import Path
 from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
 from ..changes.boundary_curves import BoundaryCurve
+from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients
@@ -126,10 +127,10 @@ class HopfCurve:
         x, y, h = map(float, there.v)
         rod = self.boundary.plane.at(x, y)
         w = complex(0.0, math.exp(h))
-        along = determinant_along(w, rod.coefficients, rod.direction("F"))
+        slope = path_problem(Path(rod, "F")).eigenvalue(w, rod.F)[1]
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
-        error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(along.D_p)
+        error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
         hopf = Crossing(rod.F, Kind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
         return _At(there, hopf_coefficients(rod, hopf, accuracy))
 

@@ -145,6 +145,7 @@ class Workspace:
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
         self._set({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
+        self._set({"jump_count": len(beam.nodal.jumps)})
         root = beam.layout.unknowns**0.5
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
         self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))

@@ -10,8 +10,11 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
+from ...model.material.jump import COLUMNS
 from ..backend.c_functions import floats, floats_in, integers
 
+SIDE = len(COLUMNS)
+"""Numbers of each side of a jump."""
 MAX_STAGES = 16
 """Maximum number of stored stages of a step."""
 MAX_STAGE_POINTS = 8
@@ -57,6 +60,7 @@ CONTEXT = np.dtype(
         ("stored", WHOLE),  # number of stored steps
         ("capacity", WHOLE),  # number of steps for which memory is allocated
         ("law", WHOLE),  # number of the constitutive law
+        ("jump_count", WHOLE),  # number of nodes at which the material jumps
         ("left", WHOLE),  # whether the rod has left the model
         ("error", WHOLE),  # PETSc's error code inside a stage
         ("outputs", WHOLE, (3,)),  # output arguments of PETSc's functions
@@ -83,7 +87,9 @@ def rod_of(c: Any) -> NodalRod:
     rest, compliance = floats_in(c.rest, (d, m)), floats_in(c.compliance, (d, m))
     drag, mobility = floats_in(c.drag, (d, m)), floats_in(c.mobility, (d, m))
     second, none = floats_in(c.second, (d, m, m)), integers(c.rest, 0)
-    return NodalRod(floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none, c.law)
+    jumps, sides = integers(c.jumps, c.jump_count), floats_in(c.sides, (c.jump_count, 2, SIDE))
+    tip_stress = floats(c.tip_stress, d)
+    return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 
 
 @compiled

@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 
 from ...arrays import Array
 from ...discretization.elements.collocation import Collocation, radau
-from ...discretization.elements.mesh import Mesh, transfer
+from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
 from .semidiscrete import Semidiscrete
 from .symmetry import Symmetry
@@ -110,7 +110,7 @@ class Orbit:
         if target != source:
             points = between_intervals(source, target) @ points
         if grid != self.form.mesh:
-            points = self.form.layout.carried(points, transfer(self.form.mesh, grid))
+            points = self.form.states_on(grid, points)
         return replace(
             self,
             form=replace(self.form, mesh=grid),

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ...arrays import Array
+from ...discretization.at_jumps import by_elements
 from ...discretization.elements.collocation import radau
 from ...discretization.elements.mesh import mesh
 from ...discretization.state_layout import COMPONENTS, stress_place
@@ -62,6 +63,10 @@ def _space_coefficients(orbit: Orbit) -> Array:
     """Largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
     grid = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.states[:, -1])
+    if len(orbit.form.nodal.jumps):
+        c = np.abs(_by_elements(orbit, ends) @ _analysis_on_element(grid.order))
+        largest: Array = c.max(axis=(1, 2))
+        return largest
     return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
 
 
@@ -98,8 +103,19 @@ def lasting_tails(orbit: Orbit) -> Array:
     A single last coefficient may vanish, so in space LAST_COEFFICIENTS coefficients at all points are used.
     """
     grid = orbit.form.mesh
-    in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
+    if len(orbit.form.nodal.jumps):
+        fields = _by_elements(orbit, orbit.points)
+        ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
+        in_space = float((ends / np.maximum(np.abs(fields).max(axis=(1, 2, 3)), 1e-300)).max())
+    else:
+        in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
     return np.array([in_space, _tail_in_time(orbit)])
+
+
+def _by_elements(orbit: Orbit, states: Array) -> Array:
+    """n1, n2 and m3 of states (m, n) at the nodes of each element, (3, m, elements, p + 1)."""
+    form = orbit.form
+    return by_elements(form.nodal, form.mesh, form.stresses(states))
 
 
 @lru_cache(maxsize=64)

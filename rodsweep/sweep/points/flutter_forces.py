@@ -7,16 +7,15 @@ fails gives its points a status. The solver is imported on demand.
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf, nan
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from ...config.arm.section import ArmSection
 from ...config.arm.uncovered import UncoveredArm
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import RELATIVE
-
-if TYPE_CHECKING:
-    from ...verdict.relative import PlaneRod
+from ...model.material.build import Build
+from ...model.rod import Rod
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,20 +29,20 @@ class FlutterForce:
     failure: str = ""
 
 
-FlutterForces: TypeAlias = Mapping["PlaneRod", FlutterForce]
-"""Flutter of rods that move in one plane."""
+FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
+"""Flutter of rods that move in one plane, without load."""
 
 
-def rods_of_flutter(section: ArmSection | None) -> "list[PlaneRod]":
+def rods_of_flutter(section: ArmSection | None, build: Build | None = None) -> list[Rod]:
     """The different rods whose flutter the points of a section need; none unless its load is relative.
 
-    Raises InputError for an arm that is refused.
+    build: law and profile beside the section. Raises InputError for an arm that is refused.
     """
     if section is None or section.load_axis not in RELATIVE:
         return []
     from ...verdict.relative import plane_rods
 
-    rods = (rod for arm in _arms(section) for rod, _ in plane_rods(arm))
+    rods = (rod for arm in _arms(section) for rod, _ in plane_rods(arm, build))
     return list(dict.fromkeys(rods))
 
 
@@ -58,22 +57,25 @@ def _arms(section: ArmSection) -> Iterable[SlenderArm]:
             raise InputError(str(error)) from None
 
 
-def flutter_of_rod(rod: "PlaneRod") -> FlutterForce:
+def flutter_of_rod(rod: Rod) -> FlutterForce:
     """Flutter of one rod; a failure is an outcome, not an exception."""
     from ...verdict.relative import FlutterUnknown, first_hopf_force
 
     try:
-        return FlutterForce(first_hopf_force(*rod))
+        return FlutterForce(first_hopf_force(rod))
     except FlutterUnknown as error:
         return FlutterForce(nan, str(error))
 
 
-def flutter_of_arm(arm: SlenderArm, known: FlutterForces) -> FlutterForce:
-    """Flutter of an arm, in its k3/L^2: the smallest over its planes, a failure if one of them fails."""
+def flutter_of_arm(arm: SlenderArm, known: FlutterForces, build: Build | None = None) -> FlutterForce:
+    """Flutter of an arm, in its k3/L^2: the smallest over its planes, a failure if one of them fails.
+
+    build: as in `rods_of_flutter`.
+    """
     from ...verdict.relative import plane_rods
 
     first = inf
-    for rod, scale in plane_rods(arm):
+    for rod, scale in plane_rods(arm, build):
         found = known[rod]
         if found.failure:
             return found

@@ -45,9 +45,8 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:
-            return grid_of_arms(
-                parameters.arm, axes, config.names, _flutter_in(parameters.arm, flutter), config.build
-            )
+            of_arm = _flutter_in(parameters.arm, flutter, config.stated_build)
+            return grid_of_arms(parameters.arm, axes, config.names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.names}
@@ -73,11 +72,14 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
-def _flutter_in(section: ArmSection, known: FlutterForces | None) -> FlutterOf:
-    """Function from an arm of a section to its first flutter, which is searched for where it is not known."""
+def _flutter_in(section: ArmSection, known: FlutterForces | None, build: Build | None) -> FlutterOf:
+    """Function from an arm of a section to its first flutter, which is searched for where it is not known.
+
+    build: law and profile beside the section.
+    """
     if known is None:
-        known = {rod: flutter_of_rod(rod) for rod in rods_of_flutter(section)}
-    return partial(flutter_of_arm, known=known)
+        known = {rod: flutter_of_rod(rod) for rod in rods_of_flutter(section, build)}
+    return partial(flutter_of_arm, known=known, build=build)
 
 
 def refuse_outside(

@@ -16,6 +16,7 @@ from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.hopf.generalised import curve_criticality
 
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
 SWELLING = Build("neo_hookean", "swelling")
@@ -97,13 +98,51 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
     assert (along_k1.motion == Motion.crushed).tolist() == [True, True, False, False]
 
 
-PLANE = {"F": np.linspace(0, 450, 10), "k1": [300.0, 400.0, 500.0], **ROD}
+@pytest.fixture(scope="module")
+def cones():
+    """A diagram with everything, two rows of cones."""
+    return rs.sweep(
+        "phase_diagram",
+        F=[0, 10, 30, 45],
+        k1=1e4,
+        k2=1e2,
+        gamma3=1e-2,
+        taper=[0.8, 0.9],
+        criticality=True,
+        cycles=True,
+        cycle_accuracy=1e-4,
+    )
 
 
-@pytest.mark.parametrize("option", ["criticality", "cycles"])
-def test_what_a_diagram_of_arms_lacks_is_refused_in_a_sentence(option):
-    with pytest.raises(InputError, match=f"phase_diagram.{option} is true, but .* use the task criticality"):
-        rs.sweep("phase_diagram", **PLANE, law="neo_hookean", **{option: True})
+def test_the_criticality_of_a_diagram_of_cones_is_that_of_each_cone(cones):
+    for taper in (0.8, 0.9):
+        of_hopf = np.isfinite(cones.curve_criticality.values)
+        (point,) = np.flatnonzero(of_hopf & (cones.curve_taper.values == taper))
+        found = rs.Rod(k1=1e4, k2=1e2, gamma3=1e-2, taper=taper).criticality(F_max=60)
+        assert cones.curve_F.values[point] == pytest.approx(found.crossing_F[0], rel=1e-9)
+        assert cones.curve_criticality.values[point] == found.crossing_criticality[0]
+
+
+def test_cones_of_a_diagram_beat_where_they_flutter(cones):
+    """Their Hopf points are supercritical and no branch turns back."""
+    flutter = (cones["class"] == 2).values
+    assert flutter.any()
+    assert (cones.stable_states.values == np.where(flutter, 2, 1)).all()
+
+
+def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
+    plane_axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
+    fold = 75.3972626336484526, 147.921519683199662, 770.860809443855688
+    points = []
+    for build in (Build(), ONES):
+        plane = Plane(Rod(F=0.0, k1=200.0, **ROD, build=build), plane_axes)
+        start = tuple(axis.scaled(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
+        told = curve_criticality(plane, trace(0.0, plane, start, fold[2]), 1e-10)
+        assert told.unlocated == 0
+        points.append(told.points[0])
+    exact, found = points
+    for value, theirs, error in zip(exact.values, found.values, found.errors, strict=True):
+        assert abs(value - theirs) <= 2 * error + 1e-10 * value
 
 
 def test_a_plane_that_is_crushed_everywhere_is_refused():

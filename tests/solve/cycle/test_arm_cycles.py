@@ -6,8 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mixed_motion import rate as mixed_rate
+from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 
+from rodsweep.discretization.at_jumps import carried, parted
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_on
 from rodsweep.discretization.plane import balance, balance_change
@@ -16,6 +18,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import STANDARD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTORS, Profile
+from rodsweep.model.material.response import LocalSection, stress
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -27,6 +30,7 @@ from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
+JUMP_OF_ONE = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * len(FACTORS),) * 4)
 ONES = Profile((0.0, 0.3, 1.0), ((1.0,) * len(FACTORS),) * 3)
 RUBBER = [Build(*names) for names in LAWS]
 NAMES = ["-".join(names) for names in LAWS]
@@ -36,6 +40,8 @@ ARMS = {
     "rubber": (Build("neo_hookean", "fixed"), 0.7, (0.0, 1.0)),
     "swelling": (Build("neo_hookean", "swelling"), 0.7, (0.0, 0.3, 1.0)),
     "uniform swelling": (Build("neo_hookean", "swelling"), 1.0, (0.0, 1.0)),
+    "rubber segments": (Build("neo_hookean", "fixed", STEP), 0.6, (0.0, 0.4, 1.0)),
+    "swelling segments": (Build("neo_hookean", "swelling", STEP), 0.7, (0.0, 0.2, 0.4, 1.0)),
 }
 
 
@@ -168,6 +174,83 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
     assert y == pytest.approx(found.measures.tip_y_max, rel=2e-7)
 
 
+SEGMENTS = [
+    ("fixed", {"F": 30.0, "k1": 200.0, "k2": 300.0, "gamma3": 1e-2, "gamma1": 0.8}),
+    ("swelling", {"F": 60.0, "k1": 500.0, "k2": 300.0, "gamma3": 1e-2, "gamma1": 1.2}),
+]
+
+
+@pytest.mark.parametrize(("section", "values"), SEGMENTS, ids=["fixed", "swelling"])
+def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(section, values):
+    """By code that shares nothing, in which positions are continuous at the jump and strains are not."""
+    factors = (0.6, 0.7, 0.5, 1.0, 1.2, 0.8)
+    build = Build("neo_hookean", section, Profile(STEP.u, ((1.0,) * 6,) * 2 + (factors,) * 2))
+    rod = Rod(**values, build=build)
+    found = solve_cycle(rod, request(1e-8), None, "F")
+    assert found.status.name == "cycle"
+    orbit = found.neighbour.branch.orbit
+    stiffness, drag = (rod.k1, rod.k2, 1.0), (rod.gamma1, 1.0, rod.gamma3)
+    outer = [np.multiply(own, f) for own, f in ((stiffness, factors[:3]), (drag, factors[3:]))]
+    segments = Segments(
+        rod.F, (0.0, 0.4, 1.0), (stiffness, outer[0]), (drag, outer[1]), Law(build.law, section), order=12
+    )
+    shape = orbit.form.mesh.evaluation(segments.u) @ orbit.form.shape(orbit.start).T
+    period, y = segments.cycle(shape.T, found.measures.period, turns=1)
+    assert period == pytest.approx(found.measures.period, rel=1e-7)
+    assert y == pytest.approx(found.measures.tip_y_max, rel=3e-7)
+
+
+def test_a_jump_of_factor_one_is_none():
+    """Of the balance to rounding, although the stress at the jump is solved for."""
+    values = {"F": 30.0, "k1": 200.0, "k2": 150.0, "gamma3": 0.02, "taper": 0.7}
+    grid = mesh_on((0.0, 0.4, 1.0), 7)
+    builds = (Build("neo_hookean", "swelling", profile) for profile in (None, JUMP_OF_ONE))
+    plain, jumping = (StressForm(Rod(**values, build=build), grid) for build in builds)
+    assert (len(plain.nodal.jumps), len(jumping.nodal.jumps)) == (0, 1)
+    (x, V, G), (_, V_jumping, G_jumping) = (moving(form, 5.0) for form in (plain, jumping))
+    assert np.abs(V_jumping - V).max() < 1e-13 * np.abs(V).max()
+    assert np.abs(G_jumping - G).max() < 1e-13 * np.abs(G).max()
+    assert jumping.energy(x) == pytest.approx(plain.energy(x), rel=1e-14)
+
+
+def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
+    form = on_mesh("swelling segments", F=40.0)
+    x = 20.0 * np.random.default_rng(3).standard_normal(form.unknowns)
+    S = form.stresses(x)
+    ((before, behind),) = parted(form.nodal, S)
+    (node,), (sides,) = form.nodal.jumps, form.nodal.sides
+    both = list(zip(sides, (before, behind), strict=True))
+    stresses = [stress(2, LocalSection(*side[:3]), *q) for side, q in both]
+    assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)
+    for component, place, own in ((0, 1, 0), (2, 2, 1)):
+        mean = sum(side[5] * side[place] * q[own] for side, q in both)
+        assert mean == pytest.approx(form.nodal.compliance[component, node] * S[component, node], rel=1e-12)
+    assert before[0] != pytest.approx(behind[0], rel=1e-3)
+
+
+def test_fields_with_a_jump_are_carried_to_other_meshes():
+    """A field that is smooth on either side, of which only the mean is a number of the node between."""
+    rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, build=Build("neo_hookean", "swelling", STEP))
+    errors = []
+    for order in (7, 13):
+        source, target = (
+            StressForm(rod, mesh_on(edges, each))
+            for edges, each in (((0.0, 0.4, 1.0), order), ((0.0, 0.2, 0.4, 0.7, 1.0), order - 2))
+        )
+        before, behind = (lambda u: np.cos(5 * u), lambda u: 2 + np.sin(4 * u))
+        fields = []
+        for form in (source, target):
+            u, (node,), (sides,) = form.mesh.positions, form.nodal.jumps, form.nodal.sides
+            S = np.array([np.where(u < u[node], before(u), behind(u)), np.cos(3 * u), 0 * u])
+            S[2] = S[0]
+            for component, share in ((0, 3), (2, 4)):
+                S[component, node] = sides[:, share] @ [before(u[node]), behind(u[node])]
+            fields.append(S)
+        errors.append(np.abs(carried(rod, fields[0], source.mesh, target.mesh) - fields[1]).max())
+    assert errors[0] < 1e-2
+    assert errors[1] < 1e-7
+
+
 @pytest.mark.parametrize("build", [Build(profile=STEP), RUBBER[2]], ids=["segments", "swelling"])
 def test_cycles_agree_with_arkimex_alone(build):
     rod = Rod(F=60.0, k1=500.0, k2=1e2, gamma3=1e-2, build=build)
@@ -178,7 +261,10 @@ def test_cycles_agree_with_arkimex_alone(build):
     assert marched.measures.tip_y_max == pytest.approx(found.measures.tip_y_max, rel=error)
 
 
-@pytest.mark.parametrize("build", RUBBER, ids=NAMES)
+SWELLING_STEP = Build("neo_hookean", "swelling", STEP)
+
+
+@pytest.mark.parametrize("build", [*RUBBER, SWELLING_STEP], ids=[*NAMES, "segments"])
 def test_the_normal_form_is_the_limit_of_cycles(build):
     """Amplitude squared over the distance, by Richardson extrapolation from two forces."""
     rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, build=build)

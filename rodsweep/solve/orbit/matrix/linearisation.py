@@ -7,7 +7,7 @@ last row of this system is the phase condition.
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....discretization.nodal_rod import NodalChange
+from ....discretization.nodal_rod import NO_SIDE_CHANGE, NodalChange
 from ....discretization.state_layout import COMPONENTS, stress_place
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
@@ -62,7 +62,7 @@ def over_period(returns: Complex, orbit: Orbit) -> Complex:
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-NO_CHANGE = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
+NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_SIDE_CHANGE)
 """Placeholder for no change of the rod, which compiled code never reads."""
 
 

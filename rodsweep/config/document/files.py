@@ -1,0 +1,43 @@
+"""Files that a config names: their content becomes keys of the config before it is validated."""
+
+import csv
+from pathlib import Path
+from typing import Any
+
+from ...model.parameters import OPTIONAL_PARAMETERS
+from ..material import with_profile_read
+
+LONGEST_HEADER = 10_000
+"""Largest number of characters of a header; a longer first line is none, and the reader of points says so."""
+
+
+def with_files_read(tree: Any, directory: Path) -> Any:
+    """A config's tree with the columns of its profile and of its list of points, where it leaves them out.
+
+    directory: where the names of files begin. Raises InputError for a profile that is no table of numbers.
+    """
+    return _with_columns(with_profile_read(tree, directory), directory)
+
+
+def _with_columns(tree: Any, directory: Path) -> Any:
+    """The tree with `parameters.columns`, if the file of points has columns beside those of every list."""
+    parameters = tree.get("parameters") if isinstance(tree, dict) else None
+    if not isinstance(parameters, dict) or not isinstance(parameters.get("points"), str):
+        return tree
+    if parameters.get("columns") is not None:
+        return tree
+    header = _header(directory / parameters["points"])
+    columns = [name for name in OPTIONAL_PARAMETERS if name in header]
+    return tree | {"parameters": parameters | {"columns": columns}} if columns else tree
+
+
+def _header(path: Path) -> list[str]:
+    """Names in the first line of a CSV file; empty if it has none, which is refused where points are read."""
+    try:
+        if not path.is_file():
+            return []
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            line = file.readline(LONGEST_HEADER)
+        return [cell.strip() for cell in next(csv.reader([line]), [])]
+    except (OSError, ValueError, csv.Error):
+        return []

@@ -1,0 +1,116 @@
+"""Fields of a rod beside the jumps of its material, where the stresses S of a law are not smooth.
+
+S are the stresses that a linear rod needs for the same strain. With another law they have other values on
+either side of a jump (`rodsweep.model.material.jump`), and the unknown of the node is the mean of both.
+Everywhere else S is smooth in each element.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+
+from ..arrays import Array
+from ..model.balance import Values
+from ..model.compiled.compilation import compiled
+from ..model.material.jump import Unknowns, before_jump, behind_jump
+from ..model.rod import Rod
+from .arm_on_mesh import jumps_on
+from .elements.basis import interpolation
+from .elements.mesh import Mesh, transfer
+from .elements.quadrature import gauss_lobatto
+from .nodal_rod import Integers, NodalRod
+
+STRETCHING, BENDING = 0, 2
+"""Components of S that are not smooth at a jump, in the order of their shares."""
+
+
+@compiled
+def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
+    """q1 and q3 before a jump, then behind it, of mean unknowns, (m,) each, into out, (4, m)."""
+    for i in range(len(q1)):
+        q = Unknowns(q1[i], q3[i])
+        a = before_jump(law, sides, q)
+        b = behind_jump(sides, q, a)
+        out[0, i], out[1, i], out[2, i], out[3, i] = a.q1, a.q3, b.q1, b.q3
+
+
+def parted(rod: NodalRod, S: Array) -> Array:
+    """S1 and S3 on both sides of each jump, (k, 2, 2, ...): of each jump and side both.
+
+    S: (3, ..., nodes + 1).
+    """
+    out = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
+    for found, node, sides in zip(out, rod.jumps, rod.sides, strict=True):
+        q1, q3 = (np.ascontiguousarray(S[a, ..., node]).ravel() for a in (STRETCHING, BENDING))
+        flat = np.empty((4, q1.size))
+        part(rod.law, sides, q1, q3, flat)
+        found[...] = flat.reshape(found.shape)
+    return out
+
+
+def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
+    """S at the nodes of each element, (3, ..., elements, order + 1), with its own side of each jump."""
+    places = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
+    fields: Array = S[..., places]
+    for node, sides in zip(rod.jumps, parted(rod, S), strict=True):
+        e = node // grid.order
+        for component, before, behind in zip((STRETCHING, BENDING), sides[0], sides[1], strict=True):
+            fields[component, ..., e - 1, -1] = before
+            fields[component, ..., e, 0] = behind
+    return fields
+
+
+def carried(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
+    """S at all nodes of another mesh, (3, ..., nodes there + 1), from S, (3, ..., nodes + 1): a linear map.
+
+    The unknown of a jump is no value of the polynomials beside it: these come from the other nodes of their
+    elements, and their means are the unknowns of the jumps of the target.
+    """
+    E = transfer(source, target)
+    out = S @ E.T
+    there = jumps_on(rod, target)
+    if len(there.nodes):
+        here = jumps_on(rod, source).nodes
+        for column, component in ((3, STRETCHING), (4, BENDING)):
+            out[component] = (
+                S[component] @ _across(E, source, target, here, there.nodes, there.sides[..., column]).T
+            )
+    return out
+
+
+def _across(  # noqa: PLR0913, PLR0917 - of both meshes
+    E: Array, source: Mesh, target: Mesh, here: Integers, there: Integers, shares: Array
+) -> Array:
+    """E of meshes, (target nodes, source nodes), for a field with jumps at nodes of both.
+
+    here, there: nodes of the jumps, (k,) each. shares: of both sides in the unknown of a jump, (k, 2).
+    """
+    out, p = E.copy(), source.order
+    element = np.searchsorted(source.edges, target.positions, side="right") - 1
+    at_jumps = [int(node) // p for node in here]
+    for e, node in zip(at_jumps, here, strict=True):
+        for side in (e - 1, e):
+            rows, columns = element == side, slice(side * p, (side + 1) * p + 1)
+            row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
+            weights = out[rows, node].copy()
+            out[rows, node] = 0.0
+            out[rows, columns] += weights[:, None] * row
+    for e, node, (before, behind) in zip(at_jumps, there, shares, strict=True):
+        out[node] = 0.0
+        for side, share in ((e - 1, before), (e, behind)):
+            row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
+            out[node, side * p : (side + 1) * p + 1] += share * row
+    return out
+
+
+@lru_cache(maxsize=64)
+def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
+    """Row from values at an element's nodes to its first or last one, without its nodes at jumps, (p + 1,).
+
+    starts, stops: whether the element starts, and stops, at a jump.
+    """
+    x = gauss_lobatto(order)[0]
+    used = slice(int(starts), order + 1 - int(stops))
+    row = np.zeros(order + 1)
+    row[used] = interpolation(x[used], np.array([-1.0 if first else 1.0]))[0]
+    return row

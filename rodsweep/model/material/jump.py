@@ -1,0 +1,134 @@
+"""Stress of a rod at a point where its material jumps, by its mean strain there, compiled, for every law.
+
+At the point stress is continuous and strain is not. With the unknowns a before and b behind the jump, see
+`response`, and shares w of both sides in the mean strain, w(a) + w(b) = 1 for each component,
+
+    N(a) = N(b),    M(a) = M(b),    w(a) a + w(b) b = q,
+
+where q has the mean strain: it is what a linear rod with the mean compliances would need. The linear law has
+a = b = q. The shares are those of a compliance times the weights of the quadrature; they stay what they are
+in the limit of no compliance.
+
+The sides of a jump are an array, (2, 6), with the `COLUMNS`.
+"""
+
+from typing import NamedTuple
+
+from ...arrays import Array
+from ..compiled.compilation import compiled
+from .response import LocalSection, Stress, Tangent, stress, stress_change, tangent
+
+COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature")
+"""Numbers of each side: those of `LocalSection`, and the shares of this side in the mean of both."""
+MOST_ITERATIONS = 40
+CONVERGED = 1e-9
+"""Relative step of Newton's method after which the next one would be below rounding."""
+LEAST_STRETCH_KEPT = 0.1
+"""Least ratio of h1 after a step of Newton's method to h1 before: the law is defined for h1 > 0 only."""
+
+
+class Unknowns(NamedTuple):
+    """q1 and q3 of `response`."""
+
+    q1: float
+    q3: float
+
+
+@compiled
+def _section(side: Array) -> LocalSection:
+    return LocalSection(side[0], side[1], side[2])
+
+
+@compiled
+def _solved(T: Tangent, N: float, M: float) -> Unknowns:
+    """x of T x = (N, M)."""
+    determinant = T.N1 * T.M3 - T.N3 * T.M1
+    return Unknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
+
+
+@compiled
+def _allowed(at: LocalSection, q1: float, step: float) -> float:
+    """The share of a step of q1 that keeps h1 above its least ratio."""
+    h, change = at.nu + at.c1 * q1, at.c1 * step
+    if h + change >= LEAST_STRETCH_KEPT * h:
+        return 1.0
+    return (LEAST_STRETCH_KEPT - 1) * h / change
+
+
+@compiled
+def _small(step: Unknowns, at: Unknowns) -> bool:
+    return abs(step.q1) <= CONVERGED * abs(at.q1) and abs(step.q3) <= CONVERGED * abs(at.q3)
+
+
+@compiled
+def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
+    """a of the mean unknowns q, by Newton's method."""
+    one, other = _section(sides[0]), _section(sides[1])
+    ratio1, ratio3 = sides[0, 3] / sides[1, 3], sides[0, 4] / sides[1, 4]
+    a = q
+    for _ in range(MOST_ITERATIONS):
+        b = behind_jump(sides, q, a)
+        s, t = stress(law, one, a.q1, a.q3), stress(law, other, b.q1, b.q3)
+        S, T = tangent(law, one, a.q1, a.q3), tangent(law, other, b.q1, b.q3)
+        J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
+        step = _solved(J, t.N - s.N, t.M - s.M)
+        share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
+        a = Unknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
+        if _small(step, a):
+            break
+    return a
+
+
+@compiled
+def behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
+    """b of the mean unknowns q and of a."""
+    return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
+
+
+@compiled
+def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
+    """The stresses beyond those at rest."""
+    a = before_jump(law, sides, Unknowns(q1, q3))
+    return stress(law, _section(sides[0]), a.q1, a.q3)
+
+
+@compiled
+def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
+    """Derivatives of the mean unknowns by the stresses, in the places of those of the stresses."""
+    S = tangent(law, _section(sides[0]), a.q1, a.q3)
+    T = tangent(law, _section(sides[1]), b.q1, b.q3)
+    s, t = S.N1 * S.M3 - S.N3 * S.M1, T.N1 * T.M3 - T.N3 * T.M1
+    (s1, s3), (t1, t3) = (sides[0, 3] / s, sides[0, 4] / s), (sides[1, 3] / t, sides[1, 4] / t)
+    return Tangent(
+        s1 * S.M3 + t1 * T.M3, -s1 * S.N3 - t1 * T.N3, -s3 * S.M1 - t3 * T.M1, s3 * S.N1 + t3 * T.N1
+    )
+
+
+@compiled
+def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
+    """Derivatives of the stresses by the mean unknowns."""
+    q = Unknowns(q1, q3)
+    a = before_jump(law, sides, q)
+    Z = _compliance_at_jump(law, sides, a, behind_jump(sides, q, a))
+    determinant = Z.N1 * Z.M3 - Z.N3 * Z.M1
+    return Tangent(Z.M3 / determinant, -Z.N3 / determinant, -Z.M1 / determinant, Z.N1 / determinant)
+
+
+@compiled
+def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: float) -> Stress:
+    """Derivatives of the stresses along a change of nu, c1 and c3 of both sides, (2, 3), at fixed q.
+
+    The shares do not change: a parameter moves the compliances of both sides by one factor.
+    """
+    q = Unknowns(q1, q3)
+    a = before_jump(law, sides, q)
+    b = behind_jump(sides, q, a)
+    moved1, moved3 = 0.0, 0.0
+    for i in range(2):
+        at, x = _section(sides[i]), a if i == 0 else b
+        own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
+        back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
+        moved1 += sides[i, 3] * back.q1
+        moved3 += sides[i, 4] * back.q3
+    out = _solved(_compliance_at_jump(law, sides, a, b), moved1, moved3)
+    return Stress(out.q1, out.q3)

@@ -1,0 +1,61 @@
+"""The mesh on which the rods of a sweep begin to be solved, of those that need most: for `check`."""
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import product
+
+import numpy as np
+
+from ..arrays import Array
+from ..discretization.elements.elements import Elements, equal_edges
+from ..discretization.elements.resolution import expected_wave_number, resolution_for
+from ..discretization.straight.arm_resolution import arm_mesh
+from ..model.dispersion import most_amplified_wave
+from ..model.rod import Rod
+from ..solve.changes.unstable_modes import CRUSHING_MARGIN
+from .cost_estimate import sampled
+from .points.points import Points
+
+
+def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
+    """The first mesh for the leading eigenvalues of a rod, to a relative accuracy of the mesh."""
+    if not rod.uniform:
+        return arm_mesh(rod, modes, accuracy)
+    _, wave = most_amplified_wave(rod.equivalent[0])
+    resolution = resolution_for(expected_wave_number(modes, wave), accuracy)
+    return Elements(equal_edges(resolution.elements), resolution.order)
+
+
+def largest_first_mesh(
+    points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
+) -> Elements | None:
+    """The first mesh with most nodes of some rods: of a sample, and of the corners of a grid; None for none.
+
+    ends: values, (n,), of parameters along which every rod is searched.
+    """
+    indices = {*sampled(points).tolist(), *_corners(points)}
+    rods = (rod for index in sorted(indices) for rod in _moved(points.rod(index), ends or {}))
+    return max(map(mesh_of, rods), key=lambda mesh: mesh.nodes, default=None)
+
+
+def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
+    """The rod at all combinations of values of parameters, as far as it is not crushed there."""
+    for values in product(*(column.tolist() for column in ends.values())):
+        named = dict(zip(ends, values, strict=True))
+        if "F" in named:
+            force = named.pop("F")
+            there = rod.changed(**named)
+            yield there.changed(F=min(force, there.crushing_force * (1 - CRUSHING_MARGIN)))
+            continue
+        try:
+            yield rod.changed(**named)
+        except ValueError:
+            continue
+
+
+def _corners(points: Points) -> Iterator[int]:
+    """Flat indices of the corners of a grid that have a rod; none for a list."""
+    ends = [sorted({0, size - 1}) for size in points.shape] if points.axes else []
+    for corner in product(*ends):
+        index = int(np.ravel_multi_index(corner, points.shape))
+        if points.axes and points.has_rod(index):
+            yield index
