@@ -81,7 +81,8 @@ def first_flutter(arm: SlenderArm) -> float:
 def first_hopf_force(rod: Rod) -> float:
     """Smallest F at which a pair of modes becomes unstable, to REFERENCE_DIGITS digits.
 
-    inf without flutter up to FARTHEST. Raises FlutterUnknown if the search cannot exclude a smaller F, or for overflow.
+    inf without flutter up to FARTHEST. Raises FlutterUnknown if the search cannot exclude a smaller F, or
+    for overflow.
     """
     path = Path(rod, "F")
     first_up_to = _first_up_to if rod.standard else _first_of_varied
