@@ -101,7 +101,10 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
     """The points from `start` on that can be followed and counted; None if even the first cannot."""
-    if stretch.path.name == "taper" or not stretch.path.rod.standard:
+    rod, varies = stretch.path.rod, stretch.path.name == "taper"
+    if rod.uniform and not (rod.standard or varies):
+        return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
+    if varies or not rod.standard:
         return followed_arms(stretch.path, stretch.coordinates[start:], request)
     seed = _first_point(stretch.rod(start), request)
     if seed is None:

@@ -7,6 +7,7 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.arm_stretch import FollowedArms, followed_arms
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -42,6 +43,17 @@ def test_followed_spectra_are_those_of_single_points(name):
     found = solve_stretch(stretch, REQUEST)
     for i in np.linspace(0, len(values) - 1, COMPARED).astype(int):
         agrees(found, i, stretch.rod(int(i)))
+
+
+def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
+    rod = Rod(F=10.0, k1=300.0, k2=1e3, gamma3=1e-3, build=Build("neo_hookean", "swelling"))
+    stretch = Stretch(Path(rod, "F"), np.linspace(10, 200, 10))
+    found = solve_stretch(stretch, REQUEST)
+    assert found.certified.all()
+    for i in (0, 9):
+        linear, rate = stretch.rod(i).equivalent
+        w = rate * solve_spectrum(linear, REQUEST).eigenvalues
+        np.testing.assert_array_equal(found.eigenvalues[i], w)
 
 
 def test_a_cone_is_followed_and_proved_without_single_points():
