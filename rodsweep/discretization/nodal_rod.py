@@ -71,7 +71,7 @@ def nodal_rod(
 
 
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_CHANGE) -> NodalChange:
-    """A change of a material on a mesh; sides: as in `NodalChange`."""
+    """A change of a material on a mesh; sides: as in `NodalChange`, (k, 2, 3)."""
     fields = change.rest, change.compliance, change.drag
     rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
