@@ -55,7 +55,7 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
 
 
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
-    """The derivatives of nu, c1 and c3 on both sides of the jumps by the coordinate of a parameter."""
+    """Derivatives of nu, c1 and c3 on both sides of the jumps by a parameter's coordinate, (k, 2, 3)."""
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_SIDE_CHANGE

@@ -73,7 +73,7 @@ def nodal_rod(
 
 
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) -> NodalChange:
-    """The `NodalChange` of the derivative of a material on a mesh; sides: as in `NodalChange`."""
+    """The `NodalChange` of the derivative of a material on a mesh; sides: (k, 2, 3), as in `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
     rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)

@@ -51,6 +51,7 @@ class BranchTask(NonlinearTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
+        """Ends of the followed parameter, (2,)."""
         options = self.config.branch
         return {options.along: np.array([options.start, options.stop])}
 

@@ -36,6 +36,7 @@ class CriticalityTask(NonlinearTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
+        """The largest force, (1,)."""
         return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> Estimate:

@@ -56,7 +56,7 @@ class ProvedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Ends, (2,), of the parameter along which every rod is searched, by its name; empty for points."""
+        """Values, (n,), of the parameter at whose ends rods are searched, by its name; empty for points."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:
@@ -149,7 +149,10 @@ def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Pa
 def arms_line(
     config: Config, columns: Mapping[str, np.ndarray], first_mesh: Callable[[], Elements | None]
 ) -> str:
-    """What is modelled of arms that vary or are of rubber, and their first mesh; empty for other arms."""
+    """What is modelled of arms that vary or are of rubber, and their first mesh; empty for other arms.
+
+    columns: as in `material_parts`, each of any shape.
+    """
     if config.standard:
         return ""
     shapes = _shapes(config, columns) or ["a uniform arm"]

@@ -70,6 +70,7 @@ class PhaseDiagramTask(ProvedTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
+        """Ends of the rows, (2,)."""
         return {self.config.plane[0]: self.line[[0, -1]]}
 
     def certificate(self) -> tuple[bool, str]:

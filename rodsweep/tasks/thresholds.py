@@ -40,6 +40,7 @@ class ThresholdsTask(ProvedTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
+        """The largest force, (1,)."""
         return {"F": np.array([self.config.thresholds.F_max])}
 
     def certificate(self) -> tuple[bool, str]:

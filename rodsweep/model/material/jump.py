@@ -62,7 +62,7 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """a of the mean unknowns q, by Newton's method."""
+    """a of the mean unknowns q, by Newton's method; sides: (2, 6)."""
     one, other = _section(sides[0]), _section(sides[1])
     ratio1, ratio3 = sides[0, 3] / sides[1, 3], sides[0, 4] / sides[1, 4]
     a = q
@@ -81,13 +81,13 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """b of the mean unknowns q and of a."""
+    """b of the mean unknowns q and of a; sides: (2, 6)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
-    """The stresses beyond those at rest."""
+    """The stresses beyond those at rest; sides: (2, 6)."""
     a = before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
@@ -106,7 +106,7 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses by the mean unknowns."""
+    """Derivatives of the stresses by the mean unknowns; sides: (2, 6)."""
     q = Unknowns(q1, q3)
     a = before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, behind_jump(sides, q, a))

@@ -120,7 +120,7 @@ def test_the_criticality_of_a_diagram_of_cones_is_that_of_each_cone(cones):
         (point,) = np.flatnonzero(of_hopf & (cones.curve_taper.values == taper))
         found = rs.Rod(k1=1e4, k2=1e2, gamma3=1e-2, taper=taper).criticality(F_max=60)
         assert cones.curve_F.values[point] == pytest.approx(found.crossing_F[0], rel=1e-9)
-        assert cones.curve_criticality.values[point] == found.crossing_criticality[0]
+        assert (cones.curve_criticality.values[point], found.criticality[0]) == (-1, "supercritical")
 
 
 def test_cones_of_a_diagram_beat_where_they_flutter(cones):
