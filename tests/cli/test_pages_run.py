@@ -1,6 +1,7 @@
 """README.md, docs/tasks, docs/howto, docs/arm.md: each command of a page is run; its output is the page's.
 
-A page is run from top to bottom in a directory of its own, which has the configs of the clone.
+A page is run from top to bottom in a directory of its own, which has the configs of the clone. Pages with
+configs that take long are run by `make survey`; `tests/test_paper.py` runs these configs on coarser grids.
 """
 
 import re
@@ -11,9 +12,12 @@ from io import StringIO
 import numpy as np
 import pytest
 from conftest import ROOT
+from surveyed import survey_only
 
 DOCS = ROOT / "docs"
 PAGES = [*sorted((DOCS / "tasks").glob("*.md")), *sorted((DOCS / "howto").glob("*.md"))]
+LONG_PAGES = ("branch", "limit_cycle", "phase_diagram", "amplitude-map")
+"""Names of pages whose commands take longer than all others together."""
 CLUSTER = ROOT / "tests" / "cluster" / "test_slurm.py"
 BAD_INPUT = 2
 """Exit status of a refused command."""
@@ -104,7 +108,11 @@ def run_page(command, page):
 
 
 @pytest.mark.parametrize(
-    "page", [ROOT / "README.md", *PAGES], ids=lambda page: f"{page.parent.name}/{page.stem}"
+    "page",
+    [
+        pytest.param(page, marks=survey_only if page.stem in LONG_PAGES else (), id=page.stem)
+        for page in (ROOT / "README.md", *PAGES)
+    ],
 )
 def test_page_says_what_comes(command, monkeypatch, page):
     monkeypatch.chdir(command.directory)
