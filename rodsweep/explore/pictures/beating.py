@@ -43,6 +43,7 @@ class BeatingPicture:
             arguments = {"figure": figure, "grip": self.grip, "phase": phase}
             figure.js_on_event(event, CustomJS(args=arguments, code=read("grip.js")))
         self.card = Card("beating", figure)
+        self.card.entitle("")
 
     def animation(self) -> CustomJS:
         """Code that the browser runs once when the page is ready."""

@@ -47,6 +47,7 @@ class BranchPicture:
         self.point = vertical_line(0, POINT)
         figure.add_layout(self.point)
         self.card = Card("branches", figure)
+        self.card.entitle("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
         """Draws the branches of an answer."""

@@ -29,7 +29,6 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
-    made.title.text = NO_TITLE
     made.toolbar.autohide = True
     made.toolbar_inner = True
     made.toolbar.logo = None

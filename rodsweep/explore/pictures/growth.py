@@ -42,6 +42,7 @@ class GrowthPicture:
         self.point.line_width = 3
         figure.add_layout(self.point)
         self.card = Card("growth", figure)
+        self.card.entitle("")
 
     def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
         """Draws the growth rates."""

@@ -21,6 +21,7 @@ class SpectrumPicture:
         figure.add_layout(vertical_line(0, NEUTRAL, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
         self.card = Card("spectrum", figure)
+        self.card.entitle("")
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws an answer of the task spectrum."""
