@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
+from ..model.arm.quantities import RELATIVE
 from ..model.material.build import STANDARD, Build
-from ..model.material.laws import LINEAR
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import OF_MATERIAL, SHAPES, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
@@ -134,17 +134,12 @@ class Config(Strict):
                 f"material and parameters.arm.{own} are both given; give law and section in parameters.arm"
             )
         refuse_misused_shape(arm, self.parameters.given_axes)
-        refuse_compressible(arm, self.build.section)
-        return self
-
-    @model_validator(mode="after")
-    def _jumps_of_linear_material_only(self) -> "Config":
-        if self.of_cycles and self.build.law != LINEAR.law and not self.build.continuous:
-            where = "material.profile" if self.material is not None else "parameters.arm.segments"
+        if arm.load_axis in RELATIVE and "taper" in self.parameters.given_axes:
             raise ValueError(
-                f"{where} has a jump and the law is {self.build.law}, but the task {self.task} solves jumps "
-                "of linear material only; remove the jump or set law: linear"
+                f"parameters.arm.{arm.load} is relative to flutter of the arm, and parameters.taper stands "
+                "beside the arm; give parameters.arm.tip_radius instead, or the load in its unit"
             )
+        refuse_compressible(arm, self.build.section)
         return self
 
 

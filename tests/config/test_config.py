@@ -240,7 +240,7 @@ REFUSED_BY_TASK = [
     (thresholds("points: p.csv, k1: 9"), "parameters.points and parameters.k1 are both given"),
     (
         diagram(F="1"),
-        "has 1 axes with more than one value (k2); a phase diagram needs exactly two of F, k1, k2, gamma3 "
+        "has 1 axis with more than one value (k2); a phase diagram needs exactly two of F, k1, k2, gamma3 "
         "and taper",
     ),
     (diagram(k1="[9, 10]"), "has 3 axes with more than one value (F, k1, k2); a phase diagram needs exactly"),

@@ -31,7 +31,7 @@ def test_the_rod_has_all_parameters():
 def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():
     for config in CONFIGS.values():
         keys = config.model_fields["parameters"].annotation.model_fields
-        assert {*PARAMETERS, "points", "arm"} == set(keys)
+        assert {*PARAMETERS, "points", "columns", "arm"} == set(keys)
     assert {DIMENSIONS[name] for name in PARAMETERS} == {(p.unit, p.long_name) for p in PARAMETERS.values()}
 
 
