@@ -20,8 +20,7 @@ from ...post.tables.contents import POINTS
 from ...results.layouts import layout_of
 from ..dataset import view_of
 from .frames import frame_of, series_of
-from .printing import Printed, first_lines
-from .printing import brief_html, brief_text, whole_html, whole_text
+from .printing import Printed, brief_html, brief_text, first_lines, whole_html, whole_text
 
 EIGENVALUE = ("growth_rate", "frequency")
 """Names of the real and the imaginary part of an eigenvalue."""

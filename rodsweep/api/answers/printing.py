@@ -17,7 +17,7 @@ from ...wording import counted
 
 BRIEF_LINES = 11
 """Largest number of lines of an answer at a prompt, unless the sentences above the numbers need more."""
-MIN_ROWS = 2
+MIN_ROWS = 3
 """Number of rows of a list that are printed even if the lines above are many."""
 BETWEEN = "+-"
 """Sign between a number and its error."""
@@ -56,7 +56,7 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
     answer = HEADLINES[task].sentence(rod)
-    proof = {1: ", certified: yes", 0: ", certified: no"}.get(rod.count("certified") if answer else None, "")
+    proof = {1: ", certified", 0: ", not certified"}.get(rod.count("certified") if answer else None, "")
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
     return answer, f"{name}, {task}: {status}{proof}", meaning
@@ -76,11 +76,10 @@ def brief_html(printed: Printed) -> str:
     parts = [_html_heading(printed)]
     if pairs := _number_pairs(printed):
         parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
-    if columns := _brief_columns(printed):
-        digits = printed.rod.lists[printed.headline.table]
-        cells = [digits.texts(column.name)[: _most_rows(printed)] for column in columns]
-        heads = [tuple(column.name for column in columns), tuple(map(_unit, columns))]
-        parts.append(_html_table(heads, list(zip(*cells, strict=True))))
+    columns, _ = _brief_cells(printed, BRIEF_LINES)
+    if columns:
+        name, unit, *rows = zip(*columns, strict=True)
+        parts.append(_html_table([name, unit], rows))
     return "".join([*parts, f"<p>{escape(' '.join(_more(printed).split()))}</p>"])
 
 
@@ -93,7 +92,7 @@ def whole_text(printed: Printed) -> str:
         lines = [folded(_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
             kept = [column for column in columns if not column.absent.all()]
-            for number, block in enumerate(blocks(_cells(printed.rod.lists[name], kept, None))):
+            for number, block in enumerate(blocks(_cells(printed.rod.lists[name], kept))):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
     return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.ends))]))
@@ -147,42 +146,47 @@ def _number_lines(printed: Printed) -> list[str]:
     return ["", *(GAP.join(row).rstrip() for row in zip(*kept, strict=True))]
 
 
-def _brief_columns(printed: Printed) -> list[Column]:
-    """Columns of the list of the headline that the rod has, as many as the window is wide."""
-    table = printed.headline.table
-    if not table or table not in printed.rod.lists:
-        return []
-    digits = printed.rod.lists[table]
+def _brief_cells(printed: Printed, room: int) -> tuple[list[list[str]], int]:
+    """(columns of the list of the headline, number of its items); room: largest number of rows.
+
+    A column has the cells name, unit, and values; errors follow as a column of their own. As many columns are
+    printed as the window is wide.
+    """
+    digits = printed.rod.lists.get(printed.headline.table)
+    if digits is None:
+        return [], 0
     names = [printed.rod.preferred(digits, name) for name in printed.headline.columns]
     columns = [digits.columns[name] for name in names if name in digits.columns]
     columns = [column for column in columns if not column.absent.all()]
-    if not columns or not len(columns[0].values):
-        return []
-    cells = _cells(digits, columns, None)
-    widths = [len(column[0]) + len(GAP) for column in cells]
-    return [column for place, column in enumerate(columns) if sum(widths[: place + 1]) <= WIDTH + len(GAP)]
+    count = len(columns[0].values) if columns else 0
+    found: list[list[str]] = []
+    width = -len(GAP)
+    for column in columns if count else ():
+        values, errors = zip(*digits.pairs(column.name)[:room], strict=True)
+        added = [column_cells((column.name, _unit(column)), values)]
+        added += [column_cells((BETWEEN, ""), errors)] if any(errors) else []
+        width += sum(len(cells[0]) + len(GAP) for cells in added)
+        if width > WIDTH:
+            break
+        found += added
+    return found, count
 
 
-def _cells(digits: Digits, columns: Sequence[Column], rows: int | None) -> list[list[str]]:
-    """Cells of the columns of a list under their names and units; rows: the largest number of items."""
-    return [column_cells((c.name, _unit(c)), digits.texts(c.name)[:rows]) for c in columns]
+def _cells(digits: Digits, columns: Sequence[Column]) -> list[list[str]]:
+    """Cells of the columns of a list under their names and units."""
+    return [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in columns]
 
 
 def _brief_list(printed: Printed, room: int) -> list[str]:
     """Lines of the list of the headline below an empty line; room: number of lines left."""
-    columns = _brief_columns(printed)
+    rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
+    columns, count = _brief_cells(printed, rows)
+    if count == rows + 1:  # the line "and 1 more" has room for the row
+        columns, count = _brief_cells(printed, count)
     if not columns:
         return []
-    count = len(columns[0].values)
-    rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
-    rows += count == rows + 1  # the line "and 1 more" has room for the row
-    (block,) = blocks(_cells(printed.rod.lists[printed.headline.table], columns, rows))
-    return ["", *block] + ([f"and {count - rows} more"] if count > rows else [])
-
-
-def _most_rows(printed: Printed) -> int:
-    """Number of rows of the list of the headline in a notebook."""
-    return max(BRIEF_LINES - len(printed.heading) - 3, MIN_ROWS)
+    (block,) = blocks(columns)
+    return ["", *block] + ([f"and {count - rows} more"] if count > rows + 1 else [])
 
 
 def _more(printed: Printed) -> str:
@@ -204,7 +208,7 @@ def _html_heading(printed: Printed) -> str:
 
 def _html_table(heads: Sequence[Line], lines: Sequence[Line]) -> str:
     def row(cells: Line, tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+        return "<tr>" + "".join(f"<{tag}>{escape(cell.strip())}</{tag}>" for cell in cells) + "</tr>"
 
     body = "".join([*(row(line, "th") for line in heads), *(row(line, "td") for line in lines)])
     return f"<table>{body}</table>"

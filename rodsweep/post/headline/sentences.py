@@ -70,14 +70,20 @@ def branch_sentence(rod: OneRod) -> str:
     options = rod.view.config["branch"]
     along = options["along"]
     if not branches:
-        return f"no branch of cycles: no Hopf point for {along} from {options['start']:g} to {options['stop']:g}"
+        return (
+            f"no branch of cycles: no Hopf point for {along} from {options['start']:g} to {options['stop']:g}"
+        )
     cycles = rod.lists["cycles"]
-    text = f"{counted(branches, 'branch')} of cycles from {counted(rod.count('hopf_count') or 0, 'Hopf point')}"
+    text = (
+        f"{counted(branches, 'branch')} of cycles from {counted(rod.count('hopf_count') or 0, 'Hopf point')}"
+    )
     y = rod.preferred(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
     largest = int(np.nanargmax(cycles.columns[y].values))
-    return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {cycles.short(y, largest)}"
+    return (
+        f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {cycles.short(y, largest)}"
+    )
 
 
 def cycle_sentence(rod: OneRod) -> str:
@@ -95,32 +101,32 @@ def _end(rod: OneRod) -> str:
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 
 
-EIGENVALUES = ("mode", "growth_rate", "frequency", "error_estimate")
+EIGENVALUES = ("mode", "growth_rate", "frequency")
 HEADLINES = {
     "spectrum": Headline(eigenvalue_sentence, (), "modes", (*EIGENVALUES, "longitudinal_rate")),
     "modes": Headline(
         eigenvalue_sentence,
         ("numerical_abscissa", "transient_growth", "transient_time"),
         "modes",
-        (*EIGENVALUES, "condition", "mode_error"),
+        (*EIGENVALUES, "condition"),
     ),
     "thresholds": Headline(
         threshold_sentence,
         (),
         "crossings",
-        ("crossing", "crossing_kind", "crossing_F", "crossing_error", "crossing_frequency", "unstable_after"),
+        ("crossing", "crossing_kind", "crossing_F", "crossing_frequency", "unstable_after"),
     ),
     "criticality": Headline(
         hopf_sentence,
         (),
         "crossings",
-        ("crossing", "criticality", "crossing_F", "crossing_error", "amplitude_coefficient"),
+        ("crossing", "criticality", "crossing_F", "amplitude_coefficient", "crossing_frequency"),
     ),
     "branch": Headline(
         branch_sentence,
         (),
         "special_points",
-        ("special", "special_kind", "special_at", "special_error", "special_tip_y_max", "special_reason"),
+        ("special", "special_kind", "special_at", "special_tip_y_max", "special_period", "special_reason"),
     ),
     "limit_cycle": Headline(
         cycle_sentence,

@@ -1,6 +1,7 @@
 """Summary of a result, for `rodsweep show` and `rodsweep report`: answer, reliability, details, origin."""
 
-from collections.abc import Callable, Iterable
+import os
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from rich.console import Console
@@ -16,6 +17,7 @@ from ...results.layouts import lacks_curves
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, is_or_are, plural
 from ..origin import origin_lines, rank_lines, time_lines
+from ..tables.alignment import point_aligned, refolded
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
 from .branch import branch_summary
@@ -65,24 +67,35 @@ def show_summary(view: View, every_status: bool = False) -> None:
     """Prints a summary of a result file; every_status: whether statuses of no point are listed as well.
 
     The answer comes first, for an arm also in the arm's units. Then follow the reliability of the answer,
-    further results, and last the provenance.
+    further results, the parameters, and last the provenance, each below its heading. In a terminal no line is
+    wider than the window; a pipe gets whole lines.
     """
     console = Console(highlight=False, markup=False)
     summary = summary_of(view, every_status)
     title = view.attributes.get("title", "")
     console.print(f"{printable(str(view.path))}: {title}, task {view.task}", soft_wrap=True)
-    for lines, table in (
-        (summary.answer, None),
-        (summary.trust, summary.statuses),
-        (summary.details, summary.axes),
-        (summary.origin, None),
-    ):
-        for line in lines:
-            console.print(line, soft_wrap=True)
+    _print_lines(console, summary.answer)
+    groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
+        ("Reliability", summary.trust, summary.statuses),
+        ("Further results", summary.details, None),
+        ("Parameters", (), summary.axes),
+        ("Provenance", summary.origin, None),
+    )
+    for heading, lines, table in groups:
+        if not lines and table is None:
+            continue
+        console.print()
+        console.print(heading, style="bold")
+        _print_lines(console, lines)
         if table is not None:
             console.print(_printed(table))
-        if lines is not summary.origin:
-            console.print()
+
+
+def _print_lines(console: Console, lines: Sequence[str]) -> None:
+    """Prints lines, folded at the width of the window; without a window a line stays whole."""
+    has_window = console.is_terminal or "COLUMNS" in os.environ
+    for line in lines:
+        console.print(refolded(line, console.width) if has_window else line, soft_wrap=True)
 
 
 def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
@@ -120,10 +133,11 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
 
 
 def _printed(table: TextTable) -> Table:
-    """Table for the terminal, without borders."""
+    """Table for the terminal, without borders, numbers with their decimal points below each other."""
     printed = Table(*table.headings, box=None, pad_edge=False)
-    for row in table.rows:
-        printed.add_row(*map(Text, row))
+    if table.rows:
+        for row in zip(*map(point_aligned, zip(*table.rows, strict=True)), strict=True):
+            printed.add_row(*(Text(cell.rstrip()) for cell in row))
     return printed
 
 

@@ -11,6 +11,9 @@ GAP = "  "
 MIN_PROSE = 24
 """Smallest width of a last column of prose; narrower prose has a line of its own below the row."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
+NO_BREAK = "\xa0"
+GLUED = re.compile(r" = \S+| \(\+- [^)]*\)")
+"""Parts of a sentence that stay on one line: a value beside its name, an error beside its number."""
 
 Line = tuple[str, ...]
 
@@ -18,6 +21,19 @@ Line = tuple[str, ...]
 def folded(text: str, indent: str = "  ", width: int = WIDTH) -> str:
     """A text in lines of at most `width` characters, with an indent before every line but the first."""
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
+
+
+def refolded(line: str, width: int = WIDTH) -> str:
+    """A line in lines of at most `width` characters, indented further than the line itself.
+
+    A name and its value, and a number and its error, stay on one line. Names of files are not broken.
+    """
+    indent = " " * (len(line) - len(line.lstrip()) + 2)
+    whole = GLUED.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
+    lines = textwrap.wrap(
+        whole, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
+    return "\n".join(lines).replace(NO_BREAK, " ")
 
 
 def point_aligned(cells: Sequence[str]) -> list[str]:
@@ -81,7 +97,9 @@ def rows_with_prose(rows: Sequence[Line], width: int = WIDTH) -> list[str]:
             lines.append(f"{begin}{GAP}{first}".rstrip())
             lines += [" " * (width - room) + line for line in further]
         else:
-            lines += [begin.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)] if text else [
-                begin.rstrip()
-            ]
+            lines += (
+                [begin.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
+                if text
+                else [begin.rstrip()]
+            )
     return lines
