@@ -50,9 +50,11 @@ def cells_of(starts, row):
 
 
 def unit_of(text):
-    """Unit of the last printed digit of a number."""
+    """Unit of the last printed digit of a number; zeros at the end of a whole number may be rounded."""
     mantissa, _, exponent = text.partition("e")
-    return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    whole, _, decimals = mantissa.partition(".")
+    zeros = len(whole) - len(whole.rstrip("0")) if not decimals and not exponent else 0
+    return 10.0 ** (int(exponent or 0) - len(decimals) + zeros)
 
 
 def flaws_of_layout(answer):
