@@ -21,7 +21,25 @@ from rodsweep.tasks import TASKS
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 ARM = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "10 Pa s", "pressure": "3 kPa"}
-WORDS = "rod beats at F with period, and its tip reaches y while gamma3 stays below the threshold".split()
+WORDS = [
+    "rod",
+    "beats",
+    "at",
+    "F",
+    "with",
+    "period,",
+    "and",
+    "its",
+    "tip",
+    "reaches",
+    "y",
+    "while",
+    "gamma3",
+    "stays",
+    "below",
+    "the",
+    "threshold",
+]
 GROUPS = ["Reliability", "Further results", "Parameters", "Provenance"]
 """Headings of `show` in their order."""
 

@@ -19,6 +19,8 @@ BRIEF_LINES = 11
 """Largest number of lines of an answer at a prompt, unless the sentences above the numbers need more."""
 MIN_ROWS = 3
 """Number of rows of a list that are printed even if the lines above are many."""
+PROOFS = ("not certified", "certified")
+"""Words for the completeness of the list of an answer."""
 BETWEEN = "+-"
 """Sign between a number and its error."""
 
@@ -56,7 +58,8 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
     answer = HEADLINES[task].sentence(rod)
-    proof = {1: ", certified", 0: ", not certified"}.get(rod.count("certified") if answer else None, "")
+    certified = rod.count("certified")
+    proof = "" if certified is None else f", {PROOFS[certified]}"
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
     return answer, f"{name}, {task}: {status}{proof}", meaning
@@ -125,7 +128,7 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
     )
 
 
-def _number_pairs(printed: Printed) -> list[Line]:
+def _number_pairs(printed: Printed) -> list[tuple[str, str, str, str]]:
     """(name, value, error with its sign, unit) of the numbers of the headline that the rod has."""
     pairs = []
     for name in printed.headline.numbers:
@@ -191,7 +194,8 @@ def _brief_list(printed: Printed, room: int) -> list[str]:
 
 def _more(printed: Printed) -> str:
     """Line on how to see the rest: the whole table, and the lists with their numbers of items."""
-    rows = {name: len(columns[0].values) for name, columns in printed.lists.items()} | printed.named
+    rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
+    rows.update(printed.named)
     lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
     return folded(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
