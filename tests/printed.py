@@ -100,8 +100,7 @@ def flaws_of_digits(answer, whole):
                 if not text or not np.isfinite(value) or value == 0 or not known > 0:
                     continue
                 unit = unit_of(text)
-                size = 10.0 ** floor(log10(abs(value)))
-                if unit < min(0.1 * known, size) * (1 - 1e-9):
+                if unit < 10.0 ** floor(log10(known)) * (1 - 1e-9):
                     yield f"{name} = {text} has digits beyond its error {known}"
                 if abs(float(text) - value) > 0.51 * unit + 1e-14 * abs(value):
                     yield f"{name} = {text} is {value}"

@@ -18,7 +18,7 @@ from ...wording import counted
 BRIEF_LINES = 11
 """Largest number of lines of an answer at a prompt, unless the sentences above the numbers need more."""
 MIN_ROWS = 3
-"""Number of rows of a list that are printed even if the lines above are many."""
+"""Number of numbers, or of rows of a list, that are printed even if the lines above are many."""
 PROOFS = ("not certified", "certified")
 """Words for the completeness of the list of an answer."""
 BETWEEN = "+-"
@@ -141,7 +141,8 @@ def _number_pairs(printed: Printed) -> list[tuple[str, str, str, str]]:
 
 def _number_lines(printed: Printed) -> list[str]:
     """Aligned lines of the numbers of the headline, below an empty line."""
-    pairs = _number_pairs(printed)
+    room = BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
+    pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
     if not pairs:
         return []
     cells = [column_cells((), column) for column in zip(*pairs, strict=True)]

@@ -1,6 +1,7 @@
 """Columns of a result as text, each number with as many digits as its error allows."""
 
 from collections.abc import Mapping, Sequence
+from math import floor, log10
 
 import numpy as np
 
@@ -81,6 +82,10 @@ class Digits:
             return f"{value:.{EXACT_DIGITS}g}", ""
         if not np.isfinite(error):
             return f"{value:.{UNKNOWN_ERROR_DIGITS}g}", ""
+        if error >= abs(value):  # not even the first digit is known
+            place = floor(log10(error))
+            text = f"{round(value, -place) + 0.0:.{max(-place, 0)}f}"
+            return text, error_text(error + abs(float(text) - value))
         text, stated = stated_error(value, error)
         return text, error_text(stated)
 

@@ -12,10 +12,10 @@ from .one_rod import OneRod
 
 @dataclass(frozen=True, slots=True)
 class Headline:
-    """What of a task's result is printed first.
+    """Sentence, numbers and list that are printed first of a task's result.
 
     sentence: the answer, empty where the rod has none. numbers: variables of the rod. table: name of a list,
-    empty for none. columns: its columns, the most important first.
+    empty for none. columns: columns of the list. The most important numbers and columns come first.
     """
 
     sentence: Callable[[OneRod], str]
@@ -132,13 +132,13 @@ HEADLINES = {
         cycle_sentence,
         (
             "period",
-            "frequency",
             "tip_y_max",
             "multiplier",
+            "frequency",
             "injection_mean",
             "linear_growth_rate",
             "linear_frequency",
         ),
     ),
 }
-"""What is printed first of the result of each task of one rod."""
+"""Headline of each task of one rod."""
