@@ -1,19 +1,14 @@
 """Columns of a result as text, each number with as many digits as its error allows."""
 
 from collections.abc import Mapping, Sequence
-from math import floor, log10
 
 import numpy as np
 
 from ...arrays import Array
 from ..summary.errors import ABSOLUTE, RELATIVE, errors_of
-from ..summary.ranges import error_text, rounded, stated_error
+from ..summary.ranges import error_text, number_and_error, rounded
 from ..tables.columns import Column
 
-UNKNOWN_ERROR_DIGITS = 6
-"""Digits of a number without a known error."""
-EXACT_DIGITS = 15
-"""Digits of a number whose error is 0, such as a given value; trailing zeros are left out."""
 YES_NO = ("no", "yes")
 COMPLEX_PARTS = {"landau": "landau_error", "growth_slope": "growth_slope_error"}
 """Complex variables, stored as two parts, and their error relative to the modulus."""
@@ -71,23 +66,7 @@ class Digits:
             texts = (error_text(float(value)) if value else "0" for value in stated)
             return [("" if none else text, "") for text, none in zip(texts, column.absent, strict=True)]
         rows = zip(self._values[name], self.error(name), column.absent, strict=True)
-        return [("", "") if none else self._pair(float(x), float(dx)) for x, dx, none in rows]
-
-    @staticmethod
-    def _pair(value: float, error: float) -> tuple[str, str]:
-        """(number, error) as text."""
-        if value == 0 or not np.isfinite(value):
-            return f"{value + 0.0:g}", ""
-        if error == 0:
-            return f"{value:.{EXACT_DIGITS}g}", ""
-        if not np.isfinite(error):
-            return f"{value:.{UNKNOWN_ERROR_DIGITS}g}", ""
-        if error >= abs(value):  # not even the first digit is known
-            place = floor(log10(error))
-            text = f"{round(value, -place) + 0.0:.{max(-place, 0)}f}"
-            return text, error_text(error + abs(float(text) - value))
-        text, stated = stated_error(value, error)
-        return text, error_text(stated)
+        return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
 
     def _rounding(self, error: str) -> Array:
         """Largest rounding of the printed numbers with an error, (rows,): relative where the error is."""
