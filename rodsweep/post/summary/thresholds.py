@@ -20,6 +20,13 @@ EVENTS = {
 }
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
 
+FIRSTS = {
+    "onset": "oscillates from",
+    "hopf": "beats from",
+    "restabilization": "stable again from",
+}
+"""Words before the force of the first crossing of a kind, for a single rod."""
+
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
@@ -65,12 +72,12 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 
 def crossing_lines(view: View) -> list[str]:
     """Lines about the number of crossings of the single rod of a file, and the meaning of every kind."""
-    v = {
-        name: view.variables[name].ravel()
-        for name in ("crossing_kind", "crossing_count", "open_from", "F_end")
-    }
+    v = {name: view.variables[name].ravel() for name in view.variables}
     kinds = [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]
     count = f"{counted(int(v['crossing_count'][0]), 'crossing')} up to F = {v['F_end'][0]:.15g}"
+    firsts = {word: v[f"F_{event}"][0] for event, word in FIRSTS.items()}
+    words = [f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F)]
+    count = "; ".join((", ".join(words), count)) if words else count
     lines = [count, *(f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))] if kinds else []
     if not lines and v["crossing_count"][0] < 0:
         return ["its thresholds are not known"]
