@@ -77,7 +77,7 @@ def show_summary(view: View, every_status: bool = False) -> None:
     summary = summary_of(view, every_status)
     title = view.attributes.get("title", "")
     console.print(f"{printable(str(view.path))}: {title}, task {view.task}", soft_wrap=True)
-    _print_lines(console, summary.answer)
+    print_lines(console, summary.answer)
     if summary.numbers is not None:
         _print_numbers(console, summary.numbers)
     groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
@@ -91,12 +91,12 @@ def show_summary(view: View, every_status: bool = False) -> None:
             continue
         console.print()
         console.print(heading, style="bold")
-        _print_lines(console, lines)
+        print_lines(console, lines)
         if table is not None:
             console.print(_printed(table))
 
 
-def _print_lines(console: Console, lines: Sequence[str]) -> None:
+def print_lines(console: Console, lines: Sequence[str]) -> None:
     """Prints lines, folded at the width of the window; without a window a line stays whole."""
     for line in lines:
         console.print(refolded(line, console.width) if has_window(console) else line, soft_wrap=True)
