@@ -8,9 +8,11 @@ from random import Random
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
 
 import rodsweep as rs
+from rodsweep.cli.checking import describe_job
 from rodsweep.post.headline.digits import Digits
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
@@ -18,6 +20,7 @@ from rodsweep.post.tables.alignment import blocks, column_cells, point_aligned, 
 from rodsweep.post.tables.columns import Column
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
+from rodsweep.tasks.running.job import make_job
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 ARM = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "10 Pa s", "pressure": "3 kPa"}
@@ -173,3 +176,14 @@ def test_show_stays_in_the_window_with_a_heading_for_each_group(task, asked, wid
     assert headings == [group for group in GROUPS if group in headings]
     assert {"Reliability", "Parameters", "Provenance"} <= set(headings)
     assert all(lines[lines.index(heading) - 1] == "" for heading in headings)
+
+
+@pytest.mark.parametrize("name", ["fig2c", "taper", "segments", "beating_arm"])
+def test_check_stays_in_the_window(name, monkeypatch):
+    monkeypatch.setenv("COLUMNS", str(WINDOW))
+    page = io.StringIO()
+    with redirect_stdout(page):
+        describe_job(make_job(ROOT / "configs" / f"{name}.yaml", ()))
+    lines = page.getvalue().splitlines()
+    assert max(map(len, lines)) <= WINDOW
+    assert any(line.startswith("expected: ") for line in lines)
