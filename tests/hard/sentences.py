@@ -442,6 +442,12 @@ def _crossing_sentences(rod, crossings, page):
         above = int((w.real > 0).sum())
         why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
         found.append((line, "; ".join(filter(None, why))))
+    for line, match in read(page, r"(?:oscillates|beats|stable again) from F = NUMBER"):
+        near = min(crossings, key=lambda c: abs(c.at - float(match[1])))
+        found.append((line, as_stated(match[1], near.at)))
+    for line, match in read(page, r"(?:^|; )NUMBER crossings? up to F = NUMBER$"):
+        within = sum(c.at <= float(match[2]) for c in crossings)
+        found.append((line, "" if int(match[1]) == within else f"there are {within}"))
     return found
 
 

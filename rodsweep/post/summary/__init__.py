@@ -171,16 +171,11 @@ def _axes(view: View) -> Iterable[tuple[str, ...]]:
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """(number of different values, smallest, largest) of values of any shape, as text; NaN does not count.
-
-    The largest of a single value is left out.
-    """
+    """(number of different values, smallest, largest) of values of any shape, as text; NaN does not count."""
     # Twelve digits, because values computed from an arm may differ by rounding.
     different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
     ends = sorted(map(float, different))
-    if not ends:
-        return "0", "", ""
-    return str(len(ends)), f"{ends[0]:.6g}", f"{ends[-1]:.6g}" if len(ends) > 1 else ""
+    return (str(len(ends)), f"{ends[0]:.6g}", f"{ends[-1]:.6g}") if ends else ("0", "", "")
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
