@@ -197,7 +197,7 @@ class Command:
             self.argv(*words, ranks=ranks, afresh=afresh),
             cwd=self.directory,
             # As this process got it: MPI, once started in here, adds to the one in C.
-            env=os.environ | {"COLUMNS": "120"} | self._path_of(patch) | variables,
+            env=os.environ | {"COLUMNS": "1000"} | self._path_of(patch) | variables,
             stdout=stdout,
             stderr=subprocess.PIPE,
             text=True,

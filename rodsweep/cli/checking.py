@@ -10,6 +10,7 @@ from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import given_text
 from ..config.arm.section import ArmSection
 from ..model.arm.neglected import wall_effect
+from ..post.summary import print_lines
 from ..post.summary.arm.answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.cost_estimate import MAX_SAMPLE
@@ -23,13 +24,12 @@ from ..wording import counted
 
 def describe_job(job: Job) -> None:
     """Prints the description of a valid config."""
-    console = Console(highlight=False)
-    console.print(f"{job.path}: valid. {job.config.title}".rstrip(), markup=False)
+    console = Console(highlight=False, markup=False)
+    console.print(f"{job.path}: valid. {job.config.title}".rstrip())
     console.print(job.task.headline())
     if arms := job.task.arms():
-        console.print(arms)
-    for line in _arm_lines(job) if job.quantities else []:
-        console.print(line, markup=False, soft_wrap=True)
+        print_lines(console, [arms])
+    print_lines(console, _arm_lines(job) if job.quantities else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
     for part, is_modelled, why in job.task.parts():
         table.add_row(part, "yes" if is_modelled else "no", why)

@@ -12,6 +12,7 @@ from random import Random
 import numpy as np
 import pytest
 from faults import calls
+from printed import flaws_of_layout
 
 import rodsweep as rs
 
@@ -70,8 +71,11 @@ def leads_astray(call, sentence):
 
 def flaws_of(answer):
     """What is wrong with an answer, each in words."""
-    for text in (repr(answer), re.sub(r"<[^>]*>", " ", answer._repr_html_())):
-        body = text[text.index(answer.status) :].replace(answer.message, "").replace(answer.sentence, "")
+    yield from flaws_of_layout(answer)
+    whole = answer.table()
+    html = (re.sub(r"<[^>]*>", " ", each._repr_html_()) for each in (answer, whole))
+    for text in (repr(answer), repr(whole), *html):
+        body = text.replace(answer.message, "").replace(answer.sentence, "")
         for line in body.splitlines():
             if (found := FILLER.search(line)) and not line.startswith("none: "):
                 yield f"{found[0]!r} in {line!r}"

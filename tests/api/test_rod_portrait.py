@@ -103,7 +103,9 @@ def test_the_page_has_the_paragraph_and_the_numbers_of_the_solver(portrait, tmp_
 def test_a_notebook_shows_the_picture_and_a_terminal_the_paragraph(portrait):
     bundle = portrait._repr_mimebundle_()
     assert bundle["image/png"].startswith(b"\x89PNG")
-    assert portrait.paragraph in bundle["text/plain"] == repr(portrait)
+    assert bundle["text/plain"] == repr(portrait)
+    assert repr(portrait).split()[: len(portrait.paragraph.split())] == portrait.paragraph.split()
+    assert max(map(len, repr(portrait).splitlines())) <= 80
 
 
 def test_a_rod_that_never_beats_has_the_reasons_in_the_places_of_the_drawings():

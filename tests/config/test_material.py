@@ -117,7 +117,7 @@ def test_a_run_stores_what_was_asked_and_continues_only_that(command):
         assert np.unique(file["certified"][...]).tolist() == [1]
     assert "nothing to do" in command("run", "arm.yaml").stdout
     shown = command("show", "arm.h5").stdout
-    assert "taper      2       0.7" in shown
+    assert "taper 2 0.7 1 1" in " ".join(shown.split())
     (command.directory / "steps.csv").write_text(STEPPED.replace("0.5", "0.6"))
     other = command("run", "arm.yaml")
     assert other.returncode == 2

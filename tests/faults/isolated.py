@@ -123,7 +123,7 @@ def isolated(configs: list[Path], solving: bool = False) -> Iterator[Isolated]:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env=dict(os.environ) | {"COLUMNS": "120"} | HUGE_PAGES,
+            env=dict(os.environ) | {"COLUMNS": "1000"} | HUGE_PAGES,
         )
         try:
             run = Isolated(server, Path(name))

@@ -329,9 +329,9 @@ def spectrum_sentences(view, page, keywords, fine):
 def _eigenvalue_sentences(rod, page, unstable):
     """Of the one point of a file."""
     true = solve_spectrum(rod, SpectrumRequest(6, 1e-12, True)).eigenvalues
-    stated = f"({NUMBER})(?: \\(\\+- ({NUMBER})\\))?"
+    stated = f" +({NUMBER})(?: +({NUMBER}(?<=e[-+]\\d\\d)))?"  # an error has an exponent, 0 has no error
     found = []
-    for line, match in read(page, rf"mode (\d+): growth rate {stated} 1/tau2, frequency {stated}"):
+    for line, match in read(page, rf"^(\d+){stated}{stated}$"):
         w = true[int(match[1]) - 1]
         pairs = ((match[2], match[3], w.real), (match[4], match[5], w.imag))
         found.append((line, "; ".join(filter(None, (with_error(a, b or 0, c) for a, b, c in pairs)))))
@@ -428,8 +428,8 @@ def _crossing_sentences(rod, crossings, page):
     found = []
     for line, match in read(
         page,
-        rf"^(\w+) at F = NUMBER \(\+- ({NUMBER})\).*growth rate NUMBER 1/tau2, frequency NUMBER rad/tau2; "
-        "unstable modes above: NUMBER",
+        r"^(onset|hopf|hopf_reverse|restabilization|real_again|real_leads|pair_leads) +"
+        "NUMBER +NUMBER +NUMBER +NUMBER +NUMBER$",
     ):
         near = min(crossings, key=lambda c: abs(c.at - float(match[2])))
         why = [with_error(match[2], match[3], near.at)]
@@ -442,6 +442,12 @@ def _crossing_sentences(rod, crossings, page):
         above = int((w.real > 0).sum())
         why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
         found.append((line, "; ".join(filter(None, why))))
+    for line, match in read(page, r"(?:oscillates|beats|stable again) from F = NUMBER"):
+        near = min(crossings, key=lambda c: abs(c.at - float(match[1])))
+        found.append((line, as_stated(match[1], near.at)))
+    for line, match in read(page, r"(?:^|; )NUMBER crossings? up to F = NUMBER$"):
+        within = sum(c.at <= float(match[2]) for c in crossings)
+        found.append((line, "" if int(match[1]) == within else f"there are {within}"))
     return found
 
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from math import prod
@@ -11,16 +12,32 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
+from ...post.headline.one_rod import OneRod
+from ...post.headline.sentences import HEADLINES
 from ...post.tables import Tables
 from ...post.tables.columns import Column, column_of
 from ...post.tables.contents import POINTS
 from ...results.layouts import layout_of
 from ..dataset import view_of
 from .frames import frame_of, series_of
-from .printing import Printed, html_of, text_of
+from .printing import Printed, brief_html, brief_text, first_lines, whole_html, whole_text
 
 EIGENVALUE = ("growth_rate", "frequency")
 """Names of the real and the imaginary part of an eigenvalue."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class WholeTable:
+    """All that is known of an answer, as text and for a notebook."""
+
+    text: str
+    html: str
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return self.html
 
 
 class Answer:
@@ -111,14 +128,23 @@ class Answer:
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._names()})
 
+    def table(self) -> "WholeTable":
+        """Every number with its unit and meaning, and the lists, as a text; notebooks show a table.
+
+        `rs.table(answer, NAME)` is a list with the parameters of the rod, as a DataFrame.
+        """
+        printed = self._printed()
+        return WholeTable(whole_text(printed), whole_html(printed))
+
     def __repr__(self) -> str:
-        return text_of(self._printed())
+        return brief_text(self._printed())
 
     def _repr_html_(self) -> str:
-        return html_of(self._printed())
+        return brief_html(self._printed())
 
     def _printed(self) -> Printed:
         tables = self._tables
+        rod = OneRod(tables.view)
         own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
         own.sort(key=_is_dimensionless)
         lists = {name: _units_first(tables.items(name)) for name in self.lists}
@@ -127,8 +153,9 @@ class Answer:
         totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return Printed(
-            heading=f"{self.rod}, {self.data.attrs['task']}: {self.status}",
-            outcome="; ".join(filter(None, (self.sentence, self.message))),
+            rod=rod,
+            heading=first_lines(rod, self.rod, self.status, self.sentence, self.message),
+            headline=HEADLINES[str(self.data.attrs["task"])],
             numbers=tuple(c for c in own if not c.absent[0]),
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,

@@ -1,34 +1,43 @@
-"""Layout of an answer in a terminal and in a notebook: first the numbers, then the lists in full."""
+"""Layout of an answer in a terminal and in a notebook: some ten lines, and on request the whole.
+
+Both begin with the answer in one sentence, the rod, and the meaning of the status. No line is longer than 80
+characters; numbers have as many digits as their error allows.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from ...post.headline.digits import Digits
+from ...post.headline.one_rod import OneRod
+from ...post.headline.sentences import HEADLINES, Headline
+from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
 from ...post.tables.columns import Column
+from ...wording import counted
 
-PRINTED_DIGITS = 8
-"""Significant digits printed; the stored values keep full precision."""
-PRINTED_ERROR_DIGITS = 2
-"""Significant digits of error estimates."""
-REPR_WIDTH = 110
-"""Maximum width, in characters, of a list printed with one item per line. A wider list gets one line per
-variable, with the items side by side, if this is narrower."""
-YES_NO = ("no", "yes")
-
-Line = tuple[str, ...]
+BRIEF_LINES = 11
+"""Largest number of lines of an answer at a prompt, unless the sentences above the numbers need more."""
+MIN_ROWS = 3
+"""Number of numbers, or of rows of a list, that are printed even if the lines above are many."""
+PROOFS = ("not certified", "certified")
+"""Words for the completeness of the list of an answer."""
+BETWEEN = "+-"
+"""Sign between a number and its error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Printed:
     """Content of a printed answer.
 
-    numbers: columns with one row. absent: variables without a value for this rod. lists: columns by the name
-    of the list; the first column numbers the items. named: lists not printed, with their number of rows.
-    totals: number of items of a list, stored or not; of modes the number requested.
+    heading: lines with the answer, the rod and the status. numbers: columns with one row. absent: variables
+    without a value for this rod. lists: columns by the name of the list; the first column numbers the items.
+    named: lists not printed, with their number of rows. totals: number of items of a list, stored or not; of
+    modes the number requested.
     """
 
-    heading: str
-    outcome: str
+    rod: OneRod
+    heading: tuple[str, ...]
+    headline: Headline
     numbers: tuple[Column, ...]
     absent: tuple[str, ...]
     lists: Mapping[str, tuple[Column, ...]]
@@ -44,25 +53,71 @@ class Printed:
             yield f"none: {', '.join(self.absent)}"
 
 
-def text_of(printed: Printed) -> str:
+def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
+    """(answer, rod, status with its meaning); without an answer the meaning of the status comes first."""
+    task = rod.view.task
+    meaning = "; ".join(filter(None, (sentence, message)))
+    answer = HEADLINES[task].sentence(rod)
+    certified = rod.count("certified")
+    proof = "" if certified is None else f", {PROOFS[certified]}"
+    if not answer:
+        return f"{task}: {meaning}", f"{name}, {task}: {status}"
+    return answer, f"{name}, {task}: {status}{proof}", meaning
+
+
+def brief_text(printed: Printed) -> str:
+    """An answer in some ten lines: the answer, the numbers and the list of its headline."""
+    heads = _heads(printed)
+    lines = [*heads, *_number_lines(printed)]
+    more = _more(printed)
+    lines += _brief_list(printed, BRIEF_LINES - len(lines) - more.count("\n") - 1)
+    return "\n".join([*lines, more])
+
+
+def brief_html(printed: Printed) -> str:
+    """An answer as HTML, with the content of `brief_text`."""
+    parts = [_html_heading(printed)]
+    if pairs := _number_pairs(printed):
+        parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
+    columns, _ = _brief_cells(printed, BRIEF_LINES)
+    if columns:
+        name, unit, *rows = zip(*columns, strict=True)
+        parts.append(_html_table([name, unit], rows))
+    return "".join([*parts, f"<p>{escape(' '.join(_more(printed).split()))}</p>"])
+
+
+def whole_text(printed: Printed) -> str:
     """An answer as text: every number with its unit and meaning, then the lists."""
-    parts = [f"{printed.heading}\n{printed.outcome}", _aligned(_number_lines(printed.numbers))]
+    points = printed.rod.points
+    rows = [(c.name, points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
     for name, columns in printed.lists.items():
-        title = _title(name, columns, printed.totals.get(name, 0))
-        parts.append("\n".join(filter(None, (title, _aligned(_narrowest(columns))))))
-    return "\n\n".join(filter(None, [*parts, "\n".join(printed.ends)]))
+        lines = [folded(_title(name, columns, printed.totals.get(name, 0)))]
+        if len(columns[0].values):
+            kept = [column for column in columns if not column.absent.all()]
+            for number, block in enumerate(blocks(_cells(printed.rod.lists[name], kept))):
+                lines += ["", *block] if number else block
+        parts.append("\n".join(lines))
+    return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.ends))]))
 
 
-def html_of(printed: Printed) -> str:
-    """An answer as HTML, with the content of `text_of`."""
-    parts = [f"<p><b>{escape(printed.heading)}</b><br>{escape(printed.outcome)}</p>"]
-    heads = (("variable", "value", "unit", "meaning"),)
-    parts.append(_html_table(heads, _number_lines(printed.numbers)))
+def whole_html(printed: Printed) -> str:
+    """An answer as HTML, with the content of `whole_text`."""
+    points = printed.rod.points
+    rows = [(c.name, points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
         parts.append(f"<p>{escape(_title(name, columns, printed.totals.get(name, 0)))}</p>")
-        lines = _upright(columns)
-        parts.append(_html_table(lines[:2], lines[2:]) if len(columns[0].values) else "")
+        digits = printed.rod.lists[name]
+        heads = [tuple(column.name for column in columns), tuple(map(_unit, columns))]
+        rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
+        parts.append(_html_table(heads, rows_of) if rows_of else "")
     return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.ends)])
+
+
+def _heads(printed: Printed) -> list[str]:
+    """Lines of the heading, none wider than the window."""
+    return [line for text in printed.heading if text for line in folded(text).splitlines()]
 
 
 def _title(name: str, columns: Sequence[Column], total: int) -> str:
@@ -73,64 +128,92 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
     )
 
 
-def _number_lines(columns: Sequence[Column]) -> list[Line]:
-    """(name, value, unit, meaning) of columns with one row."""
-    return [(c.name, *_texts(c), _unit(c), c.meaning) for c in columns]
+def _number_pairs(printed: Printed) -> list[tuple[str, str, str, str]]:
+    """(name, value, error with its sign, unit) of the numbers of the headline that the rod has."""
+    pairs = []
+    for name in printed.headline.numbers:
+        column = printed.rod.column(name)
+        if column is not None:
+            ((value, error),) = printed.rod.points.pairs(column.name)
+            pairs.append((column.name, value, f"{BETWEEN} {error}" if error else "", _unit(column)))
+    return pairs
 
 
-def _narrowest(columns: Sequence[Column]) -> list[Line]:
-    """Lines of a list; empty for an empty list.
-
-    One item per line if this fits `REPR_WIDTH` or is the narrower layout, otherwise one variable per line.
-    """
-    if not len(columns[0].values):
+def _number_lines(printed: Printed) -> list[str]:
+    """Aligned lines of the numbers of the headline, below an empty line."""
+    room = BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
+    pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
+    if not pairs:
         return []
-    there = [column for column in columns if not column.absent.all()]
-    upright = _upright(there)
-    turned = [(c.name, *_texts(c), _unit(c)) for c in there]
-    return upright if _width(upright) <= max(REPR_WIDTH, _width(turned)) else turned
+    cells = [column_cells((), column) for column in zip(*pairs, strict=True)]
+    kept = [column for column in cells if column[0].strip() or any(map(str.strip, column))]
+    return ["", *(GAP.join(row).rstrip() for row in zip(*kept, strict=True))]
 
 
-def _upright(columns: Sequence[Column]) -> list[Line]:
-    """Lines of a list with one item per line, below a line of names and a line of units."""
-    heads = [tuple(c.name for c in columns), tuple(map(_unit, columns))]
-    return [*heads, *zip(*map(_texts, columns), strict=True)]
+def _brief_cells(printed: Printed, room: int) -> tuple[list[list[str]], int]:
+    """(columns of the list of the headline, number of its items); room: largest number of rows.
+
+    A column has the cells name, unit, and values; errors follow as a column of their own. As many columns are
+    printed as the window is wide.
+    """
+    digits = printed.rod.lists.get(printed.headline.table)
+    if digits is None:
+        return [], 0
+    names = [printed.rod.preferred(digits, name) for name in printed.headline.columns]
+    columns = [digits.columns[name] for name in names if name in digits.columns]
+    columns = [column for column in columns if not column.absent.all()]
+    count = len(columns[0].values) if columns else 0
+    found: list[list[str]] = []
+    width = -len(GAP)
+    for column in columns if count else ():
+        values, errors = zip(*digits.pairs(column.name)[:room], strict=True)
+        added = [column_cells((column.name, _unit(column)), values)]
+        added += [column_cells((BETWEEN, ""), errors)] if any(errors) else []
+        width += sum(len(cells[0]) + len(GAP) for cells in added)
+        if width > WIDTH:
+            break
+        found += added
+    return found, count
 
 
-def _texts(column: Column) -> list[str]:
-    """Values of a column as printed: words, rounded numbers, and "" for missing values."""
-    if column.is_boolean:
-        return [YES_NO[int(value)] for value in column.values]
-    if column.words or column.values.dtype.kind != "f":
-        return column.text()
-    digits = PRINTED_ERROR_DIGITS if column.is_estimate else PRINTED_DIGITS
-    texts = (f"{value + 0.0:.{digits}g}" for value in column.values)
-    return ["" if none else text for text, none in zip(texts, column.absent, strict=True)]
+def _cells(digits: Digits, columns: Sequence[Column]) -> list[list[str]]:
+    """Cells of the columns of a list under their names and units."""
+    return [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in columns]
+
+
+def _brief_list(printed: Printed, room: int) -> list[str]:
+    """Lines of the list of the headline below an empty line; room: number of lines left."""
+    rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
+    columns, count = _brief_cells(printed, rows)
+    if count == rows + 1:  # the line "and 1 more" has room for the row
+        columns, count = _brief_cells(printed, count)
+    if not columns:
+        return []
+    (block,) = blocks(columns)
+    return ["", *block] + ([f"and {count - rows} more"] if count > rows + 1 else [])
+
+
+def _more(printed: Printed) -> str:
+    """Line on how to see the rest: the whole table, and the lists with their numbers of items."""
+    rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
+    rows.update(printed.named)
+    lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
+    return folded(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
 
 def _unit(column: Column) -> str:
     return "" if column.unit == "1" else column.unit
 
 
-def _width(lines: Sequence[Line]) -> int:
-    return sum(widths_of(lines)) + 2 * len(lines[0])
-
-
-def widths_of(lines: Sequence[Line]) -> list[int]:
-    """Width of every column, in characters, of lines of cells."""
-    return [max(map(len, cells)) for cells in zip(*lines, strict=True)]
-
-
-def _aligned(lines: Sequence[Line]) -> str:
-    """Lines of cells as text in aligned columns."""
-    widths = widths_of(lines)
-    rows = ("  ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)).rstrip() for line in lines)
-    return "\n".join(rows)
+def _html_heading(printed: Printed) -> str:
+    """The heading as a paragraph, the answer in bold letters."""
+    answer, *others = map(escape, filter(None, printed.heading))
+    return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in others)}</p>"
 
 
 def _html_table(heads: Sequence[Line], lines: Sequence[Line]) -> str:
     def row(cells: Line, tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+        return "<tr>" + "".join(f"<{tag}>{escape(cell.strip())}</{tag}>" for cell in cells) + "</tr>"
 
     body = "".join([*(row(line, "th") for line in heads), *(row(line, "td") for line in lines)])
     return f"<table>{body}</table>"

@@ -1,6 +1,7 @@
 """Summary of a result, for `rodsweep show` and `rodsweep report`: answer, reliability, details, origin."""
 
-from collections.abc import Callable, Iterable
+import os
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from rich.console import Console
@@ -16,6 +17,7 @@ from ...results.layouts import lacks_curves
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, is_or_are, plural
 from ..origin import origin_lines, rank_lines, time_lines
+from ..tables.alignment import blocks, column_cells, point_aligned, refolded
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
 from .branch import branch_summary
@@ -37,6 +39,8 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
     "branch": branch_summary,
 }
 """Function of each task from (view, mask of its computed points) to the lines of the summary."""
+WIDEST = 1000
+"""Largest width of a table of numbers without a window, as in a pipe."""
 NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
 """Name of a point of each task, where it is not "point"."""
 
@@ -57,6 +61,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
         statuses=TextTable(("status", plural(noun), "meaning"), tuple(_statuses(view, status, every_status))),
         details=lines.details,
         axes=TextTable(("parameter", "values", "from", "to", "unit"), tuple(_axes(view))),
+        numbers=lines.numbers,
         origin=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
     )
 
@@ -65,24 +70,51 @@ def show_summary(view: View, every_status: bool = False) -> None:
     """Prints a summary of a result file; every_status: whether statuses of no point are listed as well.
 
     The answer comes first, for an arm also in the arm's units. Then follow the reliability of the answer,
-    further results, and last the provenance.
+    further results, the parameters, and last the provenance, each below its heading. In a terminal no line is
+    wider than the window; a pipe gets whole lines.
     """
     console = Console(highlight=False, markup=False)
     summary = summary_of(view, every_status)
     title = view.attributes.get("title", "")
     console.print(f"{printable(str(view.path))}: {title}, task {view.task}", soft_wrap=True)
-    for lines, table in (
-        (summary.answer, None),
-        (summary.trust, summary.statuses),
-        (summary.details, summary.axes),
-        (summary.origin, None),
-    ):
-        for line in lines:
-            console.print(line, soft_wrap=True)
+    print_lines(console, summary.answer)
+    if summary.numbers is not None:
+        _print_numbers(console, summary.numbers)
+    groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
+        ("Reliability", summary.trust, summary.statuses),
+        ("Further results", summary.details, None),
+        ("Parameters", (), summary.axes),
+        ("Provenance", summary.origin, None),
+    )
+    for heading, lines, table in groups:
+        if not lines and table is None:
+            continue
+        console.print()
+        console.print(heading, style="bold")
+        print_lines(console, lines)
         if table is not None:
             console.print(_printed(table))
-        if lines is not summary.origin:
-            console.print()
+
+
+def print_lines(console: Console, lines: Sequence[str]) -> None:
+    """Prints lines, folded at the width of the window; without a window a line stays whole."""
+    for line in lines:
+        console.print(refolded(line, console.width) if has_window(console) else line, soft_wrap=True)
+
+
+def has_window(console: Console) -> bool:
+    """Whether lines are folded: in a terminal, or at a width given by COLUMNS."""
+    return console.is_terminal or "COLUMNS" in os.environ
+
+
+def _print_numbers(console: Console, table: TextTable) -> None:
+    """Prints a table of numbers below an empty line, in blocks as wide as the window."""
+    heads = [(*heading.split("\n"), "")[:2] for heading in table.headings]
+    cells = zip(heads, zip(*table.rows, strict=True), strict=True)
+    columns = [column_cells(head, column) for head, column in cells]
+    for block in blocks(columns, console.width if has_window(console) else WIDEST):
+        for line in ("", *block):
+            console.print(line, soft_wrap=True)
 
 
 def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
@@ -120,10 +152,11 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
 
 
 def _printed(table: TextTable) -> Table:
-    """Table for the terminal, without borders."""
+    """Table for the terminal, without borders, numbers with their decimal points below each other."""
     printed = Table(*table.headings, box=None, pad_edge=False)
-    for row in table.rows:
-        printed.add_row(*map(Text, row))
+    if table.rows:
+        for row in zip(*map(point_aligned, zip(*table.rows, strict=True)), strict=True):
+            printed.add_row(*(Text(cell.rstrip()) for cell in row))
     return printed
 
 

@@ -7,7 +7,8 @@ from ...wording import counted, some_of
 from .errors import errors_of, span_of
 from .ranges import NONE, span
 from .spectrum import (
-    eigenvalue_lines,
+    count_line,
+    eigenvalue_table,
     error_lines,
     leading_line,
     stability_line,
@@ -22,7 +23,7 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
-        answer = eigenvalue_lines(view)
+        answer = [count_line(view)]
         trust = []
         details = unknowns
         of_arm = list[str]()
@@ -36,7 +37,8 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
         unknown = int((~np.isfinite(errors)).any(axis=-1).sum())
         where = f"; not known at {some_of(unknown, len(errors), 'point')}" if unknown else ""
         trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
-    return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm)
+    numbers = eigenvalue_table(view) if done.size == 1 else None
+    return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm, numbers)
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:

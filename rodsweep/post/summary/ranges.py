@@ -68,6 +68,25 @@ def to_error(value: float, error: float) -> str:
     return f"{text} (+- {error_text(stated)})"
 
 
+def number_and_error(value: float, error: float) -> tuple[str, str]:
+    """(number to the first digit reached by the error, error with one digit), for the cells of a table.
+
+    The error is empty if it is not known, and then the number has six digits. 0 and inf have no error.
+    """
+    if value == 0 or not isfinite(value):
+        return f"{value + 0.0:g}", ""
+    if error == 0:
+        return f"{value:.{MAX_DIGITS}g}", ""
+    if not isfinite(error):
+        return f"{value:.{RANGE_DIGITS}g}", ""
+    if error >= abs(value):  # not even the first digit is known
+        place = floor(log10(error))
+        text = f"{round(value, -place) + 0.0:.{max(-place, 0)}f}"
+        return text, error_text(error + abs(float(text) - value))
+    text, stated = stated_error(value, error)
+    return text, error_text(stated)
+
+
 def stated_error(value: float, error: float) -> tuple[str, float]:
     """(number to the first digit reached by the error, error including the rounding of the number)."""
     text = _rounded(value, error / 10, MAX_DIGITS)

@@ -3,12 +3,12 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.variables import estimates_counts, has_covering
+from ...results.layouts.variables import ANGULAR, estimates_counts, has_covering
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
-from .ranges import span, to_error
+from .ranges import number_and_error, span
 from .stability import stability_lines
-from .summary_lines import SummaryLines, in_brackets, region
+from .summary_lines import SummaryLines, TextTable, in_brackets, region
 
 HOW_FOUND = (
     "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
@@ -24,7 +24,9 @@ PROOFS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
-        return SummaryLines(eigenvalue_lines(view), details=unknowns_lines(view, done))
+        return SummaryLines(
+            [count_line(view)], details=unknowns_lines(view, done), numbers=eigenvalue_table(view)
+        )
     lines, how, of_arm = threshold_lines(view)
     return SummaryLines(
         [stable_line(view, done), *lines],
@@ -65,22 +67,27 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     return lines, [f"thresholds: {how}"] if lines else [], of_arm
 
 
-def eigenvalue_lines(view: View) -> list[str]:
-    """Lines about the eigenvalues of the single point of a file, with errors, and its unstable modes."""
+def eigenvalue_table(view: View) -> TextTable | None:
+    """Table of the eigenvalues of the single point of a file, with errors; None without an eigenvalue."""
     v = view.variables
     columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
-    lines = [
-        f"mode {number}: growth rate {to_error(growth, error)} 1/tau2, "
-        f"frequency {to_error(frequency, error)} rad/tau2"
+    rows = [
+        (str(number), *number_and_error(growth, error), *number_and_error(frequency, error))
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)
         if np.isfinite(growth)
     ]
+    headings = ("mode", "growth rate\n1/tau2", "+-", f"frequency\n{ANGULAR}", "+-")
+    return TextTable(headings, tuple(rows)) if rows else None
+
+
+def count_line(view: View) -> str:
+    """Line on the number of unstable modes of the single point of a file."""
+    v = view.variables
     unstable = int(v["unstable_count"].max())
     proof = PROOFS[bool(v["certified"].all())]
     if v["certified"].all() and estimates_counts(view.config):
         proof = "proved by D or counted by its winding number, estimated in part"
-    count = f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
-    return [count, *lines]
+    return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
 def error_lines(view: View, done: np.ndarray) -> list[str]:

@@ -11,34 +11,35 @@ from .ranges import span
 
 
 @dataclass(frozen=True, slots=True)
-class SummaryLines:
-    """Sentences about a result.
-
-    answer: the results asked for. trust: accuracy and proved completeness. details: further results. of_arm:
-    parts of the answer in the units of an arm.
-    """
-
-    answer: Sequence[str]
-    trust: Sequence[str] = ()
-    details: Sequence[str] = ()
-    of_arm: Sequence[str] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class TextTable:
-    """Table of texts: its headings, and rows of as many cells."""
+    """Table of texts: its headings, of one or two lines, and rows of as many cells."""
 
     headings: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
+class SummaryLines:
+    """Sentences about a result.
+
+    answer: the results asked for. trust: accuracy and proved completeness. details: further results. of_arm:
+    parts of the answer in the units of an arm. numbers: table below the answer.
+    """
+
+    answer: Sequence[str]
+    trust: Sequence[str] = ()
+    details: Sequence[str] = ()
+    of_arm: Sequence[str] = ()
+    numbers: TextTable | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Summary:
     """Everything that `rodsweep show` prints about a file, in the order of printing.
 
-    answer: the results asked for. trust: unfinished work, accuracy and proved completeness. statuses: number
-    of points and meaning of every status. details: further results. axes: ranges of the parameters. origin:
-    computing time, ranks, dates and versions.
+    answer: the results asked for. numbers: table below the answer. trust: unfinished work, accuracy and
+    proved completeness. statuses: number of points and meaning of every status. details: further results.
+    axes: ranges of the parameters. origin: computing time, ranks, dates and versions.
     """
 
     answer: Sequence[str]
@@ -47,6 +48,7 @@ class Summary:
     details: Sequence[str]
     axes: TextTable
     origin: Sequence[str]
+    numbers: TextTable | None = None
 
 
 def varied(view: View) -> dict[str, np.ndarray]:

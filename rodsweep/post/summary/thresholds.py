@@ -4,13 +4,14 @@ from itertools import product
 
 import numpy as np
 
+from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR, has_covering
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
-from .ranges import error_text, rounded, span, to_error
-from .summary_lines import SummaryLines, at_point, completeness, in_brackets
+from .ranges import error_text, number_and_error, rounded, span
+from .summary_lines import SummaryLines, TextTable, at_point, completeness, in_brackets
 
 EVENTS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR),
@@ -19,12 +20,23 @@ EVENTS = {
 }
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
 
+FIRSTS = {
+    "onset": "oscillates from",
+    "hopf": "beats from",
+    "restabilization": "stable again from",
+}
+"""Words before the force of the first crossing of a kind, for a single rod."""
+
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
         return SummaryLines(
-            crossing_lines(view), trust_of_one(view), cost_lines(view, done), crossings_of_arm(view)
+            crossing_lines(view),
+            trust_of_one(view),
+            cost_lines(view, done),
+            crossings_of_arm(view),
+            crossing_table(view),
         )
     answer = [event_line(view, done, event) for event in EVENTS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
@@ -59,22 +71,33 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 
 
 def crossing_lines(view: View) -> list[str]:
-    """Lines about every crossing of the single rod of a file."""
+    """Lines about the number of crossings of the single rod of a file, and the meaning of every kind."""
     v = {name: view.variables[name].ravel() for name in view.variables}
-    lines = []
-    for i in np.flatnonzero(v["crossing_kind"] > 0):
-        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        F = to_error(v["crossing_F"][i], v["crossing_error"][i])
-        growth = v["crossing_growth_rate"][i]
-        frequency = v["crossing_frequency"][i]
-        rates = f"growth rate {growth:.6g} 1/tau2, frequency {frequency:.6g} {ANGULAR}"
-        after = int(v["unstable_after"][i])
-        above = f"; unstable modes above: {after if after >= 0 else 'not known'}"
-        lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
+    kinds = [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]
+    count = f"{counted(int(v['crossing_count'][0]), 'crossing')} up to F = {v['F_end'][0]:.15g}"
+    firsts = {word: v[f"F_{event}"][0] for event, word in FIRSTS.items()}
+    words = [f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F)]
+    count = "; ".join((", ".join(words), count)) if words else count
+    lines = [count, *(f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))] if kinds else []
     if not lines and v["crossing_count"][0] < 0:
         return ["its thresholds are not known"]
     none = "no threshold is located" if np.isfinite(v["open_from"][0]) else "no threshold"
     return lines or [f"{none} up to F = {v['F_end'][0]:.15g}"]
+
+
+def crossing_table(view: View) -> TextTable | None:
+    """Table of the crossings of the single rod of a file; None without a crossing."""
+    v = {name: view.variables[name].ravel() for name in view.variables}
+    rows = []
+    for i in np.flatnonzero(v["crossing_kind"] > 0):
+        F = number_and_error(float(v["crossing_F"][i]), float(v["crossing_error"][i]))
+        rates = (f"{v[f'crossing_{name}'][i] + 0.0:.6g}" for name in ("growth_rate", "frequency"))
+        after = int(v["unstable_after"][i])
+        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
+        rows.append((kind, *F, *rates, str(after) if after >= 0 else "not known"))
+    unit = PARAMETERS["F"].unit
+    headings = ("kind", f"F\n{unit}", "+-", "growth rate\n1/tau2", f"frequency\n{ANGULAR}", "unstable\nabove")
+    return TextTable(headings, tuple(rows)) if rows else None
 
 
 def trust_of_one(view: View) -> list[str]:

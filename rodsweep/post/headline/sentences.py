@@ -1,0 +1,144 @@
+"""The answer of each task about one rod in one sentence, and the numbers and the list to print below it."""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...wording import counted
+from .one_rod import OneRod
+
+
+@dataclass(frozen=True, slots=True)
+class Headline:
+    """Sentence, numbers and list that are printed first of a task's result.
+
+    sentence: the answer, empty where the rod has none. numbers: variables of the rod. table: name of a list,
+    empty for none. columns: columns of the list. The most important numbers and columns come first.
+    """
+
+    sentence: Callable[[OneRod], str]
+    numbers: tuple[str, ...]
+    table: str = ""
+    columns: tuple[str, ...] = ()
+
+
+def eigenvalue_sentence(rod: OneRod) -> str:
+    """Number of unstable modes, and the leading eigenvalue."""
+    count = rod.count("unstable_count")
+    stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
+    stability = "number of unstable modes not known" if count is None else stability
+    modes = rod.lists["modes"]
+    rate, frequency = (rod.preferred(modes, name) for name in ("growth_rate", "frequency"))
+    if not len(modes.columns[rate].values):
+        return ""
+    return f"{stability}: leading growth rate {modes.short(rate)}, frequency {modes.short(frequency)}"
+
+
+def threshold_sentence(rod: OneRod) -> str:
+    """First force of each kind of threshold."""
+    if rod.count("crossing_count") is None:
+        return ""
+    verbs = {"onset": "oscillates from", "hopf": "flutters from", "restabilization": "stable again from"}
+    parts = []
+    for event, verb in verbs.items():
+        column = rod.column(f"F_{event}")
+        if column is not None:
+            name = column.name.removesuffix(f"_{event}")
+            parts.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
+    return ", ".join(parts) or (f"no threshold up to {_end(rod)}" if not rod.count("crossing_count") else "")
+
+
+def hopf_sentence(rod: OneRod) -> str:
+    """Number of Hopf points of each criticality."""
+    count = rod.count("crossing_count")
+    if count is None:
+        return ""
+    if count == 0:
+        return f"no Hopf point up to {_end(rod)}"
+    sides = Counter(word or "of unknown criticality" for word in rod.words("crossings", "criticality"))
+    kinds = ", ".join(f"{number} {word}" for word, number in sides.items())
+    return f"{counted(count, 'Hopf point')}: {kinds}"
+
+
+def branch_sentence(rod: OneRod) -> str:
+    """Number of branches and cycles, the range of the parameter and the largest tip y."""
+    branches = rod.count("branch_count")
+    if branches is None:
+        return ""
+    options = rod.view.config["branch"]
+    along = options["along"]
+    if not branches:
+        return (
+            f"no branch of cycles: no Hopf point for {along} from {options['start']:g} to {options['stop']:g}"
+        )
+    cycles = rod.lists["cycles"]
+    text = (
+        f"{counted(branches, 'branch')} of cycles from {counted(rod.count('hopf_count') or 0, 'Hopf point')}"
+    )
+    y = rod.preferred(cycles, "tip_y_max")
+    if not len(cycles.columns[y].values):
+        return f"{text}, no cycle is stored"
+    largest = int(np.nanargmax(cycles.columns[y].values))
+    return (
+        f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {cycles.short(y, largest)}"
+    )
+
+
+def cycle_sentence(rod: OneRod) -> str:
+    """Period and amplitude of the cycle, or the straight rod; empty for any other outcome."""
+    if period := rod.text("period"):
+        status = rod.view.flags[int(rod.view.variables["status"].ravel()[0])]
+        beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
+        return f"{beats}: period {period}, largest tip y {rod.text('tip_y_max')}"
+    return ""
+
+
+def _end(rod: OneRod) -> str:
+    """Largest load of the search."""
+    column = rod.column("F_end")
+    return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
+
+
+EIGENVALUES = ("mode", "growth_rate", "frequency")
+HEADLINES = {
+    "spectrum": Headline(eigenvalue_sentence, (), "modes", (*EIGENVALUES, "longitudinal_rate")),
+    "modes": Headline(
+        eigenvalue_sentence,
+        ("numerical_abscissa", "transient_growth", "transient_time"),
+        "modes",
+        (*EIGENVALUES, "condition"),
+    ),
+    "thresholds": Headline(
+        threshold_sentence,
+        (),
+        "crossings",
+        ("crossing", "crossing_kind", "crossing_F", "crossing_frequency", "unstable_after"),
+    ),
+    "criticality": Headline(
+        hopf_sentence,
+        (),
+        "crossings",
+        ("crossing", "criticality", "crossing_F", "amplitude_coefficient", "crossing_frequency"),
+    ),
+    "branch": Headline(
+        branch_sentence,
+        (),
+        "special_points",
+        ("special", "special_kind", "special_at", "special_tip_y_max", "special_period", "special_reason"),
+    ),
+    "limit_cycle": Headline(
+        cycle_sentence,
+        (
+            "period",
+            "tip_y_max",
+            "multiplier",
+            "frequency",
+            "injection_mean",
+            "linear_growth_rate",
+            "linear_frequency",
+        ),
+    ),
+}
+"""Headline of each task of one rod."""
