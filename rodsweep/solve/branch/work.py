@@ -19,7 +19,7 @@ class WorkSettings:
     """Exponent of the whole distance in the times of several branches of a rod."""
 
 
-WORK = WorkSettings()
+BRANCH_WORK = WorkSettings()
 
 
 Range = tuple[float, float]
@@ -29,11 +29,11 @@ Range = tuple[float, float]
 def share_done(born: float, at: float, aim: float) -> float:
     """Fraction of a branch's work that is done at a coordinate, for a branch from `born` to `aim`."""
     way = (at - born) / (aim - born) if aim != born else 1.0
-    return min(max(way, 0.0), 1.0) ** WORK.within_a_branch
+    return min(max(way, 0.0), 1.0) ** BRANCH_WORK.within_a_branch
 
 
 def shares_of_branches(born: Sequence[float], ends: Range) -> list[float]:
     """Fractions of the whole work that are done before each branch and at the end, (branches + 1,)."""
-    works = [max(abs(end - at) for end in ends) ** WORK.among_branches for at in born]
+    works = [max(abs(end - at) for end in ends) ** BRANCH_WORK.among_branches for at in born]
     done = [sum(works[:number]) for number in range(len(works) + 1)]
     return [work / done[-1] if done[-1] else 1.0 for work in done]
