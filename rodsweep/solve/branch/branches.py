@@ -18,7 +18,7 @@ from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
 from .following import BranchLimits, follow_branch, follow_without_symmetry
-from .special.point import EndReason
+from .special.point import LOCATING, EndReason
 from .symmetry import Breaking, breakings_of
 from .work import shares_of_branches
 
@@ -229,7 +229,7 @@ def _judged(
     ]
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
-    tolerance = max(request.accuracy, 1e-9)
+    tolerance = max(request.accuracy, LOCATING.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")

@@ -24,8 +24,8 @@ from .special.least_stretch import stretch_at
 from .special.locating import Segment, located
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
-from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
-from .trail import ENDINGS, Trail, end_at
+from .symmetry import ENDINGS, Breaking, beginning_without_symmetry, mirrored, symmetric_end
+from .trail import Trail, end_at
 from .work import share_done
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])

@@ -26,7 +26,40 @@ from .beginning import MOMENT
 from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
-from .trail import ENDINGS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EndingSettings:
+    """Ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter's range."""
+
+    small_cycle: float = 0.06
+    """Largest tip y, in L, of a cycle from which the branch may step across a Hopf point where it ends."""
+    small_asymmetry: float = 0.2
+    """Largest asymmetry, in units of the largest moment, from which a branch may step across the symmetric
+    cycle at its end."""
+    min_asymmetry: float = 0.02
+    """Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
+    better."""
+    lost_asymmetry: float = 0.1
+    """A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
+    asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    """Allowed range of the asymmetry found, in units of the predicted asymmetry."""
+    place_share: float = 0.3
+    """Tolerance for the extrapolated place of a Hopf point or a symmetry breaking, in units of the last
+    cycle's distance from it."""
+    min_place_tolerance: float = 1e-6
+    """Smallest relative tolerance for the extrapolated place; the accuracy counts if larger."""
+    period_tolerance: float = 1e-3
+    """Relative tolerance for the extrapolated period; at a symmetry breaking the accuracy counts if
+    larger."""
+    range_end_bracket: float = 1e-6
+    """Fraction of a step to which the range's end is predicted; Newton's method then places the cycle on
+    it."""
+    range_end_error: float = 1e-15
+    """Relative error of the parameter at an end of the range."""
+
+
+ENDINGS = EndingSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -40,6 +40,8 @@ class IntegratorSettings:
     """Maximum number of failures of Newton's method in a run."""
     relaxation_share: float = 1e-3
     """Duration of `relaxed` in periods."""
+    relaxation_steps: float = 1e5
+    """First steps of `relaxed` that would fill a period; the fast components decay within ten steps."""
     kept: int = 8
     """Number of integrators kept for further runs on equal meshes."""
 
@@ -205,5 +207,7 @@ def relaxed(beam: Beam, z: Array, period: float) -> Array:
     fast. The explicit first stage of ARKIMEX does not damp these components at any step length; backward
     Euler damps them within ten steps. If the run fails, z itself is returned.
     """
-    run = integrator(beam.mesh, RELAXATION).run(beam, z, INTEGRATOR.relaxation_share * period, period / 1e5)
+    duration = INTEGRATOR.relaxation_share * period
+    step = period / INTEGRATOR.relaxation_steps
+    run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
     return run.states[-1] if run.ending == Ending.reached else z

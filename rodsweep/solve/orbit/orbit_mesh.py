@@ -39,6 +39,16 @@ class OrbitMeshSettings:
     """Smallest number of intervals of a chosen mesh."""
     max_intervals: int = 256
     """Largest number of intervals of a chosen mesh."""
+    stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
+    """Accuracies below which four, five and six stages in time cost less than one stage fewer."""
+    fewest_stages: int = 3
+    """Number of stages in time above all of these accuracies."""
+    max_more_orders: int = 12
+    """Largest increase of the order at once: tails far below the present order's are extrapolated."""
+    max_interval_ratio: int = 4
+    """Largest ratio of the numbers of intervals, for the same reason."""
+    more_intervals: float = 1.2
+    """Factor on the number of intervals where the wanted mesh is no finer than the present mesh."""
     halved_order: float = 0.6
     """Order after all elements are halved, in units of the order before, at equal errors."""
     max_unknowns: int = 400
@@ -126,7 +136,7 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
 
 def stages_for(accuracy: float) -> int:
     """Number of stages in time for which an accuracy costs least."""
-    return 3 if accuracy > 2e-5 else 4 if accuracy > 3e-9 else 5 if accuracy > 3e-11 else 6
+    return ORBIT_MESH.fewest_stages + sum(accuracy <= limit for limit in ORBIT_MESH.stage_accuracies)
 
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
@@ -143,8 +153,10 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
     tail = max(tails.time, 1e-15) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
-    order = min(max(order, ORBIT_MESH.min_order), present.order + 12)
-    intervals = min(max(intervals, ORBIT_MESH.min_intervals), 4 * present.intervals)
+    order = min(max(order, ORBIT_MESH.min_order), present.order + ORBIT_MESH.max_more_orders)
+    intervals = min(
+        max(intervals, ORBIT_MESH.min_intervals), ORBIT_MESH.max_interval_ratio * present.intervals
+    )
     return OrbitMesh(edges, order, intervals, stages)
 
 
@@ -156,4 +168,4 @@ def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
     finer = replace(wanted, order=order, intervals=intervals, stages=stages)
     if finer != mesh:
         return finer
-    return replace(mesh.finer_in_space, intervals=ceil(1.2 * mesh.intervals))
+    return replace(mesh.finer_in_space, intervals=ceil(ORBIT_MESH.more_intervals * mesh.intervals))

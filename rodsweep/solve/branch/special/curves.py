@@ -51,6 +51,8 @@ class CycleCurveSettings:
     """Fraction of a step to which the crossing of an edge is located."""
     crushing_margin: float = 1e-3
     """Relative distance below the crushing force k1 at which a curve ends."""
+    crushing_accuracy: float = 1e-6
+    """Relative accuracy of the shortened step that ends halfway into this margin."""
     vanishing: float = 0.01
     """Largest tip y, in L, from which a curve is extrapolated to the Hopf point where its cycles vanish."""
     almost_real: float = 0.2
@@ -154,7 +156,7 @@ class CurveLimits:
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=1e-6))
+        return float(brentq(distance, 0.0, step, rtol=CYCLE_CURVES.crushing_accuracy))
 
     def _mixed(
         self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh

@@ -18,6 +18,10 @@ class LeastStretchSettings:
 
     places_per_node: int = 8
     """Number of places per node at which the least stretch is sampled."""
+    times_per_harmonic: int = 8
+    """Number of times per harmonic at which the least stretch of one place is sampled."""
+    place_tolerance: float = 1e-9
+    """Tolerance of the place of the least stretch, in L; the stretch has the square of this as its error."""
     safe_at_nodes: float = 0.2
     """If h1 exceeds this limit at all nodes, h1 is positive between the nodes too."""
     safe_at_places: float = 0.02
@@ -60,7 +64,7 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     def least(u: Array) -> Array:
         at = -np.ascontiguousarray(c @ grid.evaluation(u).T)
-        return -maxima(at, samples_of(at, 8 * len(c)))
+        return -maxima(at, samples_of(at, LEAST_STRETCH.times_per_harmonic * len(c)))
 
     places = np.linspace(0.0, 1.0, LEAST_STRETCH.places_per_node * len(grid.positions))
     values = least(places)
@@ -68,7 +72,8 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
     if values[best] > enough:
         return float(values[best])
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
+    tolerance = {"xatol": LEAST_STRETCH.place_tolerance}
     found = minimize_scalar(
-        lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options={"xatol": 1e-9}
+        lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
     )
     return min(float(values[best]), float(found.fun))
