@@ -30,7 +30,7 @@ from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.changes.boundary_curves import trace
-from rodsweep.solve.hopf.bautin_curves import BautinSpace
+from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
@@ -128,6 +128,23 @@ def generalised_hopf(accuracy: float) -> Answer:
     return {name: (point.values[i], point.errors[i]) for i, name in enumerate(("F", "k1"))}
 
 
+def curve_of_generalised_hopf(accuracy: float) -> Answer:
+    """Where the curve of generalised Hopf points over k2 has the values that are asked for."""
+    plane, curve = hopf_curve()
+    (point,) = curve_criticality(plane, curve, 1e-10).points
+    asked = np.array([8e3, 1.2e4, 1e4])
+    space = BautinSpace(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
+    found = bautin_curve(space, on_curve(point, 1e4))
+    answer = {}
+    for value in asked[:2]:
+        at = [each for each in found.points if abs(each.values[2] / value - 1) < 1e-12]
+        if not at:
+            return None
+        for i, name in enumerate(("F", "k1")):
+            answer[f"{name} at k2 = {value}"] = at[0].values[i], at[0].errors[i]
+    return answer
+
+
 def beside(accuracy: float) -> Answer:
     """The subcritical Hopf point above a force; its search states no error, only the digits it needs."""
     found = subcritical_hopf_beside(WITH_FOLD.changed(k1=200.0, F=156.0))
@@ -179,6 +196,7 @@ LOPSIDED = Case(lopsided_branches, 1e-4, 1e-6)
 CURVE = Case(curve_of_folds, 1e-7, 1e-7)
 HOPF = Case(coefficients, 1e-6, 1e-11)
 BAUTIN_POINT = Case(generalised_hopf, 1e-10, 1e-12)
+BAUTIN_CURVE = Case(curve_of_generalised_hopf, 1e-10, 1e-12)
 BESIDE = Case(beside, 1e-3, 1e-3)
 MODES = Case(modes, 1e-8, 1e-10)
 MOTION = Case(motion, 1e-6, 1e-9)
@@ -206,6 +224,8 @@ CASES = {
     "NORMAL_FORM": HOPF,
     "COEFFICIENT": HOPF,
     "GENERALISED_HOPF": BAUTIN_POINT,
+    "BAUTIN": BAUTIN_CURVE,
+    "BAUTIN_STEPS": BAUTIN_CURVE,
     "HOPF_BESIDE": BESIDE,
     "MODE_MESH": MODES,
     "MODE_ITERATION": MODES,
