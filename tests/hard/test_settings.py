@@ -35,7 +35,7 @@ from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.integrator import Ending, forget_integrators, integrator, relaxed
+from rodsweep.solve.motion.integrator import Ending, forget_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
@@ -174,7 +174,7 @@ def motion(accuracy: float) -> Answer:
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
-    start = relaxed(beam, beam.unknown(rest + 0.1 * (1 - u) * wave), 0.05)
+    start = beam.unknown(rest + 0.1 * (1 - u) * wave)
     forget_integrators()
     run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
     if run.ending is not Ending.reached:

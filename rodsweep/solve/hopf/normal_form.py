@@ -40,8 +40,6 @@ class NormalFormSettings:
 
     shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
-    iterations_per_shift: int = 2
-    """Inverse iterations with one shift."""
     found: float = 1e-8
     """Relative distance of shift and eigenvalue below which the iterations converge to rounding error."""
     max_shifts: int = 10
@@ -57,6 +55,9 @@ class NormalFormSettings:
 
 
 NORMAL_FORM = NormalFormSettings()
+ITERATIONS_PER_SHIFT = 2
+"""Inverse iterations with one shift. Two square the distance `NORMAL_FORM.found` to rounding error; one would
+leave it in c, beyond the stated error."""
 
 
 HARMONIC = 2
@@ -195,7 +196,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
         shift = w * (1 + NORMAL_FORM.shift_offset)
         factors = elements.factors(shift)
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
-        for _ in range(NORMAL_FORM.iterations_per_shift):
+        for _ in range(ITERATIONS_PER_SHIFT):
             q = factors.solve(elements.times_M(q))
             p = factors.solve(elements.times_M(p), adjoint=True)
             q = q / np.abs(q).max()

@@ -29,8 +29,8 @@ class GrowthSettings:
 
     min_modes: int = 8
     """Number of modes that first represent exp(L t)."""
-    more_modes: float = 1.5
-    """Factor on the number of modes when more are needed."""
+    more_modes: float = 0.5
+    """Increase of the number of modes when more are needed, in units of this number."""
     truncation_margin: float = 4.0
     """exp(-`truncation_margin`) is the share of the accuracy for the modes left out."""
     search_share: float = 0.25
@@ -153,12 +153,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         before = exp(min(abscissa * first, NORM_MAXIMUM.largest_exponent))
         if before <= best[0] * (1 + tolerance) or k == len(fine.w):
             break
-        k = min(int(GROWTH.more_modes * k), len(fine.w))
+        k = min(int((1 + GROWTH.more_modes) * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
         # Both meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh with more modes if it has them.
-        coarse.keep(int(GROWTH.more_modes * k))
+        coarse.keep(int((1 + GROWTH.more_modes) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
