@@ -1,7 +1,7 @@
 """Every number of a solver's settings, halved and doubled: answers stay within the errors that they state.
 
 An honest status in place of an answer counts too. Every field of every settings object is found by
-introspection; an object without a case fails. The suite takes every tenth field, RODSWEEP_RODS=1 takes all
+introspection; an object without a case fails. The suite takes every fifteenth (and none of the slow case), RODSWEEP_RODS=1 takes all
 (`make survey`).
 """
 
@@ -41,7 +41,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
 
 ALL = "RODSWEEP_RODS" in os.environ
-EACH = 1 if ALL else 10
+EACH = 1 if ALL else 15
 ROUNDING = 1e-11
 """Relative; of numbers whose stated error is smaller."""
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
@@ -286,6 +286,7 @@ FIELDS = [
     for field in fields(value)
     for factor in (0.5, 2.0)
     if scaled(getattr(value, field.name), factor) != getattr(value, field.name)
+    if ALL or CASES.get(name) is not LOPSIDED
 ]
 
 
