@@ -13,14 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .parameter_plane import SMALL_STEP, STENCIL, Plane
+from .parameter_plane import PLANE, STENCIL, Plane
 
-MAX_BOUNDARY_STEPS = 12
-"""Maximum Newton steps of a correction; beyond, the correction has failed."""
-LARGEST_CORRECTION = 0.5
-"""Largest Newton step, in units of the axes' lengths and of h, before the correction counts as failed."""
-CONVERGED_STEP = 1e-10
-"""A Newton step below this that did not halve is rounding error: the correction has converged."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoundarySettings:
+    """Newton's method for a point of a boundary curve."""
+
+    max_steps: int = 12
+    """Maximum Newton steps of a correction; beyond, the correction has failed."""
+    longest_step: float = 0.5
+    """Largest Newton step, in units of the axes' lengths and of h, before the correction counts as failed."""
+    stagnation: float = 1e-10
+    """A Newton step below this that did not halve is rounding error: the correction has converged."""
+
+
+BOUNDARY = BoundarySettings()
 
 
 class OnBoundary(NamedTuple):
@@ -65,7 +73,7 @@ class Boundary:
         """
         v = guess.copy()
         last = math.inf
-        for _ in range(MAX_BOUNDARY_STEPS):
+        for _ in range(BOUNDARY.max_steps):
             try:
                 residual, jacobian, blur = self.equations(v)
             except (ValueError, ArithmeticError):
@@ -79,9 +87,9 @@ class Boundary:
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
             size = float(np.abs(step).max())
             v = v + step
-            if size <= 4 * error or (size < CONVERGED_STEP and size > last / 2):
+            if size <= 4 * error or (size < BOUNDARY.stagnation and size > last / 2):
                 return OnBoundary(v, jacobian, max(error, size))
-            if size > LARGEST_CORRECTION or not np.isfinite(v).all():
+            if size > BOUNDARY.longest_step or not np.isfinite(v).all():
                 return None
             last = size
         return None
@@ -103,7 +111,7 @@ class Boundary:
         jacobian = np.empty((2, 3))
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
-            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (STENCIL, SMALL_STEP)
+            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (STENCIL, PLANE.step)
             jacobian[1, i] = 0.0
             for offset, weight in stencil:
                 step = np.zeros(3)

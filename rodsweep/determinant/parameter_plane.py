@@ -11,16 +11,26 @@ from .arm.determinant import arm_determinant
 from .parameter_path import ValueAlong, determinant_along
 from .value import ROUND_OFF, Value, scaled_determinant
 
-BEYOND_AN_END = 1e-12
-"""Distance beyond the end of a scaled axis that counts as rounding error."""
-SMALL_STEP = 1e-3
-"""Step of differences along a scaled axis."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlaneSettings:
+    """Differences along the scaled axes of a plane of two parameters."""
+
+    beyond_an_end: float = 1e-12
+    """Distance beyond the end of a scaled axis that counts as rounding error."""
+    step: float = 1e-3
+    """Step of differences along a scaled axis."""
+    step_to_crushing: float = 0.01
+    """Largest step, as a fraction of the distance from crushing."""
+
+
+PLANE = PlaneSettings()
+
+
 STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 """Central difference of fourth order: (offset in steps, weight times step) of each value."""
 ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
 """One-sided difference of fourth order, beside the limit of a parameter."""
-STEP_TO_CRUSHING = 0.01
-"""Largest step, as a fraction of the distance from crushing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +44,7 @@ class PlaneAxis:
 
     def value(self, x: float) -> float:
         """The parameter at the scaled coordinate x, 0 at start and 1 at stop; x is rounded to both ends."""
-        if -BEYOND_AN_END < x < 0 or 1 < x < 1 + BEYOND_AN_END:
+        if -PLANE.beyond_an_end < x < 0 or 1 < x < 1 + PLANE.beyond_an_end:
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
@@ -102,7 +112,7 @@ class Plane:
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
         """(stencil, step) of a difference along the axis `which`, 0 or 1, at scaled coordinates."""
-        h = self.small_step(x, y, which, SMALL_STEP)
+        h = self.small_step(x, y, which, PLANE.step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (STENCIL if self.holds(*back) else ONE_SIDED), h
 
@@ -137,7 +147,7 @@ class Plane:
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
         slope = rate * axis.stretch(getattr(rod, axis.name))
-        return min(largest, STEP_TO_CRUSHING * (force - rod.F) / slope)
+        return min(largest, PLANE.step_to_crushing * (force - rod.F) / slope)
 
     def holds(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates is valid."""

@@ -27,15 +27,25 @@ from .bordered import Condition, Scale, moment_of
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
-FIRST_AMPLITUDES = (0.02, 0.008, 0.003)
-"""Largest tip y, in L, of the first cycle; tried in this order."""
-AMPLITUDE_SHARE = 0.05
-"""Largest tip y of the first cycle, in units of the amplitude coefficient. Beyond it the third-order normal
-form is too inaccurate."""
-MIN_MOMENT_AMPLITUDE = 0.1
-"""Tip y, in L, of the cycle whose clamp moment is the smallest unit of moments."""
-FREQUENCY_ROUNDING = 1e-14
-"""Relative rounding error of the frequency of a Hopf point, a root of D."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeginningSettings:
+    """The first cycle of a branch, beside its Hopf point."""
+
+    first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
+    """Largest tip y, in L, of the first cycle; tried in this order."""
+    amplitude_share: float = 0.05
+    """Largest tip y of the first cycle, in units of the amplitude coefficient. Beyond it the third-order
+    normal form is too inaccurate."""
+    min_moment_amplitude: float = 0.1
+    """Tip y, in L, of the cycle whose clamp moment is the smallest unit of moments."""
+    frequency_rounding: float = 1e-14
+    """Relative rounding error of the frequency of a Hopf point, a root of D."""
+
+
+BEGINNING = BeginningSettings()
+
+
 MOMENT = np.array([1.0, 0.0, 0.0])
 """Direction of `Scale.place` along the bending moment at the clamp."""
 
@@ -85,7 +95,7 @@ class HopfBirth:
         """Relative error of the period: the change of the frequency within the error of the Hopf point, and
         rounding."""
         place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
-        return abs(self.slope) * place / self.crossing.frequency + FREQUENCY_ROUNDING
+        return abs(self.slope) * place / self.crossing.frequency + BEGINNING.frequency_rounding
 
     def moved_by(self, amplitude: float) -> tuple[float, float]:
         """(change of the coordinate, frequency) of the cycle with a given largest tip y, in L."""
@@ -132,9 +142,9 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
     workspace: memory of the branch's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    for amplitude in FIRST_AMPLITUDES:
+    for amplitude in BEGINNING.first_amplitudes:
         try:
-            return _cycle_of(hopf, min(amplitude, AMPLITUDE_SHARE * a), accuracy, workspace)
+            return _cycle_of(hopf, min(amplitude, BEGINNING.amplitude_share * a), accuracy, workspace)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
@@ -143,7 +153,7 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
 def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
     """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable."""
     start = predicted_cycle(hopf, amplitude)
-    scale = Scale.of(start, hopf.name, abs(moment_of(start)) * MIN_MOMENT_AMPLITUDE / amplitude)
+    scale = Scale.of(start, hopf.name, abs(moment_of(start)) * BEGINNING.min_moment_amplitude / amplitude)
     border = np.sign(moment_of(start)) * MOMENT
     condition = Condition.at(scale, border, start)
     rough = condition.solved(start, NEARBY_TOLERANCE, workspace)

@@ -26,15 +26,10 @@ from ..orbit.matrix.phase import phase, phase_change, phase_row
 from ..orbit.matrix.right_sides import right_sides
 from ..orbit.matrix.substitution import substitute
 from ..orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
-from ..orbit.newton import MAX_ORBIT_ITERATIONS, Converged, relative_change
+from ..orbit.newton import ORBIT_NEWTON, Converged, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
 from ..point import Unsolvable
-
-LONGEST_CORRECTION = 0.5
-"""Largest relative change of an orbit in one iteration; no cycle is near if the change is larger."""
-SLOW_CONTRACTION = 0.1
-"""Ratio of successive corrections above which a new matrix is assembled."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,17 +209,17 @@ class Condition:
         """
         matrix, off, last = BorderedMatrix(orbit, self.scale, workspace), 0.0, np.inf
         step = matrix.step(self.border, self.missed(orbit))
-        for _ in range(MAX_ORBIT_ITERATIONS):
+        for _ in range(ORBIT_NEWTON.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
-            if not change <= LONGEST_CORRECTION:
+            if not change <= ORBIT_NEWTON.longest_step:
                 raise Unsolvable("no cycle of the branch is near the start of Newton's method")
             orbit, off = moved(orbit, self.scale.name, step), off + change
             rate = change / last if off > change else np.inf  # known from the second step with one matrix on
-            settled = change * min(rate, 1.0) <= tolerance and rate <= SLOW_CONTRACTION
+            settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON.new_matrix_ratio
             if (settled or change <= tolerance) and off <= distance:
                 return Converged(orbit, matrix, off)
-            if settled or change <= tolerance or (off > change and rate > SLOW_CONTRACTION):
+            if settled or change <= tolerance or (off > change and rate > ORBIT_NEWTON.new_matrix_ratio):
                 matrix, off = BorderedMatrix(orbit, self.scale, workspace), 0.0
                 step, last = matrix.step(self.border, self.missed(orbit)), np.inf
             else:

@@ -18,15 +18,25 @@ from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
 from .following import BranchLimits, follow_branch, follow_without_symmetry
-from .special.point import EndReason
+from .special.point import LOCATING, EndReason
 from .symmetry import Breaking, breakings_of
 from .work import shares_of_branches
 
-BRANCH_CRUSHING_MARGIN = 1e-4
-"""Relative distance below the crushing force k1 at which a branch along F ends; nearer, the rod at rest is
-almost crushed."""
-TAPER_DIGITS = 1e-9
-"""Relative accuracy of the smallest taper whose tip is not crushed."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BranchesSettings:
+    """All branches of one rod, or of one row of a diagram."""
+
+    crushing_margin: float = 1e-4
+    """Relative distance below the crushing force k1 at which a branch along F ends; nearer, the rod at rest
+    is almost crushed."""
+    taper_accuracy: float = 1e-9
+    """Relative accuracy of the smallest taper whose tip is not crushed."""
+    max_row_cycles: int = 500
+    """Maximum number of cycles on all branches of one row."""
+
+
+BRANCHES = BranchesSettings()
 
 
 class BranchStatus(PointStatus):
@@ -152,10 +162,10 @@ def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     low = request.start
     high = request.stop
     share = rod.build.crushing_share(rod.taper)
-    if request.along == "F" and high > (1 - BRANCH_CRUSHING_MARGIN) * share * rod.k1:
-        return low, (1 - BRANCH_CRUSHING_MARGIN) * share * rod.k1, 1
-    if request.along == "k1" and low < rod.F / share * (1 + BRANCH_CRUSHING_MARGIN):
-        return rod.F / share * (1 + BRANCH_CRUSHING_MARGIN), high, 0
+    if request.along == "F" and high > (1 - BRANCHES.crushing_margin) * share * rod.k1:
+        return low, (1 - BRANCHES.crushing_margin) * share * rod.k1, 1
+    if request.along == "k1" and low < rod.F / share * (1 + BRANCHES.crushing_margin):
+        return rod.F / share * (1 + BRANCHES.crushing_margin), high, 0
     if request.along == "taper":
         thinnest = _thinnest(rod, low, high)
         return thinnest, high, 0 if thinnest > low else -1
@@ -166,11 +176,11 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
     """Smallest taper between `low` and `high` at which the force does not crush the tip."""
 
     def holds(taper: float) -> bool:
-        return (1 - BRANCH_CRUSHING_MARGIN) * rod.build.crushing_share(taper) * rod.k1 > rod.F
+        return (1 - BRANCHES.crushing_margin) * rod.build.crushing_share(taper) * rod.k1 > rod.F
 
     if holds(low) or not holds(high):
         return low if holds(low) else high
-    while high - low > TAPER_DIGITS * high:
+    while high - low > BRANCHES.taper_accuracy * high:
         middle = (low + high) / 2
         low, high = (low, middle) if holds(middle) else (middle, high)
     return high
@@ -219,7 +229,7 @@ def _judged(
     ]
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
-    tolerance = max(request.accuracy, 1e-9)
+    tolerance = max(request.accuracy, LOCATING.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")

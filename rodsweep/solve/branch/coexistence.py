@@ -19,11 +19,8 @@ from ..changes.thresholds import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..status import PointStatus
 from .branch_curve import BranchCurve
-from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
+from .branches import BRANCHES, BranchesOfRod, BranchRequest, BranchStatus, solve_branches
 from .special.point import EndReason, SpecialPoint
-
-MAX_ROW_CYCLES = 500
-"""Maximum number of cycles on all branches of one row."""
 
 
 def _as(status: ThresholdStatus) -> tuple[int, str, bool]:
@@ -113,7 +110,7 @@ def row_branches(
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,
-        cycles=MAX_ROW_CYCLES,
+        cycles=BRANCHES.max_row_cycles,
         special=special,
     )
     return solve_branches(rod, asked, workspace)

@@ -24,21 +24,30 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 from .bordered import Condition, Scale, moved
 
-STEEP_SLOPE = 120.0
-"""Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may exceed
-the accuracy in proportion, as beside a Hopf point or a fold: p itself has an error. It is a fifth above the
-promised 100, since slopes are taken between cycles."""
-MIN_MOMENT_SHARE = 0.1
-"""Smallest derivative of the clamp's moment along the branch, in units of the parameter's derivative, used
-for the parameter's error at an equal moment; where the moment is stationary that error is undefined."""
-INTERPOLATION_FACTOR = 2.0
-"""Safety factor on interpolated errors."""
-NEGLIGIBLE_ERROR = 1e-16
-"""Smallest error; smaller differences are rounding."""
-NEWTON_SHARE = 0.01
-"""Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
-SLOPE_STEP = 1e-4
-"""Arc length of the difference quotient that gives the slope of the largest y."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BranchErrorSettings:
+    """Error estimates of the cycles of a branch."""
+
+    steep_slope: float = 120.0
+    """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may
+    exceed the accuracy in proportion, as beside a Hopf point or a fold: p itself has an error. It is a fifth
+    above the promised 100, since slopes are taken between cycles."""
+    min_moment_share: float = 0.1
+    """Smallest derivative of the clamp's moment along the branch, in units of the parameter's derivative,
+    used for the parameter's error at an equal moment; where the moment is stationary that error is
+    undefined."""
+    interpolation_factor: float = 2.0
+    """Safety factor on interpolated errors."""
+    negligible_error: float = 1e-16
+    """Smallest error; smaller differences are rounding."""
+    newton_share: float = 0.01
+    """Tolerance of Newton's method on the finer meshes, in units of the accuracy."""
+    slope_step: float = 1e-4
+    """Arc length of the difference quotient that gives the slope of the largest y."""
+
+
+BRANCH_ERRORS = BranchErrorSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +121,7 @@ class BranchCalibration:
     @cached_property
     def _demanded(self) -> Calibration:
         """Errors that determine the mesh; the parameter's error counts like the period's."""
-        steep = max(1.0, self.slope / STEEP_SLOPE)
+        steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
         parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
             part[PERIOD] = max(part[PERIOD], own)
@@ -131,7 +140,7 @@ class BranchCalibration:
         """Errors of a cycle between two measured ones on one mesh. share: of the way to `other`; slope: at
         the cycle.
 
-        Each error is interpolated geometrically and multiplied by INTERPOLATION_FACTOR.
+        Each error is interpolated geometrically and multiplied by BRANCH_ERRORS.interpolation_factor.
         """
         mean = [
             _interpolated(one, another, share)
@@ -146,10 +155,10 @@ class BranchCalibration:
 
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
-    """Errors at a share of the way, times INTERPOLATION_FACTOR, at most the larger of both; of any shape."""
-    logarithms = np.log(np.maximum([one, other], NEGLIGIBLE_ERROR))
+    """Errors at a share of the way, times `interpolation_factor`, at most the larger; of any shape."""
+    logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.negligible_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(INTERPOLATION_FACTOR * means, np.maximum(one, other))
+    bounded: Array = np.minimum(BRANCH_ERRORS.interpolation_factor * means, np.maximum(one, other))
     return bounded
 
 
@@ -166,7 +175,7 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, NEWTON_SHARE * accuracy, COMPARED_DISTANCE)
+        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARED_DISTANCE)
         part[:] = _difference(rough, multipliers, fine, place)
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
@@ -190,14 +199,14 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
     by_moment = abs(place.ahead[0])
     by_parameter = abs(place.rate)
     apart = abs(off * place.ahead[0] - moment * place.rate)
-    own = apart / max(by_moment, MIN_MOMENT_SHARE * by_parameter)
+    own = apart / max(by_moment, BRANCH_ERRORS.min_moment_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
 def slope_at(path: CyclePath, place: Place) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
     orbit: Orbit = path.orbit
-    ahead = CyclePath(moved(orbit, place.scale.name, SLOPE_STEP * place.tangent))
+    ahead = CyclePath(moved(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
-    return abs((other - y) / (SLOPE_STEP * y)) / max(abs(place.rate), 1e-300)
+    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(abs(place.rate), 1e-300)

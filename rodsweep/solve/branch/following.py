@@ -24,24 +24,12 @@ from .special.least_stretch import stretch_at
 from .special.locating import Segment, located
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
-from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
+from .symmetry import ENDINGS, Breaking, beginning_without_symmetry, mirrored, symmetric_end
 from .trail import Trail, end_at
 from .work import share_done
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 """Direction of `Scale.place` along the parameter."""
-SMALL_CYCLE = 0.06
-"""Largest tip y, in L, of a cycle from which the branch may step across a Hopf point where it ends."""
-HOPF_WITHIN = 0.3
-"""Tolerance for the extrapolated place of a Hopf point, in units of the last cycle's distance from it."""
-HOPF_PERIOD_WITHIN = 1e-3
-"""Relative tolerance for the extrapolated period at a Hopf point."""
-RANGE_END_BRACKET = 1e-6
-"""Fraction of a step to which the range's end is predicted; Newton's method then places the cycle on it."""
-RANGE_END_ERROR = 1e-15
-"""Relative error of the parameter at an end of the range."""
-HOPF_ROUNDING = 1e-6
-"""Smallest relative tolerance for the extrapolated place of a Hopf point; the accuracy counts if larger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +151,7 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
     return BranchEnd(
-        replace(end_at(last, limits.reasons[outside]), error=RANGE_END_ERROR * abs(at)), complete=True
+        replace(end_at(last, limits.reasons[outside]), error=ENDINGS.range_end_error * abs(at)), complete=True
     )
 
 
@@ -196,7 +184,7 @@ def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The Hopf point between two cycles where the branch ends; or the first cycle, for a shorter step."""
     shorter = arc_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > SMALL_CYCLE:
+    if start.cycle.measures.tip_y_max > ENDINGS.small_cycle:
         if shorter < ARC_STEPS.shortest:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
@@ -205,11 +193,11 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     share = start.moment / (2 * start.ahead[0] * start.scale.moment)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
-    rounding = max(HOPF_ROUNDING, limits.accuracy)
+    rounding = max(ENDINGS.min_place_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = HOPF_WITHIN * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
-        period_tolerance = HOPF_WITHIN * abs(start.orbit.period - hopf.period)
-        period_tolerance += HOPF_PERIOD_WITHIN * hopf.period
+        tolerance = ENDINGS.place_share * abs(start.at - hopf.coordinate) + rounding * abs(hopf.coordinate)
+        period_tolerance = ENDINGS.place_share * abs(start.orbit.period - hopf.period)
+        period_tolerance += ENDINGS.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(special_hopf(hopf), complete=True, end_hopf=number)
     why = "cycles shrink to zero amplitude where no Hopf point is known"
@@ -242,7 +230,7 @@ def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: 
         return -range_end.missed(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along(beyond, ends, segment.length, 0.0, RANGE_END_BRACKET)
+    length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)
     tolerance = newton_tolerance(limits.accuracy)
     predicted = segment.predicted(length)
     found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(limits.accuracy))

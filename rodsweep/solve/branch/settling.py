@@ -4,7 +4,7 @@ Errors are measured at every third cycle or so (`errors`) and interpolated at th
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ...arrays import Array
 from ..cycle.accuracy.refinement import judged_by, matrix_distance, newton_tolerance
@@ -15,21 +15,30 @@ from .arc import ARC_STEPS, ArcPoint, placed, tangent_at
 from .bordered import Condition, Scale, bordered
 from .errors import BranchCalibration, measured_errors, slope_at
 
-MAX_MESHES = 8
-"""Maximum number of meshes tried for one cycle."""
-CHEAPER_COST = 0.5
-"""A cheaper mesh is taken if its cost is below this fraction of the present cost."""
-PLANNED_SHARE = 0.5
-"""Fraction of the accuracy for which a mesh is planned, so that the mesh serves the next cycles too."""
-MIN_RATE_SHARE = 0.7
-"""Smallest rate of the parameter along the branch, in units of the slower rate at the two measured cycles,
-for interpolated errors: beside a fold the rate is smaller, and the measured errors are no bound."""
-MAX_TAIL_GROWTH = 2.0
-"""Largest growth of the estimated errors since either measured cycle for interpolated errors."""
-MAX_UNMEASURED_CYCLES = 3
-"""Errors are measured at least at every third cycle."""
-REMEASURE_GROWTH = 4.0
-"""Errors are measured anew once the coefficient tails suggest growth by this factor."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SettlingSettings:
+    """Choice of the meshes of a branch, and of the cycles at which errors are measured."""
+
+    max_meshes: int = 8
+    """Maximum number of meshes tried for one cycle."""
+    cheaper_cost: float = 0.5
+    """A cheaper mesh is taken if its cost is below this fraction of the present cost."""
+    planned_share: float = 0.5
+    """Fraction of the accuracy for which a mesh is planned, so that the mesh serves the next cycles too."""
+    min_rate_share: float = 0.7
+    """Smallest rate of the parameter along the branch, in units of the slower rate at the two measured
+    cycles, for interpolated errors: beside a fold the rate is smaller, and the measured errors are no
+    bound."""
+    max_tail_growth: float = 2.0
+    """Largest growth of the estimated errors since either measured cycle for interpolated errors."""
+    max_unmeasured: int = 3
+    """Errors are measured at least at every third cycle."""
+    remeasure_growth: float = 4.0
+    """Errors are measured anew once the coefficient tails suggest growth by this factor."""
+
+
+SETTLING = SettlingSettings()
 
 
 def first_point(found: Converged, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
@@ -51,8 +60,8 @@ def first_point(found: Converged, scale: Scale, side: Array, born: float, accura
 
 def due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured."""
-    known = point.calibration.known.on_branch(point.orbit)
-    return point.unmeasured >= MAX_UNMEASURED_CYCLES or float(known.growth.max()) > REMEASURE_GROWTH
+    growth = float(point.calibration.known.on_branch(point.orbit).growth.max())
+    return point.unmeasured >= SETTLING.max_unmeasured or growth > SETTLING.remeasure_growth
 
 
 def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
@@ -76,13 +85,13 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
     """
     condition = condition or point.condition(0.0)
     finest = False
-    for _ in range(MAX_MESHES):
+    for _ in range(SETTLING.max_meshes):
         if point.unmeasured:
             point = measured(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
-        planned = known.planned(PLANNED_SHARE * accuracy)
-        if enough and (finest or planned.cost > CHEAPER_COST * known.mesh.cost):
+        planned = known.planned(SETTLING.planned_share * accuracy)
+        if enough and (finest or planned.cost > SETTLING.cheaper_cost * known.mesh.cost):
             return point
         if not enough:
             finest = True
@@ -145,9 +154,9 @@ def _with_errors_between(
     slowly, as beside a fold: the errors at the ends are then no bound. Raises Unsolvable.
     """
     ends = (last, end)
-    slow = abs(point.rises) < MIN_RATE_SHARE * min(abs(one.rises) for one in ends)
+    slow = abs(point.rises) < SETTLING.min_rate_share * min(abs(one.rises) for one in ends)
     grown = min(one.calibration.known.on_branch(point.orbit).growth.max() for one in ends)
-    if slow or float(grown) > MAX_TAIL_GROWTH:
+    if slow or float(grown) > SETTLING.max_tail_growth:
         return measured(point, accuracy)
     known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))
     return with_calibration(point, known, accuracy)

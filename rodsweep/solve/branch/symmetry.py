@@ -27,24 +27,50 @@ from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
-FIRST_CHANGES = (0.03, 0.01, 0.1)
-"""Relative change from the symmetric cycle to the first asymmetric cycle; tried in this order."""
-SMALL_ASYMMETRY = 0.2
-"""Largest asymmetry, in units of the largest moment, from which a branch may step across the symmetric cycle
-at its end."""
-MIN_ASYMMETRY = 0.02
-"""Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
-better."""
-LOST_ASYMMETRY = 0.1
-"""A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
-BREAKING_WITHIN = 0.3
-"""Tolerance for the extrapolated place of a symmetry breaking, in units of the last cycle's distance."""
-CLOSE_PLACE = 1e-6
-"""Smallest relative tolerance for the extrapolated parameter; the accuracy counts if larger."""
-CLOSE_PERIOD = 1e-3
-"""Smallest relative tolerance for the extrapolated period; the accuracy counts if larger."""
-ASYMMETRY_RATIOS = 0.5, 2.0
-"""Allowed range of the asymmetry found, in units of the predicted asymmetry."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EndingSettings:
+    """Ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter's range."""
+
+    small_cycle: float = 0.06
+    """Largest tip y, in L, of a cycle from which the branch may step across a Hopf point where it ends."""
+    small_asymmetry: float = 0.2
+    """Largest asymmetry, in units of the largest moment, from which a branch may step across the symmetric
+    cycle at its end."""
+    min_asymmetry: float = 0.02
+    """Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
+    better."""
+    lost_asymmetry: float = 0.1
+    """A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
+    asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    """Allowed range of the asymmetry found, in units of the predicted asymmetry."""
+    place_share: float = 0.3
+    """Tolerance for the extrapolated place of a Hopf point or a symmetry breaking, in units of the last
+    cycle's distance from it."""
+    min_place_tolerance: float = 1e-6
+    """Smallest relative tolerance for the extrapolated place; the accuracy counts if larger."""
+    period_tolerance: float = 1e-3
+    """Relative tolerance for the extrapolated period; at a symmetry breaking the accuracy counts if
+    larger."""
+    range_end_bracket: float = 1e-6
+    """Fraction of a step to which the range's end is predicted; Newton's method then places the cycle on
+    it."""
+    range_end_error: float = 1e-15
+    """Relative error of the parameter at an end of the range."""
+
+
+ENDINGS = EndingSettings()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AsymmetricStartSettings:
+    """The first asymmetric cycle beside a symmetry breaking."""
+
+    first_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
+    """Relative change from the symmetric cycle to the first asymmetric cycle; tried in this order."""
+
+
+ASYMMETRIC_START = AsymmetricStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +128,7 @@ def beginning_without_symmetry(
     matrix = BorderedMatrix(whole, scale, workspace)
     way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])
-    for share in FIRST_CHANGES:
+    for share in ASYMMETRIC_START.first_changes:
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
@@ -124,7 +150,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not ASYMMETRY_RATIOS[0] < found < ASYMMETRY_RATIOS[1]:
+    if not ENDINGS.asymmetry_ratios[0] < found < ENDINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
     aim = max(accuracy, FIRST_ACCURACY)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
@@ -140,7 +166,7 @@ def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy
     """
     reference = asymmetry(start.orbit)
     other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
-    if float(asymmetry(other) @ reference) < LOST_ASYMMETRY * float(reference @ reference):
+    if float(asymmetry(other) @ reference) < ENDINGS.lost_asymmetry * float(reference @ reference):
         return True
     return start.rises * end.rises < 0 and _nearly_symmetric(start) and _nearest(start, known, accuracy) >= 0
 
@@ -152,7 +178,7 @@ def _relative_asymmetry(start: ArcPoint) -> float:
 
 
 def _nearly_symmetric(start: ArcPoint) -> bool:
-    return _relative_asymmetry(start) <= SMALL_ASYMMETRY
+    return _relative_asymmetry(start) <= ENDINGS.small_asymmetry
 
 
 def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int | None:
@@ -161,7 +187,7 @@ def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], acc
     None if the cycles are too far away to decide. Raises Unsolvable if no shorter step is allowed.
     """
     which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
-    if which >= 0 or _relative_asymmetry(start) <= MIN_ASYMMETRY:
+    if which >= 0 or _relative_asymmetry(start) <= ENDINGS.min_asymmetry:
         return which
     if arc_between(start, end) / 2 < ARC_STEPS.shortest:
         raise Unsolvable("the motion becomes its mirror image within the shortest step")
@@ -183,9 +209,10 @@ def _nearest(start: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int
         if symmetric is None:
             continue
         place = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BREAKING_WITHIN * abs(start.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
-        period_tolerance = BREAKING_WITHIN * abs(start.orbit.period - symmetric.period)
-        period_tolerance += max(CLOSE_PERIOD, accuracy) * symmetric.period
+        tolerance = ENDINGS.place_share * abs(start.at - place)
+        tolerance += max(ENDINGS.min_place_tolerance, accuracy) * abs(place)
+        period_tolerance = ENDINGS.place_share * abs(start.orbit.period - symmetric.period)
+        period_tolerance += max(ENDINGS.period_tolerance, accuracy) * symmetric.period
         if abs(at - place) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which
     return -1

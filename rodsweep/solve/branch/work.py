@@ -6,11 +6,21 @@ within a factor of two from a tenth of D on. Times of the branches of one rod we
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-WITHIN_A_BRANCH = 0.75
-"""Exponent of the distance in the time spent along one branch."""
-AMONG_BRANCHES = 0.5
-"""Exponent of the whole distance in the times of several branches of a rod."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkSettings:
+    """Exponents of the display of progress, fitted to the measured times above."""
+
+    within_a_branch: float = 0.75
+    """Exponent of the distance in the time spent along one branch."""
+    among_branches: float = 0.5
+    """Exponent of the whole distance in the times of several branches of a rod."""
+
+
+BRANCH_WORK = WorkSettings()
+
 
 Range = tuple[float, float]
 """The lowest and highest coordinate of the parameter."""
@@ -19,11 +29,11 @@ Range = tuple[float, float]
 def share_done(born: float, at: float, aim: float) -> float:
     """Fraction of a branch's work that is done at a coordinate, for a branch from `born` to `aim`."""
     way = (at - born) / (aim - born) if aim != born else 1.0
-    return min(max(way, 0.0), 1.0) ** WITHIN_A_BRANCH
+    return min(max(way, 0.0), 1.0) ** BRANCH_WORK.within_a_branch
 
 
 def shares_of_branches(born: Sequence[float], ends: Range) -> list[float]:
     """Fractions of the whole work that are done before each branch and at the end, (branches + 1,)."""
-    works = [max(abs(end - at) for end in ends) ** AMONG_BRANCHES for at in born]
+    works = [max(abs(end - at) for end in ends) ** BRANCH_WORK.among_branches for at in born]
     done = [sum(works[:number]) for number in range(len(works) + 1)]
     return [work / done[-1] if done[-1] else 1.0 for work in done]

@@ -21,9 +21,6 @@ from ..point import FAILURES, Unsolvable
 
 Solution = TypeVar("Solution")
 
-MIN_MEASURED = 1e-9
-"""Smallest prediction error, or angle in radians, that is distinguished from 0."""
-
 
 class Stepped(NamedTuple, Generic[Solution]):
     """A solution at one step ahead.
@@ -61,7 +58,7 @@ class StepControl:
     belong to another curve. order: of the prediction, whose error grows as length**order; limited by the
     number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest: largest
     angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most: maximum number
-    of solutions; no curve has more.
+    of solutions; no curve has more. min_measured: smallest prediction error, or angle, distinguished from 0.
     """
 
     first: float
@@ -75,6 +72,7 @@ class StepControl:
     growth: float
     shrinkage: float = 0.5
     most: int = 5000
+    min_measured: float = 1e-9
 
     def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
         """The next solution; raises Unsolvable if the solution may lie on another curve."""
@@ -86,8 +84,8 @@ class StepControl:
 
     def next_length(self, length: float, there: Stepped[Solution], solutions: int) -> float:
         """Length of the step after an accepted step, for a curve with a number of solutions."""
-        by_distance = (self.aim / max(there.off, MIN_MEASURED)) ** (1 / min(self.order, solutions))
-        by_turn = self.turn / max(_angle(there.cosine), MIN_MEASURED)
+        by_distance = (self.aim / max(there.off, self.min_measured)) ** (1 / min(self.order, solutions))
+        by_turn = self.turn / max(_angle(there.cosine), self.min_measured)
         factor = min(max(min(by_distance, by_turn), self.shrinkage), self.growth)
         return min(self.longest, length * factor)
 

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from itertools import pairwise
-from math import inf
 
 import numpy as np
 
@@ -19,26 +18,10 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..continuation.follower import CurveStop, StepControl, Stepped, follow
+from ..continuation.follower import CurveStop, Stepped, follow
 from ..point import FAILURES, Unsolvable
-from .generalised import COARSEST_FOR_LOCATING, GeneralisedHopfPoint, HopfCurve
-
-BAUTIN_STEPS = StepControl(
-    first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000
-)
-"""Step lengths in units of the ranges; the prediction error is in units of the step."""
-MAX_BAUTIN_SECANTS = 10
-"""Maximum number of secant steps to a generalised Hopf point."""
-PROBE = 1e-3
-"""First secant step along the Hopf curve, in units of the ranges."""
-SECANT_TOLERANCE = 1e-12
-"""Length of a secant step, in units of the ranges, at which the iteration has converged."""
-ON_EDGE = 1e-12
-"""Distance from an end of a range, in units of the range, below which a point lies on this end."""
-MIN_BAUTIN_LOOP = 5
-"""Minimum number of points of a closed curve."""
-SAME_POINT = 1e-6
-"""Two points at a smaller distance, in units of the ranges, are the same."""
+from .bautin_settings import BAUTIN, BAUTIN_STEPS
+from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
 
 
 class BautinEnd(IntEnum):
@@ -114,7 +97,7 @@ class BautinSpace:
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, COARSEST_FOR_LOCATING))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF.coarsest))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
@@ -157,7 +140,7 @@ class BautinSpace:
 
     def margins(self, place: _Place) -> Array:
         """Distances from the ends of the three ranges, negative on an end, shape (6,)."""
-        return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - ON_EDGE
+        return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
     def landed(self, behind: Sequence[_Place], outer: _Place, margin: int) -> _Place | None:
         """The outer point itself: `_within` has already shortened the step to end on the edge."""
@@ -167,14 +150,14 @@ class BautinSpace:
         """Whether the curve is closed: its first point lies between the last point and the next."""
         first, last, step = behind[0].v, behind[-1].v, float(np.linalg.norm(there.v - behind[-1].v))
         near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
-        return len(behind) > MIN_BAUTIN_LOOP and bool(near)
+        return len(behind) > BAUTIN.min_loop_points and bool(near)
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The zero of Re c along a Hopf curve from a start, (3,), along `way`, (3,); raises Unsolvable."""
-        before, s = 0.0, PROBE
+        before, s = 0.0, BAUTIN.first_secant
         last = hopf.at(start, way, hopf.accuracy).share
-        for _ in range(MAX_BAUTIN_SECANTS):
+        for _ in range(BAUTIN.max_secants):
             here = hopf.at(start + s * way, way, hopf.accuracy)
             if here.share == last:
                 break
@@ -183,7 +166,7 @@ class BautinSpace:
             if not abs(s + step) < BAUTIN_STEPS.longest:
                 break
             along = here.coefficients.landau_error / abs(slope)
-            if abs(step) <= max(SECANT_TOLERANCE, along):
+            if abs(step) <= max(BAUTIN.tolerance, along):
                 return hopf.as_point(here, 0, way * (along + abs(step)))
             last, before, s = here.share, s, s + step
         raise Unsolvable("no generalised Hopf point is found near")
@@ -213,7 +196,7 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
     """Whether a point, at a requested value of the third parameter, is a stored point of a curve."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
-    return any(float(np.abs(v - other).max()) < SAME_POINT for other in others)
+    return any(float(np.abs(v - other).max()) < BAUTIN.same_point for other in others)
 
 
 def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEnd]:
@@ -243,7 +226,7 @@ def _asked_between(space: BautinSpace, here: _Place, there: _Place) -> list[_Pla
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]
     found = []
     for z in sorted(inner, reverse=bool(a > b)):
-        if min(abs(z - a), abs(z - b)) > SAME_POINT:
+        if min(abs(z - a), abs(z - b)) > BAUTIN.same_point:
             guess = here.v + (z - a) / (b - a) * (there.v - here.v)
             guess[2] = z
             found.append(space.solved(guess, 2))

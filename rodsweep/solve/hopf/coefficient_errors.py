@@ -16,22 +16,32 @@ from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
-from .normal_form import ACCURACY_SHARE, NormalForm, a_third_finer, elements_for, normal_form_on
+from .normal_form import NORMAL_FORM, NormalForm, a_third_finer, elements_for, normal_form_on
 
-COEFFICIENT_MORE_ORDERS = 4
-"""Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""
-MAX_REFINEMENTS = 4
-"""Maximum number of refinements of the first mesh."""
-COARSEST = 1e-2
-"""Coarsest relative accuracy of the first mesh, on which the eigenvalue must still be identified."""
-COEFFICIENT_ROUNDING = 1.5e-14
-"""Relative rounding error of c, in units of the condition number of the eigenvalue. Most rods have 1e-15;
-the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
-SENSITIVITY = 20.0
-"""Bound on |dc/dF|/|c|, in units of |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
-high modes of rods soft in shear; where a window of flutter closes it is 1."""
-FORCE_STEP = 1e-5
-"""Relative difference step in the force for the second derivative of w(F)."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoefficientSettings:
+    """Error estimate of the coefficient c, and the searches that are kept."""
+
+    more_orders: int = 4
+    """Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""
+    max_refinements: int = 4
+    """Maximum number of refinements of the first mesh."""
+    coarsest: float = 1e-2
+    """Coarsest relative accuracy of the first mesh, on which the eigenvalue must still be identified."""
+    rounding: float = 1.5e-14
+    """Relative rounding error of c, in units of the condition number of the eigenvalue. Most rods have 1e-15;
+    the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
+    sensitivity: float = 20.0
+    """Bound on |dc/dF|/|c|, in units of |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10,
+    for high modes of rods soft in shear; where a window of flutter closes it is 1."""
+    force_step: float = 1e-5
+    """Relative difference step in the force for the second derivative of w(F)."""
+    searches_kept: int = 8
+    """Number of cached searches for Hopf points, shared by rods that differ in gamma1 only."""
+
+
+COEFFICIENT = CoefficientSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,13 +93,13 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = elements_for(rod, w, min(accuracy / ACCURACY_SHARE, COARSEST))
-    fine = normal_form_on(start, rod, w, COARSEST)
+    start = elements_for(rod, w, min(accuracy / NORMAL_FORM.accuracy_share, COEFFICIENT.coarsest))
+    fine = normal_form_on(start, rod, w, COEFFICIENT.coarsest)
     change = math.inf
     rounding = 0.0
-    for number in range(MAX_REFINEMENTS):
+    for number in range(COEFFICIENT.max_refinements):
         here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
-        more = a_third_finer(here) if number else Elements(here.edges, here.order + COEFFICIENT_MORE_ORDERS)
+        more = a_third_finer(here) if number else Elements(here.edges, here.order + COEFFICIENT.more_orders)
         coarse = fine
         fine = normal_form_on(more, rod, w, accuracy)
         change = abs(fine.c - coarse.c) / abs(fine.c)
@@ -102,9 +112,8 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     else:  # for an arm the root's slope is a difference quotient, less accurate than the mesh's slope
         slope = fine.slope
         off = abs(fine.slope - coarse.slope) / abs(slope)
-    moved = (
-        SENSITIVITY * hopf.error * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F))
-    )
+    unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
+    moved = COEFFICIENT.sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
     return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
@@ -138,7 +147,7 @@ def _with_errors(
 
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root of D at w."""
-    step = FORCE_STEP * abs(rod.F)
+    step = COEFFICIENT.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
     _, before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
@@ -148,4 +157,4 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
 def _rounding(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue."""
     sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
-    return COEFFICIENT_ROUNDING * sizes / abs(normal.w)
+    return COEFFICIENT.rounding * sizes / abs(normal.w)

@@ -14,10 +14,7 @@ from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import CRUSHING_MARGIN, Crossing
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
-from .coefficient_errors import HopfCoefficients, hopf_coefficients
-
-SEARCHES_KEPT = 8
-"""Number of cached searches for Hopf points, shared by rods that differ in gamma1 only."""
+from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
 
 
 class CriticalityStatus(PointStatus):
@@ -106,7 +103,7 @@ def warm_up() -> None:
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
-@lru_cache(maxsize=SEARCHES_KEPT)
+@lru_cache(maxsize=COEFFICIENT.searches_kept)
 def _hopf_points(path: Path, end: float, certify: bool) -> Transitions:
     return pair_crossings(path, 0.0, end, certify)
 

@@ -22,16 +22,24 @@ from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
-COARSEST_FOR_LOCATING = 1e-10
-"""Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""
-FIRST_SIGN_ACCURACY = 1e-5
-"""Relative accuracy of c for a first sign; undecided signs are recomputed with `accuracy`."""
-CHORD_TOLERANCE = 1e-13
-"""Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
-CHORD_STEP = 1e-3
-"""Difference step for the slope of Re c, as a fraction of the distance between two neighbours."""
-VANISHES = 1e-6
-"""Largest |Re c|/|c| at a zero; a larger value means that Re c jumps through 0."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeneralisedHopfSettings:
+    """Location of generalised Hopf points on a Hopf curve."""
+
+    coarsest: float = 1e-10
+    """Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""
+    first_sign_accuracy: float = 1e-5
+    """Relative accuracy of c for a first sign; undecided signs are recomputed with `accuracy`."""
+    tolerance: float = 1e-13
+    """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
+    slope_step: float = 1e-3
+    """Difference step for the slope of Re c, as a fraction of the distance between two neighbours."""
+    vanishes: float = 1e-6
+    """Largest |Re c|/|c| at a zero; a larger value means that Re c jumps through 0."""
+
+
+GENERALISED_HOPF = GeneralisedHopfSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,10 +88,10 @@ class _At:
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
     """The sign of Re c at every point of a Hopf curve, and the generalised Hopf points between them.
 
-    accuracy: relative accuracy of c, at most COARSEST_FOR_LOCATING. A failure of the normal form makes the
-    sign NaN at this point only.
+    accuracy: relative accuracy of c, at most `GENERALISED_HOPF.coarsest`. A failure of the normal form makes
+    the sign NaN at this point only.
     """
-    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, COARSEST_FOR_LOCATING))
+    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF.coarsest))
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points = []
     unlocated = 0
@@ -114,7 +122,7 @@ class HopfCurve:
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
-            rough = self.at(v, normal, FIRST_SIGN_ACCURACY).coefficients.criticality
+            rough = self.at(v, normal, GENERALISED_HOPF.first_sign_accuracy).coefficients.criticality
             return rough or self.at(v, normal, self.accuracy).coefficients.criticality
         except FAILURES:
             return math.nan
@@ -146,15 +154,15 @@ class HopfCurve:
             return self.at(start + s * chord, normal, self.accuracy)
 
         try:
-            s = float(brentq(lambda s: on_chord(s).share, 0.0, 1.0, xtol=CHORD_TOLERANCE))
-            here, before, beyond = (on_chord(s + side * CHORD_STEP) for side in (0, -1, 1))
+            s = float(brentq(lambda s: on_chord(s).share, 0.0, 1.0, xtol=GENERALISED_HOPF.tolerance))
+            here, before, beyond = (on_chord(s + side * GENERALISED_HOPF.slope_step) for side in (0, -1, 1))
         except (*FAILURES, ValueError):
             return None
-        slope = (beyond.share - before.share) / (2 * CHORD_STEP)
-        if abs(here.share) > VANISHES or slope == 0:
+        slope = (beyond.share - before.share) / (2 * GENERALISED_HOPF.slope_step)
+        if abs(here.share) > GENERALISED_HOPF.vanishes or slope == 0:
             return None
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
-        along = here.coefficients.landau_error / abs(slope) + CHORD_TOLERANCE
+        along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF.tolerance
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
     def as_point(self, here: _At, after: int, moved: Array) -> GeneralisedHopfPoint:

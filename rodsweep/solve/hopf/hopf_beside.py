@@ -13,12 +13,20 @@ from ..changes.along_path import pair_crossings
 from ..changes.unstable_modes import CRUSHING_MARGIN
 from .coefficient_errors import hopf_coefficients
 
-FARTHEST_FORCE = 1.5
-"""Hopf points are sought at forces from F / this ratio to F * this ratio."""
-SIGN_ACCURACY = 1e-3
-"""Relative accuracy of c, of which only the sign and the leading digits are needed."""
-LARGEST_Y = 0.5
-"""Largest tip y, in L, of an unstable cycle for which the normal form is used."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HopfBesideSettings:
+    """Search for the subcritical Hopf point beside a cycle."""
+
+    farthest_force: float = 1.5
+    """Hopf points are sought at forces from F / this ratio to F * this ratio."""
+    accuracy: float = 1e-3
+    """Relative accuracy of c, of which only the sign and the leading digits are needed."""
+    largest_y: float = 0.5
+    """Largest tip y, in L, of an unstable cycle for which the normal form is used."""
+
+
+HOPF_BESIDE = HopfBesideSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,18 +45,18 @@ def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     """The subcritical Hopf point nearest to a rod's force; None if neither neighbour is subcritical.
 
     The candidates are the first Hopf point above and the first below the force, where the tip y of their
-    unstable cycle is at most LARGEST_Y. The straight rod must be stable. Raises Unsolvable if the search for
-    Hopf points or a coefficient fails.
+    unstable cycle is at most `HOPF_BESIDE.largest_y`. The straight rod must be stable. Raises
+    Unsolvable if the search for Hopf points or a coefficient fails.
     """
-    low = rod.F / FARTHEST_FORCE
-    high = min(rod.F * FARTHEST_FORCE, rod.crushing_force * (1 - CRUSHING_MARGIN))
+    low = rod.F / HOPF_BESIDE.farthest_force
+    high = min(rod.F * HOPF_BESIDE.farthest_force, rod.crushing_force * (1 - CRUSHING_MARGIN))
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
     nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
     for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
-        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SIGN_ACCURACY)
+        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, HOPF_BESIDE.accuracy)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
-        if found.criticality > 0 and y <= LARGEST_Y:
+        if found.criticality > 0 and y <= HOPF_BESIDE.largest_y:
             return SubcriticalHopf(hopf.at, y)
     return None

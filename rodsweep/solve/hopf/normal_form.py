@@ -33,24 +33,35 @@ from ...discretization.straight.whole_matrices import WholeMatrices, straight_ma
 from ...model.rod import Rod
 from ..point import Unsolvable
 
-OFFSET = 1e-10
-"""Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NormalFormSettings:
+    """The normal form of a Hopf point: mesh and inverse iteration."""
+
+    shift_offset: float = 1e-10
+    """Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
+    found: float = 1e-8
+    """Relative distance of shift and eigenvalue below which the iterations converge to rounding error."""
+    max_shifts: int = 10
+    """Maximum number of shifts of the inverse iteration."""
+    accuracy_share: float = 0.1
+    """Safety factor on the accuracy: the mesh rule for eigenvalues leaves up to five times the error in c."""
+    largest_order: int = 20
+    """Largest order of an element; a further element is cheaper than a higher order."""
+    max_nodes: int = 2000
+    """Maximum number of nodes; Unsolvable for rods that need more."""
+    max_arm_nodes: int = 400
+    """Maximum number of nodes of an arm, whose matrices are factorised as a whole."""
+
+
+NORMAL_FORM = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
-"""Inverse iterations with one shift."""
-FOUND = 1e-8
-"""Relative distance of shift and eigenvalue below which the iterations converge to rounding error."""
-MAX_INVERSE_SHIFTS = 10
-"""Maximum number of shifts of the inverse iteration."""
+"""Inverse iterations with one shift. Two square the distance `NORMAL_FORM.found` to rounding error; one would
+leave it in c, beyond the stated error."""
+
+
 HARMONIC = 2
 """Wave number of h20 and h11, which determine c, in units of the wave number of q."""
-ACCURACY_SHARE = 0.1
-"""Safety factor on the accuracy: the mesh rule for eigenvalues leaves up to five times the error in c."""
-LARGEST_FORM_ORDER = 20
-"""Largest order of an element; a further element is cheaper than a higher order."""
-MAX_FORM_NODES = 2000
-"""Maximum number of nodes; Unsolvable for rods that need more."""
-MAX_FORM_NODES_OF_ARMS = 400
-"""Maximum number of nodes of an arm, whose matrices are factorised as a whole."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -138,11 +149,12 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
+    accuracy *= NORMAL_FORM.accuracy_share
     if not rod.standard:
         wave_number = arm_determinant(rod).wave_number(w)
-        return arm_elements(rod, HARMONIC * wave_number, ACCURACY_SHARE * accuracy, LARGEST_FORM_ORDER)
+        return arm_elements(rod, HARMONIC * wave_number, accuracy, NORMAL_FORM.largest_order)
     wave_number = newton_correction(w, rod.coefficients)[2]
-    resolution = resolution_for(HARMONIC * wave_number, ACCURACY_SHARE * accuracy, LARGEST_FORM_ORDER)
+    resolution = resolution_for(HARMONIC * wave_number, accuracy, NORMAL_FORM.largest_order)
     return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
@@ -165,11 +177,11 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     Raises Unsolvable where w is no eigenvalue to a relative accuracy, or the mesh is too fine to be solved.
     """
     nodes = elements.nodes
-    limit = MAX_FORM_NODES if rod.standard else MAX_FORM_NODES_OF_ARMS
+    limit = NORMAL_FORM.max_nodes if rod.standard else NORMAL_FORM.max_arm_nodes
     if nodes > limit:
         raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {limit}")
     normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
-    if not abs(normal.w - w) <= max(accuracy, FOUND) * abs(w):
+    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM.found) * abs(w):
         raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
     return normal
 
@@ -180,8 +192,8 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
     Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
     """
     w = complex(guess)
-    for _ in range(MAX_INVERSE_SHIFTS):
-        shift = w * (1 + OFFSET)
+    for _ in range(NORMAL_FORM.max_shifts):
+        shift = w * (1 + NORMAL_FORM.shift_offset)
         factors = elements.factors(shift)
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
@@ -191,7 +203,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
         w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
-        if abs(w - shift) <= FOUND * abs(w):
+        if abs(w - shift) <= NORMAL_FORM.found * abs(w):
             break
     else:
         raise Unsolvable(f"no eigenvalue is found near {guess:.6g}")

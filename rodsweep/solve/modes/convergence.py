@@ -5,7 +5,7 @@ the results. Beside a double eigenvalue, where condition numbers grow like the i
 eigenvalues, two meshes may agree by chance; the effect of rounding on the distance is added there.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -15,22 +15,30 @@ from ...discretization.elements.resolution import mesh_accuracy
 from .inverse_iteration import Vectors, mode_vectors
 from .problem import ModesProblem
 
-ORDER_STEP = 4
-"""Increase of the order on the second mesh; it gains two orders of magnitude in the vectors."""
-MAX_MODE_MESHES = 4
-"""Maximum number of finer meshes."""
-MAX_DENSE_UNKNOWNS = 1500
-"""Largest number of unknowns; dense linear algebra on a larger mesh takes seconds."""
-FINEST_MESH_ACCURACY = 1e-24
-"""Smallest accuracy of the eigenvalues that the first mesh is chosen for."""
-ROUNDINGS = 2.0
-"""Relative rounding error of a condition number in units of rounding/distance; measured: median 0.6, maximum
-3.4."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeMeshSettings:
+    """Meshes of the modes and their condition numbers."""
+
+    more_orders: int = 4
+    """Increase of the order on the second mesh; it gains two orders of magnitude in the vectors."""
+    max_meshes: int = 4
+    """Maximum number of finer meshes."""
+    max_unknowns: int = 1500
+    """Largest number of unknowns; dense linear algebra on a larger mesh takes seconds."""
+    finest_accuracy: float = 1e-24
+    """Smallest accuracy of the eigenvalues that the first mesh is chosen for."""
+    roundings: float = 2.0
+    """Relative rounding error of a condition number in units of rounding/distance; measured: median 0.6,
+    maximum 3.4."""
+
+
+MODE_MESH = ModeMeshSettings()
 
 
 def vector_accuracy(accuracy: float) -> float:
     """Accuracy of the eigenvalues for which the first mesh is chosen, for a given accuracy of the vectors."""
-    return max(mesh_accuracy(accuracy, True), FINEST_MESH_ACCURACY)
+    return max(mesh_accuracy(accuracy, True), MODE_MESH.finest_accuracy)
 
 
 def converged_vectors(
@@ -44,9 +52,12 @@ def converged_vectors(
     coarse = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
     best: Vectors | None = None
     least = inf
-    for _ in range(MAX_MODE_MESHES):
-        mesh = problem.of_order(mesh, mesh.order + ORDER_STEP) if best is None else problem.finer(mesh)
-        if mesh.unknowns > MAX_DENSE_UNKNOWNS:
+    for _ in range(MODE_MESH.max_meshes):
+        if best is None:
+            mesh = problem.of_order(mesh, mesh.order + MODE_MESH.more_orders)
+        else:
+            mesh = problem.finer(mesh)
+        if mesh.unknowns > MODE_MESH.max_unknowns:
             break
         fine = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
@@ -71,6 +82,6 @@ def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
         relative = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
         error = np.maximum(error, relative.max(axis=0))
     # For a normal operator, of condition number 1, rounding moves the eigenvalues but turns no vector.
-    turned = ROUNDINGS * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, 1e-300)
+    turned = MODE_MESH.roundings * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, 1e-300)
     moved = np.abs(coarse.condition / fine.condition - 1)
     return replace(fine, mode_error=error, condition_error=moved + turned)

@@ -17,10 +17,18 @@ from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_fo
 from ...discretization.straight.pencil import tip_scale
 from ...model.rod import Rod
 
-NULL_VECTOR_ITERATIONS = 4
-"""Number of inverse iterations; two suffice unless the eigenvalue is nearly double."""
-CONJUGATE = 1e-12
-"""Relative distance below which an eigenvalue is the complex conjugate of its predecessor."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeIterationSettings:
+    """Inverse iteration for the vectors of a mode."""
+
+    iterations: int = 4
+    """Number of inverse iterations; two suffice unless the eigenvalue is nearly double."""
+    conjugate: float = 1e-12
+    """Relative distance below which an eigenvalue is the complex conjugate of its predecessor."""
+
+
+MODE_ITERATION = ModeIterationSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +109,7 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
     X = np.empty((len(B), m), complex)
     Z = np.empty((len(B), m), complex)
     for i, w in enumerate(eigenvalues):
-        if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= CONJUGATE * abs(w):
+        if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION.conjugate * abs(w):
             X[:, i] = X[:, i - 1].conj()
             Z[:, i] = Z[:, i - 1].conj()
         else:
@@ -128,7 +136,7 @@ def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
     x: NDArray = np.ones(len(B))
     before = x
     last = growth = 0.0
-    for _ in range(NULL_VECTOR_ITERATIONS):
+    for _ in range(MODE_ITERATION.iterations):
         before = x
         last = growth
         x = inverse @ (B * x)

@@ -26,10 +26,18 @@ from .inverse_iteration import Vectors, no_vectors
 from .problem import modes_problem
 from .transient_growth import Growth, growth_of
 
-GROWTH_WAVE_NUMBER = 24.0
-"""Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
-SIGNIFICANT_ERRORS = 4.0
-"""Smallest positive growth rate in units of its error estimate."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeadingModeSettings:
+    """Choice of the modes that are computed."""
+
+    growth_wave_number: float = 24.0
+    """Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
+    significant_errors: float = 4.0
+    """Smallest positive growth rate in units of its error estimate."""
+
+
+LEADING_MODES = LeadingModeSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +123,8 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     errors = vectors.errors()
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
-        mesh = problem.mesh_for(max(wave, GROWTH_WAVE_NUMBER), request.accuracy)
-        grows = (spectrum.eigenvalues.real > SIGNIFICANT_ERRORS * spectrum.error_estimate).any()
+        mesh = problem.mesh_for(max(wave, LEADING_MODES.growth_wave_number), request.accuracy)
+        grows = (spectrum.eigenvalues.real > LEADING_MODES.significant_errors * spectrum.error_estimate).any()
         known = spectrum.status != SpectrumStatus.undecided
         stable = False if grows or spectrum.unstable_count > 0 else (True if known else None)
         growth = growth_of(problem, mesh, request.accuracy, stable, rate)

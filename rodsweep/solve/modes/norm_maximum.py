@@ -10,26 +10,36 @@ f'' >= -c(t0) exp(2 a r) at t, because exp(L t) v = exp(L t0) v' with |v'| <= ex
 until the bound is within the tolerance of the largest value found.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...arrays import Array
 from .propagator import Propagator
 
-START_RATIO = 2**0.25
-"""Ratio of neighbouring times of the first grid."""
-MAX_BOUND_HALVINGS = 40
-"""Maximum number of halvings of an interval."""
-MAX_OPEN_INTERVALS = 4000
-"""Maximum number of open intervals; with more, the bound is left as it is."""
-BATCH = 128
-"""Number of times at which the propagator is evaluated at once."""
-LARGEST_EXPONENT = 300.0
-"""Largest exponent, with an exponential that is still finite."""
-MAX_PEAK_STEPS = 40
-"""Maximum number of steps of the search for a peak."""
-RISE_LEFT = 1e-14
-"""Relative rise of a concave maximum within its final bracket; the relative error of the time is the square
-root of this."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NormMaximumSettings:
+    """Search for the largest norm over all times."""
+
+    start_ratio: float = 2**0.25
+    """Ratio of neighbouring times of the first grid."""
+    max_halvings: int = 40
+    """Maximum number of halvings of an interval."""
+    max_open_intervals: int = 4000
+    """Maximum number of open intervals; with more, the bound is left as it is."""
+    batch: int = 128
+    """Number of times at which the propagator is evaluated at once."""
+    largest_exponent: float = 300.0
+    """Largest exponent, with an exponential that is still finite."""
+    max_peak_steps: int = 40
+    """Maximum number of steps of the search for a peak."""
+    rise_left: float = 1e-14
+    """Relative rise of a concave maximum within its final bracket; the relative error of the time is the
+    square root of this."""
+
+
+NORM_MAXIMUM = NormMaximumSettings()
 
 
 def highest(
@@ -40,7 +50,7 @@ def highest(
     Only values above `floor` are searched, to the relative tolerance. `abscissa` >= 0 is an upper bound.
     """
     low, high = span
-    count = max(2, int(np.ceil(np.log(high / low) / np.log(START_RATIO))) + 1)
+    count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM.start_ratio))) + 1)
     times = np.geomspace(low, high, count, dtype=np.float64)
     times[[0, -1]] = span
     squares, bends = _squares(propagator, times)
@@ -52,11 +62,11 @@ def highest(
     right = squares[1:]
     bend = bends[:-1]
     ceiling = best[0]
-    for halving in range(MAX_BOUND_HALVINGS + 1):
+    for halving in range(NORM_MAXIMUM.max_halvings + 1):
         bound = np.sqrt(_bound(h, left, right, bend, abscissa))
         wanted = max(best[0], floor) * (1 + tolerance)
         open_ = bound > wanted
-        given_up = halving == MAX_BOUND_HALVINGS or int(open_.sum()) > MAX_OPEN_INTERVALS
+        given_up = halving == NORM_MAXIMUM.max_halvings or int(open_.sum()) > NORM_MAXIMUM.max_open_intervals
         ceiling = max(ceiling, bound[~open_ | given_up].max(initial=0.0))
         if given_up or not open_.any():
             break
@@ -75,14 +85,14 @@ def highest(
 
 def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
     """`Propagator.squares` in batches; each result (times,)."""
-    parts = [propagator.squares(part) for part in np.array_split(times, len(times) // BATCH + 1)]
+    parts = [propagator.squares(part) for part in np.array_split(times, len(times) // NORM_MAXIMUM.batch + 1)]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
     """Bound of N^2 over intervals of width h, from N^2 at both ends and c at the left end; all
     (intervals,)."""
-    growth = np.exp(np.minimum(2 * abscissa * h, LARGEST_EXPONENT))
+    growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM.largest_exponent))
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
 
@@ -92,11 +102,11 @@ def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)
-    for _ in range(MAX_PEAK_STEPS):
+    for _ in range(NORM_MAXIMUM.max_peak_steps):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm(t)
         best = max(best, (value, t))
-        if abs(rate) * (high - low) <= RISE_LEFT:
+        if abs(rate) * (high - low) <= NORM_MAXIMUM.rise_left:
             break
         if rate > 0:
             low = t

@@ -1,5 +1,6 @@
 """The numerical abscissa: the largest growth rate of a perturbation in the Gamma norm at t = 0+."""
 
+from dataclasses import dataclass
 from math import inf, nan
 
 import numpy as np
@@ -12,13 +13,21 @@ from ...model.adjoint import hermitian_tip
 from ...model.rod import Rod
 from .propagator import shifted_inverse
 
-MAX_ABSCISSA_SHIFTS = 60
-"""Maximum number of shifts tried to exceed the numerical abscissa if no bound is known; each doubles the
-last."""
-CLOSE_SHIFT = 0.05
-"""Relative distance of a shift above the abscissa that costs no digits."""
-POSITIVE = 1e-9
-"""Relative size above which an eigenvalue of the shifted inverse is positive, not rounding."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AbscissaSettings:
+    """Shifts above the numerical abscissa."""
+
+    max_shifts: int = 60
+    """Maximum number of shifts tried to exceed the numerical abscissa if no bound is known; each doubles the
+    last."""
+    close_shift: float = 0.05
+    """Relative distance of a shift above the abscissa that costs no digits."""
+    positive: float = 1e-9
+    """Relative size above which an eigenvalue of the shifted inverse is positive, not rounding."""
+
+
+ABSCISSA = AbscissaSettings()
 
 
 def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
@@ -32,14 +41,14 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     shift = bound + 1 if bound < inf else rod.F**2 + 1
-    for _ in range(MAX_ABSCISSA_SHIFTS):
+    for _ in range(ABSCISSA.max_shifts):
         H = shifted_inverse(A, B, shift)
         values = np.linalg.eigvalsh((H + H.T) / 2)
-        if values[-1] > -POSITIVE * values[0]:  # an eigenvalue lies above the shift
+        if values[-1] > -ABSCISSA.positive * values[0]:  # an eigenvalue lies above the shift
             shift = 2 * abs(shift) + 1
             continue
         abscissa = shift + 1 / float(values[0])
-        close = abscissa + CLOSE_SHIFT * abs(abscissa) + CLOSE_SHIFT
+        close = abscissa + ABSCISSA.close_shift * abs(abscissa) + ABSCISSA.close_shift
         if shift - abscissa <= 2 * (close - abscissa):
             return abscissa
         shift = close

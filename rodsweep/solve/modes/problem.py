@@ -6,6 +6,7 @@ elements that end at jumps of a coefficient, and D from propagators.
 
 import math
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -19,8 +20,16 @@ from ...discretization.straight.dense_form import AnyPencil
 from ...discretization.straight.pencil import assemble
 from ...model.rod import Rod
 
-PENCILS_KEPT = 16
-"""Number of sparsity patterns of arm pencils that are kept for later points on equal meshes."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeProblemSettings:
+    """Memory for the pencils of arms."""
+
+    pencils_kept: int = 16
+    """Number of sparsity patterns of arm pencils that are kept for later points on equal meshes."""
+
+
+MODE_PROBLEM = ModeProblemSettings()
 
 
 class ModesProblem(ABC):
@@ -108,7 +117,7 @@ class ArmModes(ModesProblem):
         return 2 * abs(value.D_w) / max(second, math.ulp(0.0))
 
 
-@lru_cache(maxsize=PENCILS_KEPT)
+@lru_cache(maxsize=MODE_PROBLEM.pencils_kept)
 def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
     return ArmPencil(mesh)
 

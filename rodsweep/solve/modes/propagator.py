@@ -5,6 +5,7 @@ w_k t). Restricting the initial state to the span of the k leading modes, as is 
 power of k: the optimal initial state satisfies the boundary conditions of the adjoint.
 """
 
+from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
@@ -12,8 +13,18 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 
-INFINITE = 1e-12
-"""Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PropagatorSettings:
+    """The propagator exp(L t) in the space of the modes."""
+
+    infinite: float = 1e-12
+    """Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""
+
+
+PROPAGATOR = PropagatorSettings()
+
+
 TAYLOR_ORDER = 16
 """Number of Taylor terms of exp for a matrix of norm 1/2, to rounding; a multiple of 4."""
 
@@ -40,7 +51,7 @@ class Propagator:
     def __init__(self, G: Array):
         self.G = G
         values, right = np.linalg.eig(G)
-        finite = np.nonzero(np.abs(values) > INFINITE * np.abs(values).max())[0]
+        finite = np.nonzero(np.abs(values) > PROPAGATOR.infinite * np.abs(values).max())[0]
         w = 1 / values[finite]
         order = np.lexsort((-w.imag, -w.real))
         self.w: Complex = w[order].astype(complex)

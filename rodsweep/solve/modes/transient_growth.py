@@ -17,29 +17,37 @@ import numpy as np
 
 from ...discretization.straight.dense_form import AnyPencil, dense_form
 from ...model.rod import Rod
-from .norm_maximum import LARGEST_EXPONENT, highest
+from .norm_maximum import NORM_MAXIMUM, highest
 from .numerical_abscissa import numerical_abscissa
 from .problem import ModesProblem
 from .propagator import Propagator, shifted_inverse
 
-MIN_MODES = 8
-"""Number of modes that first represent exp(L t)."""
-MORE_MODES = 1.5
-"""Factor on the number of modes when more are needed."""
-TRUNCATION_MARGIN = 4.0
-"""exp(-TRUNCATION_MARGIN) is the share of the accuracy for the modes left out."""
-SEARCH_SHARE = 0.25
-"""Share of the accuracy for the bound between times."""
-MIN_SEARCH_TOLERANCE = 2e-13
-"""Smallest tolerance of that bound: the rounding of the norm."""
-FIRST_FINER = 4
-"""Increase of the order on the second mesh."""
-ORDER_FACTOR = 1.4
-"""Factor on the order of each further mesh: boundary layers at the tip need high orders."""
-MAX_GROWTH_MESHES = 5
-"""Maximum number of finer meshes."""
-MAX_GROWTH_UNKNOWNS = 400
-"""Largest number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GrowthSettings:
+    """Modes and meshes of the largest transient growth."""
+
+    min_modes: int = 8
+    """Number of modes that first represent exp(L t)."""
+    more_modes: float = 0.5
+    """Increase of the number of modes when more are needed, in units of this number."""
+    truncation_margin: float = 4.0
+    """exp(-`truncation_margin`) is the share of the accuracy for the modes left out."""
+    search_share: float = 0.25
+    """Share of the accuracy for the bound between times."""
+    min_search_tolerance: float = 2e-13
+    """Smallest tolerance of that bound: the rounding of the norm."""
+    first_more_orders: int = 4
+    """Increase of the order on the second mesh."""
+    order_factor: float = 1.4
+    """Factor on the order of each further mesh: boundary layers at the tip need high orders."""
+    max_meshes: int = 5
+    """Maximum number of finer meshes."""
+    max_unknowns: int = 400
+    """Largest number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
+
+
+GROWTH = GrowthSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,11 +94,11 @@ def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | 
     rod = problem.rod
     abscissa = numerical_abscissa(rod, problem.pencil(mesh))
     coarse = None
-    for step in range(MAX_GROWTH_MESHES):
-        order = mesh.order + FIRST_FINER if step == 0 else ceil(ORDER_FACTOR * mesh.order)
+    for step in range(GROWTH.max_meshes):
+        order = mesh.order + GROWTH.first_more_orders if step == 0 else ceil(GROWTH.order_factor * mesh.order)
         last = mesh
         mesh = problem.of_order(mesh, order)
-        if step and mesh.unknowns > MAX_GROWTH_UNKNOWNS:
+        if step and mesh.unknowns > GROWTH.max_unknowns:
             break
         pencil = problem.pencil(mesh)
         before = abscissa
@@ -126,12 +134,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     0."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNBOUNDED
-    patience = log(1 / accuracy) + TRUNCATION_MARGIN
-    tolerance = max(SEARCH_SHARE * accuracy, MIN_SEARCH_TOLERANCE)
+    patience = log(1 / accuracy) + GROWTH.truncation_margin
+    tolerance = max(GROWTH.search_share * accuracy, GROWTH.min_search_tolerance)
     best = (1.0, 0.0)
     ceiling = 1.0
     tail = stop = 0.0
-    k = MIN_MODES
+    k = GROWTH.min_modes
     while True:
         k = fine.keep(k)
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
@@ -142,15 +150,15 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
             best = max(best, peak)
             ceiling = max(ceiling, bound)
         stop = first
-        before = exp(min(abscissa * first, LARGEST_EXPONENT))
+        before = exp(min(abscissa * first, NORM_MAXIMUM.largest_exponent))
         if before <= best[0] * (1 + tolerance) or k == len(fine.w):
             break
-        k = min(int(MORE_MODES * k), len(fine.w))
+        k = min(int((1 + GROWTH.more_modes) * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
         # Both meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh with more modes if it has them.
-        coarse.keep(int(MORE_MODES * k))
+        coarse.keep(int((1 + GROWTH.more_modes) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)

@@ -23,22 +23,34 @@ from .callbacks import Workspace
 from .step_record import end_step, take_steps
 from .time_scheme import TimeScheme
 
-STAGE_ROUND_OFF = 1e-9
-"""Size of a Newton step, relative to the motion, at which stagnation is due to rounding errors."""
-FIRST_STEP_SHARE = 1e-3
-"""Default first step in units of the duration."""
-MAX_TIME_STEPS = 100_000
-"""Default maximum number of steps."""
-MAX_REJECTIONS = 30
-"""Maximum number of successive rejections of one step."""
-MAX_FAILED_STAGES = 1_000_000
-"""Maximum number of failures of Newton's method in a run."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntegratorSettings:
+    """Limits of a run of the time integration."""
+
+    stage_rounding: float = 1e-9
+    """Size of a Newton step, relative to the motion, at which stagnation is due to rounding errors."""
+    first_step_share: float = 1e-3
+    """Default first step in units of the duration."""
+    max_steps: int = 100_000
+    """Default maximum number of steps."""
+    max_rejections: int = 30
+    """Maximum number of successive rejections of one step."""
+    max_failed_stages: int = 1_000_000
+    """Maximum number of failures of Newton's method in a run."""
+    relaxation_share: float = 1e-3
+    """Duration of `relaxed` in periods."""
+    relaxation_steps: float = 1e5
+    """First steps of `relaxed` that would fill a period; the fast components decay within ten steps."""
+    kept: int = 8
+    """Number of integrators kept for further runs on equal meshes."""
+
+
+INTEGRATOR = IntegratorSettings()
+
+
 RELAXATION = TimeScheme("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
 """Scheme of `relaxed`."""
-RELAXATION_SHARE = 1e-3
-"""Duration of `relaxed` in periods."""
-INTEGRATORS_KEPT = 8
-"""Number of integrators kept for further runs on equal meshes."""
 
 
 class Ending(IntEnum):
@@ -66,7 +78,7 @@ class RunLimit:
     """Early end of a run: a step to z with `reached(z)`, or the maximum number of steps."""
 
     reached: Callable[[Array], bool] | None = None
-    max_steps: int = MAX_TIME_STEPS
+    max_steps: int = INTEGRATOR.max_steps
 
 
 UNLIMITED = RunLimit()
@@ -93,8 +105,8 @@ class Integrator:
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
         ts.setOptionsPrefix(prefix)
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
-        ts.setMaxStepRejections(MAX_REJECTIONS)
-        ts.setMaxSNESFailures(MAX_FAILED_STAGES)
+        ts.setMaxStepRejections(INTEGRATOR.max_rejections)
+        ts.setMaxSNESFailures(INTEGRATOR.max_failed_stages)
         options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.family))
         ours = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
@@ -132,12 +144,13 @@ class Integrator:
         size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
-        self.workspace.prepare(beam, scheme.newton * scheme.tolerance * size, STAGE_ROUND_OFF * size)
+        tolerance = scheme.newton * scheme.tolerance * size
+        self.workspace.prepare(beam, tolerance, INTEGRATOR.stage_rounding * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
-        ts.setTimeStep(step or FIRST_STEP_SHARE * duration)
+        ts.setTimeStep(step or INTEGRATOR.first_step_share * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.reached is None:
@@ -171,7 +184,7 @@ class Integrator:
             held.destroy()
 
 
-_kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(lambda key: Integrator(*key), INTEGRATORS_KEPT)
+_kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(lambda key: Integrator(*key), INTEGRATOR.kept)
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
@@ -194,5 +207,7 @@ def relaxed(beam: Beam, z: Array, period: float) -> Array:
     fast. The explicit first stage of ARKIMEX does not damp these components at any step length; backward
     Euler damps them within ten steps. If the run fails, z itself is returned.
     """
-    run = integrator(beam.mesh, RELAXATION).run(beam, z, RELAXATION_SHARE * period, period / 1e5)
+    duration = INTEGRATOR.relaxation_share * period
+    step = period / INTEGRATOR.relaxation_steps
+    run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
     return run.states[-1] if run.ending == Ending.reached else z

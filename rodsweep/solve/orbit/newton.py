@@ -12,15 +12,24 @@ from .matrix.linearisation import Linearisation, largest_change
 from .matrix.workspace import NewtonWorkspace
 from .orbit import Orbit
 
-NEW_MATRIX_RATIO = 0.1
-"""Ratio of successive Newton steps above which a new matrix is made."""
-LONGEST_NEWTON_STEP = 0.5
-"""Largest relative change of state or period in one iteration: a larger first step is shortened, a larger and
-growing later step means that no orbit is near."""
-MAX_ORBIT_ITERATIONS = 12
-"""Maximum number of iterations: a slower convergence means that no orbit is near the start."""
-QUADRATIC_ERROR = 1e5
-"""Error after a step with a matrix at the iterate of a nearly neutral orbit, in units of the squared step."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OrbitNewtonSettings:
+    """Newton's method for a periodic orbit, with or without a parameter."""
+
+    new_matrix_ratio: float = 0.1
+    """Ratio of successive Newton steps above which a new matrix is made."""
+    longest_step: float = 0.5
+    """Largest relative change of state, period or parameter in one iteration: a larger first step without a
+    parameter is shortened; another larger step means that no orbit is near."""
+    max_iterations: int = 12
+    """Maximum number of iterations: a slower convergence means that no orbit is near the start."""
+    quadratic_error: float = 1e5
+    """Error after a step with a matrix at the iterate of a nearly neutral orbit, in units of the squared
+    step."""
+
+
+ORBIT_NEWTON = OrbitNewtonSettings()
 
 
 class HasMultipliers(Protocol):
@@ -62,23 +71,23 @@ def newton(
     distance = 0.0
     last = np.inf
     step = matrix.step
-    for iteration in range(1, MAX_ORBIT_ITERATIONS + 1):
+    for iteration in range(1, ORBIT_NEWTON.max_iterations + 1):
         report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
-        if iteration > 1 and change > max(last, LONGEST_NEWTON_STEP):
+        if iteration > 1 and change > max(last, ORBIT_NEWTON.longest_step):
             raise Unsolvable("there is no orbit near the start of Newton's method")
-        share = min(1.0, LONGEST_NEWTON_STEP / change) if change > 0 else 1.0
+        share = min(1.0, ORBIT_NEWTON.longest_step / change) if change > 0 else 1.0
         orbit = orbit.moved(step, share)
         distance += share * change
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
         fresh = distance == share * change
-        left = QUADRATIC_ERROR * change**2 if fresh else change * min(1.0, change / last)
+        left = ORBIT_NEWTON.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
         if left <= tolerance:
             return Converged(orbit, matrix, distance)
-        if change > NEW_MATRIX_RATIO * min(last, 1.0):
+        if change > ORBIT_NEWTON.new_matrix_ratio * min(last, 1.0):
             matrix = Linearisation(orbit, workspace, parameter)
             distance = 0.0
             step = matrix.step
@@ -86,7 +95,7 @@ def newton(
             step = matrix.correction(orbit)
         last = change
     raise Unsolvable(
-        f"Newton's method for the orbit: step {change:.0e} after {MAX_ORBIT_ITERATIONS} iterations"
+        f"Newton's method for the orbit: step {change:.0e} after {ORBIT_NEWTON.max_iterations} iterations"
     )
 
 

@@ -16,28 +16,47 @@ from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
 from .tails import tails_of
 
-SPACE_FACTOR = 5.0
-"""Largest stated error of period and extrema in units of the squared tail in space, as predicted from a
-coarse mesh. With SPACE_FACTOR and TIME_FACTOR the first mesh is fine enough for five rods in six, and costs a
-fifth more than necessary."""
-TIME_FACTOR = 1.5
-"""Largest stated error of period and extrema in units of the squared tail in time."""
-EXPECTED_SHARE = 1 / 3
-"""Error in space, and error in time, for which a mesh is chosen, in units of the accuracy."""
-COARSER_ORDER = 2
-"""Decrease of the order on the coarser mesh, whose errors are about ten times larger."""
-COARSER_SHARE = 0.6
-"""Ratio of the numbers of intervals of the coarser mesh and the mesh."""
-MIN_ORBIT_ORDER = 8
-"""Smallest order of a chosen mesh."""
-MIN_INTERVALS = 4
-"""Smallest number of intervals of a chosen mesh."""
-MAX_INTERVALS = 256
-"""Largest number of intervals of a chosen mesh."""
-HALVED_ORDER = 0.6
-"""Order after all elements are halved, in units of the order before, at equal errors."""
-MAX_STATE_UNKNOWNS = 400
-"""Largest number of unknowns of a state; a Newton step for a larger state would take more than a second."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OrbitMeshSettings:
+    """Choice of the mesh of an orbit in space and time."""
+
+    space_factor: float = 5.0
+    """Largest stated error of period and extrema in units of the squared tail in space, as predicted from a
+    coarse mesh. With `space_factor` and `time_factor` the first mesh is fine enough for five rods in six, and
+    costs a fifth more than necessary."""
+    time_factor: float = 1.5
+    """Largest stated error of period and extrema in units of the squared tail in time."""
+    expected_share: float = 1 / 3
+    """Error in space, and error in time, for which a mesh is chosen, in units of the accuracy."""
+    coarser_order: int = 2
+    """Decrease of the order on the coarser mesh, whose errors are about ten times larger."""
+    coarser_share: float = 0.6
+    """Ratio of the numbers of intervals of the coarser mesh and the mesh."""
+    min_order: int = 8
+    """Smallest order of a chosen mesh."""
+    min_intervals: int = 4
+    """Smallest number of intervals of a chosen mesh."""
+    max_intervals: int = 256
+    """Largest number of intervals of a chosen mesh."""
+    stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
+    """Accuracies below which four, five and six stages in time cost less than one stage fewer."""
+    fewest_stages: int = 3
+    """Number of stages in time above all of these accuracies."""
+    max_more_orders: int = 12
+    """Largest increase of the order at once: tails far below the present order's are extrapolated."""
+    max_interval_ratio: int = 4
+    """Largest ratio of the numbers of intervals, for the same reason."""
+    more_intervals: float = 1.2
+    """Factor on the number of intervals where the wanted mesh is no finer than the present mesh."""
+    halved_order: float = 0.6
+    """Order after all elements are halved, in units of the order before, at equal errors."""
+    max_unknowns: int = 400
+    """Largest number of unknowns of a state; a Newton step for a larger state would take more than a
+    second."""
+
+
+ORBIT_MESH = OrbitMeshSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +97,8 @@ class OrbitMesh:
     @property
     def coarser(self) -> "OrbitMesh":
         """Coarser mesh for the steps along a branch to a cycle that is solved on this mesh."""
-        order = max(MIN_ORBIT_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)
-        intervals = max(MIN_INTERVALS - 1, round(COARSER_SHARE * self.intervals))
+        order = max(ORBIT_MESH.min_order - ORBIT_MESH.coarser_order, self.order - ORBIT_MESH.coarser_order)
+        intervals = max(ORBIT_MESH.min_intervals - 1, round(ORBIT_MESH.coarser_share * self.intervals))
         return replace(self, order=order, intervals=intervals)
 
     @property
@@ -92,11 +111,11 @@ class OrbitMesh:
         """Mesh of a higher order, or of twice as many elements where the order is the largest."""
         if self.order + 2 <= LARGEST_ORDER:
             return replace(self, order=self.order + 2)
-        return replace(self, edges=halved(self.edges), order=ceil(HALVED_ORDER * self.order))
+        return replace(self, edges=halved(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order))
 
     @property
     def allowed(self) -> bool:
-        return self.unknowns <= MAX_STATE_UNKNOWNS and self.intervals <= MAX_INTERVALS
+        return self.unknowns <= ORBIT_MESH.max_unknowns and self.intervals <= ORBIT_MESH.max_intervals
 
     @property
     def cost(self) -> float:
@@ -117,25 +136,27 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
 
 def stages_for(accuracy: float) -> int:
     """Number of stages in time for which an accuracy costs least."""
-    return 3 if accuracy > 2e-5 else 4 if accuracy > 3e-9 else 5 if accuracy > 3e-11 else 6
+    return ORBIT_MESH.fewest_stages + sum(accuracy <= limit for limit in ORBIT_MESH.stage_accuracies)
 
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     """The smallest mesh that is expected to reach an accuracy, from the tails of a nearby orbit."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
-    aim_space = (EXPECTED_SHARE * accuracy / SPACE_FACTOR) ** 0.5
-    aim_time = (EXPECTED_SHARE * accuracy / TIME_FACTOR) ** 0.5
+    aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
+    aim_time = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.time_factor) ** 0.5
     order = present.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / present.elements)
     edges = present.edges
     while order > LARGEST_ORDER:
-        order = ceil(HALVED_ORDER * order)
+        order = ceil(ORBIT_MESH.halved_order * order)
         edges = halved(edges)
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
     tail = max(tails.time, 1e-15) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
-    order = min(max(order, MIN_ORBIT_ORDER), present.order + 12)
-    intervals = min(max(intervals, MIN_INTERVALS), 4 * present.intervals)
+    order = min(max(order, ORBIT_MESH.min_order), present.order + ORBIT_MESH.max_more_orders)
+    intervals = min(
+        max(intervals, ORBIT_MESH.min_intervals), ORBIT_MESH.max_interval_ratio * present.intervals
+    )
     return OrbitMesh(edges, order, intervals, stages)
 
 
@@ -147,4 +168,4 @@ def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
     finer = replace(wanted, order=order, intervals=intervals, stages=stages)
     if finer != mesh:
         return finer
-    return replace(mesh.finer_in_space, intervals=ceil(1.2 * mesh.intervals))
+    return replace(mesh.finer_in_space, intervals=ceil(ORBIT_MESH.more_intervals * mesh.intervals))

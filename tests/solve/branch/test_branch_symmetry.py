@@ -25,7 +25,7 @@ from rodsweep.solve.branch.following import (
 )
 from rodsweep.solve.branch.settling import refined
 from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.point import LOCATING, EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import changes_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
@@ -49,7 +49,7 @@ def limits():
     path = Path(straight, "F")
     hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(locating, "LOCATION_ACCURACY", 1e-5)
+        patch.setattr(locating, "LOCATING", replace(LOCATING, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
 
 

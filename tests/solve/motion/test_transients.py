@@ -18,7 +18,7 @@ from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle.limit_cycle import MOTION_ACCURACY, CycleRequest, solve_cycle
 from rodsweep.solve.cycle.transient.amplitude_equation import SLOW_GROWTH
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
-from rodsweep.solve.motion.integrator import RELAXATION_SHARE
+from rodsweep.solve.motion.integrator import INTEGRATOR
 from rodsweep.solve.motion.leading_mode import leading_mode
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -101,7 +101,7 @@ def test_a_rod_that_leaves_the_model_has_its_transient():
     c = followed(195.0, STRETCHABLE, 0.2)
     assert c.status.name == "left_the_model"
     assert np.isfinite(c.transient).all()
-    assert c.transient[0, -1] * c.linear_frequency / (2 * np.pi) > 1.5 * RELAXATION_SHARE
+    assert c.transient[0, -1] * c.linear_frequency / (2 * np.pi) > 1.5 * INTEGRATOR.relaxation_share
 
 
 def test_a_rod_that_does_not_settle_in_time_has_its_transient():

@@ -11,7 +11,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
-from rodsweep.solve.orbit.matrix.workspace import KEPT_NUMBERS, MatrixMemory, NewtonWorkspace
+from rodsweep.solve.orbit.matrix.workspace import WORKSPACE, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
@@ -115,7 +115,7 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
 
 def test_a_released_workspace_keeps_what_most_rods_need():
     workspace = NewtonWorkspace()
-    for numbers, kept in ((KEPT_NUMBERS, True), (KEPT_NUMBERS + 1, False)):
+    for numbers, kept in ((WORKSPACE.kept_numbers, True), (WORKSPACE.kept_numbers + 1, False)):
         memory = MatrixMemory(workspace, numbers, 1, 1)
         buffer = memory.factors.blocks.base
         workspace.release()

@@ -6,7 +6,7 @@ neighbouring cycle, the previous vector as the start and the residual at the cyc
 elimination.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -16,28 +16,40 @@ from ....watch import report
 from ...orbit.matrix.linearisation import jump_of
 from ...orbit.matrix.phase import phase_change, phase_row
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import relative_change
+from ...orbit.newton import ORBIT_NEWTON, relative_change
 from ...orbit.orbit import Orbit
 from ...point import Unsolvable
-from ..bordered import LONGEST_CORRECTION, BorderedMatrix, Condition, Scale, moment_of, moved
-from .locating import REAL_MULTIPLIER
+from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from .point import LOCATING
 
-CORRECTION_TOLERANCE = 1e-9
-"""Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""
-FUNCTION_SHARE = 0.01
-"""Tolerance in units of the distance from the curve that the test function indicates; the larger tolerance
-counts."""
-MIN_CONTRACTION = 10.0
-"""Smallest contraction rate that is assumed: ratio of successive corrections over the distance from the
-matrix's cycle. Large cycles have 2 or 3."""
-CONTRACTION_SAFETY = 3.0
-"""Safety factor on a measured contraction rate, for the next cycle."""
-SLOW_CORRECTION = 0.3
-"""Ratio of successive corrections above which a new matrix is assembled."""
-ROUNDING_CORRECTION = 1e-8
-"""Size below which a correction that hardly decreases is rounding error: the iteration stops."""
-MAX_CYCLE_CORRECTIONS = 30
-"""Maximum number of corrections of one cycle."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AugmentedSettings:
+    """Iterations with the factors of a nearby cycle's matrix: cycle, test function, null vectors."""
+
+    tolerance: float = 1e-9
+    """Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""
+    function_share: float = 0.01
+    """Tolerance in units of the distance from the curve that the test function indicates; the larger
+    tolerance counts."""
+    min_contraction: float = 10.0
+    """Smallest contraction rate that is assumed: ratio of successive corrections over the distance from the
+    matrix's cycle. Large cycles have 2 or 3."""
+    contraction_safety: float = 3.0
+    """Safety factor on a measured contraction rate, for the next cycle."""
+    slow: float = 0.3
+    """Ratio of successive corrections above which a new matrix is assembled."""
+    rounding: float = 1e-8
+    """Size below which a correction that hardly decreases is rounding error: the iteration stops."""
+    max_corrections: int = 30
+    """Maximum number of corrections of one cycle."""
+    inverse_shift: float = 1e-9
+    """Relative distance of inverse iteration's shift from the eigenvalue, which keeps the matrix regular."""
+    inverse_iterations: int = 2
+    """Number of inverse iterations; each damps other eigenvectors by the ratio of shift and gap."""
+
+
+AUGMENTED = AugmentedSettings()
 
 
 class FamilyOfCycles(Protocol):
@@ -91,7 +103,7 @@ class NearbyCycles:
         tolerance.
         """
         last = 0.0
-        for _ in range(MAX_CYCLE_CORRECTIONS):
+        for _ in range(AUGMENTED.max_corrections):
             report()
             orbit, change = self._corrected(orbit, condition)
             distance = self.distance
@@ -101,11 +113,12 @@ class NearbyCycles:
             off = max(change, abs(value - before) / slope)
             rate = off / last if last else min(1.0, self.contraction * distance)
             if last and not self._family.small:
-                self.contraction = max(MIN_CONTRACTION, CONTRACTION_SAFETY * rate / distance)
-            if off * min(rate, 1.0) <= max(enough, FUNCTION_SHARE * abs(value) / slope):
+                measured = AUGMENTED.contraction_safety * rate / distance
+                self.contraction = max(AUGMENTED.min_contraction, measured)
+            if off * min(rate, 1.0) <= max(enough, AUGMENTED.function_share * abs(value) / slope):
                 return orbit, value
-            if last and rate > SLOW_CORRECTION:
-                if off <= ROUNDING_CORRECTION:
+            if last and rate > AUGMENTED.slow:
+                if off <= AUGMENTED.rounding:
                     return orbit, value
                 self._eliminate(orbit)
                 off = 0.0
@@ -116,7 +129,7 @@ class NearbyCycles:
         """(orbit after one correction, relative change); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.missed(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
-        if not change <= LONGEST_CORRECTION:
+        if not change <= ORBIT_NEWTON.longest_step:
             raise Unsolvable("no cycle of the branch is near the start of the corrections")
         self.distance += change
         return moved(orbit, self.scale.name, step), change
@@ -173,9 +186,9 @@ class TorusFunction:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
         p = matrix.orbit.semidiscrete
-        self.shifted = matrix.propagator - (1 + INVERSE_SHIFT) * pair * p.symmetry
+        self.shifted = matrix.propagator - (1 + AUGMENTED.inverse_shift) * pair * p.symmetry
         start = np.ones(len(p.mass), dtype=complex)
-        for _ in range(INVERSE_ITERATIONS):
+        for _ in range(AUGMENTED.inverse_iterations):
             start = np.linalg.solve(self.shifted, p.symmetry @ start)
             start /= np.linalg.norm(start)
         self.border = start.conj()
@@ -207,12 +220,6 @@ class TorusFunction:
         self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
 
 
-INVERSE_SHIFT = 1e-9
-"""Relative distance of inverse iteration's shift from the eigenvalue, which keeps the matrix regular."""
-INVERSE_ITERATIONS = 2
-"""Number of inverse iterations; each damps other eigenvectors by the ratio of shift and gap."""
-
-
 def _parts(vector: Array) -> Array:
     """Real and imaginary part of a vector, (2, n)."""
     return np.array([vector.real, vector.imag])
@@ -222,5 +229,5 @@ def crossing_pair(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over half a period and the reflection; None if all are
     real."""
     h = matrix.returns
-    pairs = h[np.abs(h.imag) > REAL_MULTIPLIER * np.abs(h)]
+    pairs = h[np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

@@ -13,27 +13,13 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import VANISHING, CurveLimits
-from .cycle_curves import Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
+from .curves import CYCLE_CURVES, CurveLimits
+from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
 from .on_curve import OnCurve
 from .point import SpecialKind, SpecialPoint
 
 FOLLOWED_KINDS = (SpecialKind.fold, SpecialKind.torus)
 """Kinds of special points that are followed as curves."""
-ON_CURVE_DISTANCE = 1e-6
-"""A special point of a row this close to a curve lies on it; in units of the line's axis."""
-NEAR_CHORD = 0.1
-"""Distance from a chord of a curve, in units of the line's axis, beyond which a special point is not on the
-part."""
-NEAR_PERIOD = 0.1
-"""Relative difference of the period beyond which a special point is not on a part of a curve."""
-EQUAL_PERIOD = 1e-4
-"""Largest relative difference of the periods of two solutions for one cycle."""
-EQUAL_ENDS = 1e-4
-"""Scaled distance of both ends within which two curves are identical."""
-ON_LAST_CHORD = 1e-3
-"""A special point this close to the last part of a curve, where cycles vanish, lies on it; in units of the
-line's axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +70,7 @@ class SpecialBoundaries:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, boundary_search(curves, seeds, ON_CURVE_DISTANCE)
+            yield curves, boundary_search(curves, seeds, CURVE_IDENTITY.on_curve)
 
     def solve(
         self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -165,12 +151,14 @@ class _CurvesOfKind:
     def distance(self, curve: _TracedCurve, seed: int) -> float:
         """Distance of a special point from a curve in units of the line's axis; inf unless it is near."""
         near = curve.distances.get(seed, math.inf)
-        return 0.0 if near > ON_CURVE_DISTANCE and self._vanishes(curve.curve, self.special[seed]) else near
+        lies_off = near > CURVE_IDENTITY.on_curve
+        return 0.0 if lies_off and self._vanishes(curve.curve, self.special[seed]) else near
 
     def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves share both ends."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
-        return all(abs(a - b) <= EQUAL_ENDS for p, q in pairs for a, b in zip(p, q, strict=True))
+        distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
+        return all(distance <= CURVE_IDENTITY.equal_ends for distance in distances)
 
     def _place(self, i: int) -> tuple[float, float]:
         """Sort key of special points: row, then value."""
@@ -182,7 +170,7 @@ class _CurvesOfKind:
 
     def _vanishes(self, curve: CycleCurve, one: RowSpecial) -> bool:
         """Whether a special point lies on the last part of a curve, where cycles shrink to a Hopf point."""
-        if one.tip_y_max >= VANISHING:
+        if one.tip_y_max >= CYCLE_CURVES.vanishing:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
@@ -190,7 +178,7 @@ class _CurvesOfKind:
             x, y = self.line.scaled(end.at), self.rows.scaled(end.row)
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
-            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= ON_LAST_CHORD:
+            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.on_last_chord:
                 return True
         return False
 
@@ -207,8 +195,8 @@ def _traced(
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= ON_CURVE_DISTANCE * width
-        and abs(point.period / one.period - 1) <= EQUAL_PERIOD
+        and abs(point.at - one.at) <= CURVE_IDENTITY.on_curve * width
+        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.equal_period
     ]
     if not same:
         return TracedHalf(None)
@@ -217,7 +205,7 @@ def _traced(
     except (*FAILURES, ValueError):  # a logarithmic axis has no place for a value that is not positive
         return TracedHalf(None)
     distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: distance for i, distance in distances.items() if distance <= ON_CURVE_DISTANCE}
+    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.on_curve}
     return TracedHalf(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
@@ -236,7 +224,7 @@ def _distance(limits: CurveLimits, points: Sequence[OnCurve], one: RowSpecial) -
             crossing = limits.on_row(a, b, place)
         except Unsolvable:
             continue
-        if abs(crossing.orbit.period / one.period - 1) <= EQUAL_PERIOD:
+        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.equal_period:
             best = min(best, abs(limits.line.scaled(crossing.at) - at))
     return best
 
@@ -246,5 +234,6 @@ def _near(limits: CurveLimits, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
     x = limits.line.scaled(one.at)
     ends = sorted(limits.line.scaled(p.at) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = ends[0] - NEAR_CHORD <= x <= ends[1] + NEAR_CHORD
-    return on_line and periods[0] / (1 + NEAR_PERIOD) <= one.period <= periods[1] * (1 + NEAR_PERIOD)
+    on_line = ends[0] - CURVE_IDENTITY.near_chord <= x <= ends[1] + CURVE_IDENTITY.near_chord
+    ratio = 1 + CURVE_IDENTITY.near_period
+    return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio

@@ -1,6 +1,6 @@
 """The first point of a curve of special points, from a special point located on a row."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
@@ -10,16 +10,24 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import MIN_MOMENT_AMPLITUDE, MOMENT
+from ..beginning import BEGINNING, MOMENT
 from ..bordered import BorderedMatrix, Scale, moment_of
 from .family import CycleFamily
-from .on_curve import CURVE_ACCURACY, OnCurve
+from .on_curve import ACROSS_CURVE, OnCurve
 from .point import SpecialPoint
 
-START_ORDER_SHARE = 0.6
-"""Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
-START_INTERVAL_SHARE = 0.5
-"""Intervals of a curve's first mesh, in units of the intervals that located the special point."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveStartSettings:
+    """First mesh of a curve of special points."""
+
+    order_share: float = 0.6
+    """Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
+    interval_share: float = 0.5
+    """Intervals of a curve's first mesh, in units of the intervals that located the special point."""
+
+
+CURVE_START = CurveStartSettings()
 
 
 def first_on_curve(
@@ -32,12 +40,12 @@ def first_on_curve(
     mesh = mesh_of(orbit)
     rough = replace(
         mesh,
-        order=ceil(START_ORDER_SHARE * mesh.order),
-        intervals=ceil(START_INTERVAL_SHARE * mesh.intervals),
-        stages=stages_for(CURVE_ACCURACY),
+        order=ceil(CURVE_START.order_share * mesh.order),
+        intervals=ceil(CURVE_START.interval_share * mesh.intervals),
+        stages=stages_for(ACROSS_CURVE.accuracy),
     )
     orbit = rough.carry(orbit)
-    scale = Scale.of(orbit, line, abs(moment_of(orbit)) * MIN_MOMENT_AMPLITUDE / special.tip_y_max)
+    scale = Scale.of(orbit, line, abs(moment_of(orbit)) * BEGINNING.min_moment_amplitude / special.tip_y_max)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, matrix))
     place = rows.scaled(row)

@@ -18,7 +18,7 @@ from ...point import Unsolvable
 from ..bordered import BorderedMatrix
 from .augmented import crossing_pair
 from .curve_start import first_on_curve
-from .cycle_curves import PREDICTED_BY, CurveEnd, weights_at
+from .cycle_curves import CURVE_IDENTITY, CurveEnd, weights_at
 from .family import CycleFamily
 from .least_stretch import stretch_of
 from .on_curve import OnCurve, errors_between, with_parameters
@@ -30,25 +30,38 @@ CURVE_STEPS = StepControl(
     shortest=1e-4,
     aim=3e-3,
     far=0.1,
-    order=PREDICTED_BY,
+    order=CURVE_IDENTITY.max_interpolated,
     sharpest=0.55,
     growth=2.0,
     most=400,
 )
 """Step lengths along a curve; the rows' axis has length 1, the other three directions are those of
 `Scale.place`."""
-MIN_LOOP_POINTS = 5
-"""Minimum number of points of a closed curve."""
-ON_PLANE_EDGE = 1e-8
-"""Largest scaled distance from an edge of a point on the edge."""
-LAST_BRACKET = 1e-10
-"""Fraction of a step to which the crossing of an edge is located."""
-CURVE_CRUSHING_MARGIN = 1e-3
-"""Relative distance below the crushing force k1 at which a curve ends."""
-VANISHING = 0.01
-"""Largest tip y, in L, from which a curve is extrapolated to the Hopf point where its cycles vanish."""
-ALMOST_REAL = 0.2
-"""Angle of a multiplier from the real axis, in radians, below which its pair is about to become real."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CycleCurveSettings:
+    """Ends of a curve of special points."""
+
+    min_loop_points: int = 5
+    """Minimum number of points of a closed curve."""
+    on_edge: float = 1e-8
+    """Largest scaled distance from an edge of a point on the edge."""
+    edge_bracket: float = 1e-10
+    """Fraction of a step to which the crossing of an edge is located."""
+    crushing_margin: float = 1e-3
+    """Relative distance below the crushing force k1 at which a curve ends."""
+    crushing_accuracy: float = 1e-6
+    """Relative accuracy of the shortened step that ends halfway into this margin."""
+    vanishing: float = 0.01
+    """Largest tip y, in L, from which a curve is extrapolated to the Hopf point where its cycles vanish."""
+    almost_real: float = 0.2
+    """Angle of a multiplier from the real axis, in radians, below which its pair is about to become real."""
+
+
+CYCLE_CURVES = CycleCurveSettings()
+
+
 ALONG_BRANCH = np.array([1.0, 0.0])
 
 
@@ -124,14 +137,14 @@ class CurveLimits:
 
     def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
         """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
-        known = points[-PREDICTED_BY:]
+        known = points[-CURVE_IDENTITY.max_interpolated :]
         return self._mixed(known, weights_at(lengths_of(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[OnCurve], step: float) -> float:
         """The step length, shortened if its prediction would lie beyond the crushing margin."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        known = points[-PREDICTED_BY:]
+        known = points[-CURVE_IDENTITY.max_interpolated :]
         lengths = lengths_of(known)
 
         def distance(longest: float) -> float:
@@ -139,11 +152,11 @@ class CurveLimits:
             rod = known[-1].orbit.form.rod
             at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
-            return 1 - CURVE_CRUSHING_MARGIN / 2 - values["F"] / values["k1"]
+            return 1 - CYCLE_CURVES.crushing_margin / 2 - values["F"] / values["k1"]
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=1e-6))
+        return float(brentq(distance, 0.0, step, rtol=CYCLE_CURVES.crushing_accuracy))
 
     def _mixed(
         self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh
@@ -160,9 +173,9 @@ class CurveLimits:
         x = self.line.scaled(point.at)
         y = point.place
         rod = point.orbit.form.rod
-        crushing = 1 - CURVE_CRUSHING_MARGIN - rod.F / rod.k1
+        crushing = 1 - CYCLE_CURVES.crushing_margin - rod.F / rod.k1
         stretch = stretch_of(point.orbit)
-        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - VANISHING])
+        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.vanishing])
 
     def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
         """The point between `behind[-1]` and `outer` at which a margin is 0; None if not found."""
@@ -170,7 +183,7 @@ class CurveLimits:
         if END_AT_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= ON_PLANE_EDGE:
+        if ends[0] <= CYCLE_CURVES.on_edge:
             return None
         try:
             if margin in ROW_EDGES:
@@ -189,7 +202,7 @@ class CurveLimits:
             found[share] = self.between(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
-        return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
+        return found[zero_along(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
 
     def closes(self, behind: Sequence[OnCurve], point: OnCurve) -> bool:
         """Whether the first point of the curve lies between its last point and the next."""
@@ -199,7 +212,7 @@ class CurveLimits:
         back = point.step_from(first)
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-        return len(behind) > MIN_LOOP_POINTS and 0 <= passed <= 1 and near
+        return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
         """The point at a fraction of the way between two, without error; raises Unsolvable."""
@@ -218,7 +231,7 @@ class CurveLimits:
         """Reason why a curve cannot be followed beyond a point."""
         if self.kind == SpecialKind.torus:
             pair = crossing_pair(BorderedMatrix(last.orbit, last.scale, self.workspace))
-            if pair is None or abs(pair.imag) < ALMOST_REAL * abs(pair):
+            if pair is None or abs(pair.imag) < CYCLE_CURVES.almost_real * abs(pair):
                 return CurveEnd.resonance
         return CurveEnd.not_followed
 

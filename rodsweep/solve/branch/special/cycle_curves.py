@@ -13,13 +13,37 @@ from ...orbit.normalised import polynomial_weights
 from .on_curve import OnCurve
 from .point import SpecialKind
 
-PREDICTED_BY = 4
-"""Maximum number of points through which a prediction is interpolated."""
-EXTRAPOLATION_FACTOR = 10.0
-"""Safety factor of the extrapolation: a mesh displaces the Hopf point along the curve, which the points'
-errors do not include."""
-AT_HOPF = 0.01
-"""Scaled distance within which an extrapolated Hopf point is a generalised Hopf point of a Hopf curve."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveIdentitySettings:
+    """Comparison of curves with special points of rows, with Hopf points, and with one another."""
+
+    on_curve: float = 1e-6
+    """A special point of a row this close to a curve lies on it; in units of the line's axis."""
+    near_chord: float = 0.1
+    """Distance from a chord of a curve, in units of the line's axis, beyond which a special point is not on
+    the part."""
+    near_period: float = 0.1
+    """Relative difference of the period beyond which a special point is not on a part of a curve."""
+    equal_period: float = 1e-4
+    """Largest relative difference of the periods of two solutions for one cycle."""
+    equal_ends: float = 1e-4
+    """Scaled distance of both ends within which two curves are identical."""
+    on_last_chord: float = 1e-3
+    """A special point this close to the last part of a curve, where cycles vanish, lies on it; in units of
+    the line's axis."""
+    max_interpolated: int = 4
+    """Maximum number of points through which a prediction is interpolated."""
+    extrapolation_factor: float = 10.0
+    """Safety factor of the extrapolation: a mesh displaces the Hopf point along the curve, which the points'
+    errors do not include."""
+    at_hopf: float = 0.01
+    """Scaled distance within which an extrapolated Hopf point is a generalised Hopf point of a Hopf curve."""
+
+
+CURVE_IDENTITY = CurveIdentitySettings()
+
+
 Arrays = dict[str, Array]
 """Result of a unit of work, as it is stored."""
 
@@ -140,7 +164,7 @@ def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPo
             return end
         for point in known:
             pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
-            if all(abs(axis.scaled(a) - axis.scaled(b)) <= AT_HOPF for axis, a, b in pairs):
+            if all(abs(axis.scaled(a) - axis.scaled(b)) <= CURVE_IDENTITY.at_hopf for axis, a, b in pairs):
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
@@ -158,12 +182,13 @@ def weights_at(places: Array, at: float) -> Array:
 
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     """Extrapolation to amplitude 0 beyond the last point, by polynomials in the squared amplitude."""
-    known = points[-PREDICTED_BY:]
-    if len(known) < PREDICTED_BY:
+    known = points[-CURVE_IDENTITY.max_interpolated :]
+    if len(known) < CURVE_IDENTITY.max_interpolated:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])
     # The difference of the polynomials with and without the first point is the error estimate.
     best, other = (np.dot(weights_at(squares[i:], 0.0), table[i:]) for i in (0, 1))
-    error = EXTRAPOLATION_FACTOR * (abs(best[0] - other[0]) + max(point.error for point in known))
+    difference = abs(best[0] - other[0]) + max(point.error for point in known)
+    error = CURVE_IDENTITY.extrapolation_factor * difference
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

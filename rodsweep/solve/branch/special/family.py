@@ -23,42 +23,9 @@ from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..bordered import BorderedMatrix, Condition, Scale, moved
-from .augmented import CORRECTION_TOLERANCE, FUNCTION_SHARE, FoldFunction, NearbyCycles, TorusFunction
-from .on_curve import CURVE_ACCURACY, Across, CurveErrors, OnCurve, with_parameters
+from .augmented import AUGMENTED, FoldFunction, NearbyCycles, TorusFunction
+from .on_curve import ACROSS_CURVE, Across, CurveErrors, OnCurve, with_parameters
 from .point import SpecialKind
-
-SMALL_FOLD_CYCLE = 0.05
-"""Largest tip y, in L, of cycles whose fold function is divided by the moment, since it vanishes at the Hopf
-point too."""
-FIRST_SECANT = 1e-3
-"""First step of the secant method across a curve if the derivatives are unknown."""
-LONGEST_SECANT_STEP = 0.1
-"""A longer step of the secant method has left the curve."""
-MAX_SECANTS_ACROSS = 12
-"""Maximum number of secant steps for one point."""
-MAX_LINEAR_PRODUCT = 1e-9
-"""The last secant step is taken without solving at its end if its length times the distance of the last two
-cycles is below this limit; the test function is known to about 1e-8."""
-MAX_LINEAR_STEP = 1e-6
-"""The limit of the last step with derivatives from other cycles at the same point, which are known to
-1e-3."""
-MAX_CARRIED_STEP = 1e-7
-"""The limit of the last step with derivatives from the previous point, which are known to a tenth."""
-MIN_COSINE = 0.9
-"""Smallest cosine of the angle between two directions across the curve for which derivatives are reused."""
-MIN_SPAN = 1e-6
-"""Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
-1e-8."""
-CURVE_ERROR_FACTOR = 3.0
-"""Safety factor on the difference of two meshes."""
-SECANT_ERROR = 3e-9
-"""Relative error of the line's value that the secant method leaves."""
-CURVE_MORE_ORDERS = 2
-"""Increase of the order on the next finer mesh."""
-CURVE_MORE_INTERVALS = 1.2
-"""Factor on the number of intervals on the next finer mesh."""
-MAX_FINER_MESHES = 5
-"""Maximum number of finer meshes for one point."""
 
 
 class _CycleAcross(NamedTuple):
@@ -90,7 +57,7 @@ class CycleFamily:
         cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The cycles about a point."""
-        small = kind == SpecialKind.fold and point.tip_y_max < SMALL_FOLD_CYCLE
+        small = kind == SpecialKind.fold and point.tip_y_max < ACROSS_CURVE.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def placed(self, orbit: Orbit, place: float) -> Orbit:
@@ -112,9 +79,9 @@ class CycleFamily:
         rates: approximate derivatives across the curve. same: whether `rates` belong to the point sought, on
         another mesh.
         """
-        known = rates if rates and rates.way @ across >= MIN_COSINE else None
+        known = rates if rates and rates.way @ across >= ACROSS_CURVE.min_cosine else None
         search = _SecantAcross(self, start, place, across, known, same)
-        for _ in range(MAX_SECANTS_ACROSS):
+        for _ in range(ACROSS_CURVE.max_secants):
             found = search.next()
             if found is not None:
                 return found
@@ -137,16 +104,16 @@ class CycleFamily:
         last = self.nearest(start, place, across, rates)
         if before and before.errors and before.errors.hold_at(last):
             return replace(last, errors=before.errors.carried)
-        for _ in range(MAX_FINER_MESHES):
+        for _ in range(ACROSS_CURVE.max_finer_meshes):
             mesh = mesh_of(last.orbit)
-            longer = ceil(CURVE_MORE_INTERVALS * mesh.intervals)
-            finer = replace(mesh, order=mesh.order + CURVE_MORE_ORDERS, intervals=longer)
+            longer = ceil(ACROSS_CURVE.more_intervals * mesh.intervals)
+            finer = replace(mesh, order=mesh.order + ACROSS_CURVE.more_orders, intervals=longer)
             if not finer.allowed:
                 break
             fine = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
             off = abs(fine.at - last.at - slope * (fine.place - last.place))
-            error = CURVE_ERROR_FACTOR * off + SECANT_ERROR * abs(fine.at)
-            if error <= CURVE_ACCURACY * abs(fine.at):
+            error = ACROSS_CURVE.error_factor * off + ACROSS_CURVE.secant_error * abs(fine.at)
+            if error <= ACROSS_CURVE.accuracy * abs(fine.at):
                 return replace(
                     last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
                 )
@@ -168,7 +135,7 @@ class _SecantAcross:
         self.at = 0.0
         self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.place(start))
-        self.trusted = MAX_LINEAR_STEP if same else MAX_CARRIED_STEP
+        self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
         """Longest last step along a line with derivatives that do not come from two cycles of this search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycles(family, self.orbit, contraction)
@@ -180,11 +147,11 @@ class _SecantAcross:
         enough = self.trusted
         if own := self._rates_since(present):
             self.rates = own
-            self.trusted = MAX_LINEAR_STEP
-            enough = MAX_LINEAR_PRODUCT / own.span
+            self.trusted = ACROSS_CURVE.max_linear_step
+            enough = ACROSS_CURVE.max_linear_product / own.span
         rates = self.rates
-        step = -present.test / rates.test if rates else FIRST_SECANT
-        if not abs(step) <= LONGEST_SECANT_STEP:
+        step = -present.test / rates.test if rates else ACROSS_CURVE.first_secant
+        if not abs(step) <= ACROSS_CURVE.longest_secant:
             raise Unsolvable("the secant method leaves the curve")
         if rates and abs(step) <= enough:
             return self._point(step, replace(rates, contraction=self.near.contraction))
@@ -203,9 +170,8 @@ class _SecantAcross:
         rates = self.rates
         length = self.length + self.at * float(self.way[0])
         self.orbit = family.placed(self.orbit, self.place + self.at * float(self.way[1]))
-        slope, enough = (
-            (abs(rates.test), CORRECTION_TOLERANCE) if rates else (1.0, FUNCTION_SHARE * FIRST_SECANT)
-        )
+        slope = abs(rates.test) if rates else 1.0
+        enough = AUGMENTED.tolerance if rates else AUGMENTED.function_share * ACROSS_CURVE.first_secant
         condition = Condition(family.scale, family.border, length)
         self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
@@ -214,7 +180,9 @@ class _SecantAcross:
         """Derivatives across the curve from the last two cycles; None for a single cycle or too small a
         distance."""
         before = self.before
-        if before is None or abs(present.at - before.at) < MIN_SPAN or present.test == before.test:
+        if before is None or present.test == before.test:
+            return None
+        if abs(present.at - before.at) < ACROSS_CURVE.min_span:
             return None
         name = self.family.scale.name
         span = present.at - before.at

@@ -1,5 +1,6 @@
 """The least stretch h1 of a cycle over the whole rod and period; the model is valid for h1 > 0 only."""
 
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
@@ -10,19 +11,33 @@ from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
 from ..arc import ArcPoint
 
-PLACES_PER_NODE = 8
-"""Number of places per node at which the least stretch is sampled."""
-SAFE_STRETCH = 0.2
-"""If h1 exceeds this limit at all nodes, h1 is positive between the nodes too."""
-SAFE_AT_PLACES = 0.02
-"""If h1 exceeds this limit at all sampled places, h1 is positive everywhere: a resolved polynomial hardly
-varies more."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeastStretchSettings:
+    """Search for the least stretch of a cycle."""
+
+    places_per_node: int = 8
+    """Number of places per node at which the least stretch is sampled."""
+    times_per_harmonic: int = 8
+    """Number of times per harmonic at which the least stretch of one place is sampled."""
+    place_tolerance: float = 1e-9
+    """Tolerance of the place of the least stretch, in L; the stretch has the square of this as its error."""
+    safe_at_nodes: float = 0.2
+    """If h1 exceeds this limit at all nodes, h1 is positive between the nodes too."""
+    safe_at_places: float = 0.02
+    """If h1 exceeds this limit at all sampled places, h1 is positive everywhere: a resolved polynomial hardly
+    varies more."""
+
+
+LEAST_STRETCH = LeastStretchSettings()
 
 
 def stretch_at(point: ArcPoint) -> float:
     """The least h1 of a cycle in space and time; the least nodal value if that is far from 0."""
     rough = point.cycle.measures.least_stretch
-    return rough if rough > SAFE_STRETCH else least_stretch(point.cycle.path, SAFE_AT_PLACES)
+    if rough > LEAST_STRETCH.safe_at_nodes:
+        return rough
+    return least_stretch(point.cycle.path, LEAST_STRETCH.safe_at_places)
 
 
 def stretch_of(orbit: Orbit) -> float:
@@ -31,7 +46,9 @@ def stretch_of(orbit: Orbit) -> float:
     pull = orbit.form.layout.field(orbit.points, "n1")
     nodes = pull.shape[-1]
     rough = float((rod.rest[0, :nodes] + rod.compliance[0, :nodes] * pull).min())
-    return rough if rough > SAFE_STRETCH else least_stretch(CyclePath(orbit), SAFE_AT_PLACES)
+    if rough > LEAST_STRETCH.safe_at_nodes:
+        return rough
+    return least_stretch(CyclePath(orbit), LEAST_STRETCH.safe_at_places)
 
 
 def least_stretch(path: CyclePath, enough: float = inf) -> float:
@@ -47,15 +64,16 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     def least(u: Array) -> Array:
         at = -np.ascontiguousarray(c @ grid.evaluation(u).T)
-        return -maxima(at, samples_of(at, 8 * len(c)))
+        return -maxima(at, samples_of(at, LEAST_STRETCH.times_per_harmonic * len(c)))
 
-    places = np.linspace(0.0, 1.0, PLACES_PER_NODE * len(grid.positions))
+    places = np.linspace(0.0, 1.0, LEAST_STRETCH.places_per_node * len(grid.positions))
     values = least(places)
     best = int(np.argmin(values))
     if values[best] > enough:
         return float(values[best])
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
+    tolerance = {"xatol": LEAST_STRETCH.place_tolerance}
     found = minimize_scalar(
-        lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options={"xatol": 1e-9}
+        lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
     )
     return min(float(values[best]), float(found.fun))

@@ -19,41 +19,7 @@ from ...point import Unsolvable
 from ..arc import ArcPoint, arc_between, tangent_at
 from ..bordered import BorderedMatrix, bordered, moved
 from .least_stretch import least_stretch
-from .point import SpecialKind, SpecialPoint
-
-REAL_MULTIPLIER = 1e-7
-"""Largest imaginary part of a real multiplier, relative to its modulus."""
-LOCATION_ACCURACY = 1e-9
-"""Relative accuracy of the parameter at a special point; the accuracy of the branch if that is smaller."""
-FIRST_MESH_SHARE = 0.1
-"""Accuracy for which the first of the two meshes is planned, in units of LOCATION_ACCURACY."""
-CYCLE_TOLERANCE = 1e-10
-"""Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
-left."""
-MAX_SECANTS = 12
-"""Maximum number of secant steps."""
-STALLED_SECANT = 1e-6
-"""A secant step this small, in units of the step of the branch, that did not halve is rounding error."""
-SECANT_END = 1e-9
-"""Length of the last secant step, in units of the step of the branch."""
-SECANT_END_AT_FOLD = 1e-5
-"""The same at a fold, where the parameter is quadratic in arc length."""
-MATRIX_STEP_SHARE = 1e-2
-"""Relative distance of a matrix from its cycle, in units of the last secant step: the test function then
-gives the next step to two digits."""
-ENCLOSURE_SHARE = 1e-3
-"""Tolerance of the bracketing: test function in units of its values at the ends, bracket in units of the
-step."""
-MAX_MESH_PAIRS = 4
-"""Maximum number of pairs of meshes that are compared."""
-LOCATION_MORE_ORDERS = 4
-"""Increase of the order on the next finer mesh."""
-LOCATION_MORE_INTERVALS = 1.3
-"""Factor on the number of intervals on the next finer mesh."""
-LOCATION_ERROR_FACTOR = 3.0
-"""Safety factor on the difference of two meshes."""
-LOCATION_ROUNDING = 1e-13
-"""Relative rounding error of the parameter, the period and the size."""
+from .point import LOCATING, SpecialKind, SpecialPoint
 
 
 def through_minus_one(orbit: Orbit) -> SpecialKind:
@@ -79,7 +45,7 @@ class Segment:
         """Continues on another mesh, without a cycle to start from."""
         self.mesh, self._known = mesh, None
 
-    def at(self, length: float, distance: float = CYCLE_TOLERANCE) -> Converged:
+    def at(self, length: float, distance: float = LOCATING.cycle_tolerance) -> Converged:
         """The cycle at a length from `start`, with a matrix within a relative distance; raises Unsolvable."""
         scale, name = self.start.scale, self.start.scale.name
         if self._known is None:
@@ -87,7 +53,8 @@ class Segment:
         else:
             last, orbit, tangent = self._known
             start = moved(orbit, name, (length - last) * tangent)
-        found = self.start.condition(length).solved(start, CYCLE_TOLERANCE, self.start.workspace, distance)
+        condition = self.start.condition(length)
+        found = condition.solved(start, LOCATING.cycle_tolerance, self.start.workspace, distance)
         tangent = tangent_at(found.orbit, scale, self.start.ahead, bordered(found))
         rate = float(scale.moved(found.orbit, tangent) @ self.start.ahead)
         self._known = length, found.orbit, tangent / rate
@@ -107,7 +74,7 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
     h = BorderedMatrix(found.orbit, segment.start.scale, found.workspace).returns
-    real = np.abs(h.imag) <= REAL_MULTIPLIER * np.abs(h)
+    real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
     if kind == through_minus_one(found.orbit):
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
@@ -120,15 +87,15 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
     """The special point of a kind between two cycles; if it is not found, its error is the distance of the
     two."""
-    aim = min(accuracy, LOCATION_ACCURACY)
+    aim = min(accuracy, LOCATING.accuracy)
     try:
         segment = Segment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
-        mesh = end.calibration.planned_for_parameter(FIRST_MESH_SHARE * aim)
+        mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         last, point = None, None
-        for _ in range(MAX_MESH_PAIRS + 1):
+        for _ in range(LOCATING.max_mesh_pairs + 1):
             segment.start_on(mesh)
             length, found, slope = _zero(kind, segment, length, slope)
             last, point = point, _point_at(kind, found)
@@ -138,8 +105,8 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
                     break
             mesh = replace(
                 mesh,
-                order=mesh.order + LOCATION_MORE_ORDERS,
-                intervals=ceil(LOCATION_MORE_INTERVALS * mesh.intervals),
+                order=mesh.order + LOCATING.more_orders,
+                intervals=ceil(LOCATING.more_intervals * mesh.intervals),
             )
             if not mesh.allowed:
                 break
@@ -156,18 +123,18 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
 
     Period and size also have the error of the last secant step in arc length.
     """
-    place = SECANT_END_AT_FOLD if point.kind is SpecialKind.fold else SECANT_END
+    place = LOCATING.secant_end_at_fold if point.kind is SpecialKind.fold else LOCATING.secant_end
     one = start.cycle.measures
     other = end.cycle.measures
-    period = LOCATION_ERROR_FACTOR * abs(point.period - last.period) + place * abs(one.period - other.period)
-    size = LOCATION_ERROR_FACTOR * abs(point.tip_y_max - last.tip_y_max) + place * abs(
+    period = LOCATING.error_factor * abs(point.period - last.period) + place * abs(one.period - other.period)
+    size = LOCATING.error_factor * abs(point.tip_y_max - last.tip_y_max) + place * abs(
         one.tip_y_max - other.tip_y_max
     )
     return replace(
         point,
-        error=LOCATION_ERROR_FACTOR * abs(point.at - last.at) + LOCATION_ROUNDING * abs(point.at),
-        period_error=period / point.period + LOCATION_ROUNDING,
-        size_error=size / point.tip_y_max + LOCATION_ROUNDING,
+        error=LOCATING.error_factor * abs(point.at - last.at) + LOCATING.rounding * abs(point.at),
+        period_error=period / point.period + LOCATING.rounding,
+        size_error=size / point.tip_y_max + LOCATING.rounding,
     )
 
 
@@ -195,7 +162,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
         at=at,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
-        error=max(abs(at - other), LOCATION_ACCURACY * abs(at)),
+        error=max(abs(at - other), LOCATING.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
@@ -207,7 +174,7 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
 
     Raises Unsolvable.
     """
-    rough = MATRIX_STEP_SHARE * ENCLOSURE_SHARE * segment.length
+    rough = LOCATING.matrix_step_share * LOCATING.enclosure_share * segment.length
 
     def value(length: float) -> float:
         return test_function(kind, segment, segment.at(length, rough))
@@ -219,8 +186,8 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = ENCLOSURE_SHARE * min(map(abs, ends))
-    at = zero_along(kept, ends, segment.length, least, ENCLOSURE_SHARE)
+    least = LOCATING.enclosure_share * min(map(abs, ends))
+    at = zero_along(kept, ends, segment.length, least, LOCATING.enclosure_share)
     # The nearest other place and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     return at, (values[at] - values[other]) / (at - other)
@@ -231,19 +198,20 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
 
     slope: approximate, as on a coarser mesh. Raises Unsolvable.
     """
-    enough = segment.length * (SECANT_END_AT_FOLD if kind == SpecialKind.fold else SECANT_END)
+    end = LOCATING.secant_end_at_fold if kind == SpecialKind.fold else LOCATING.secant_end
+    enough = segment.length * end
     at = guess
-    step = ENCLOSURE_SHARE * segment.length
+    step = LOCATING.enclosure_share * segment.length
     before = None
-    for _ in range(MAX_SECANTS):
-        found = segment.at(at, max(CYCLE_TOLERANCE, MATRIX_STEP_SHARE * abs(step)))
+    for _ in range(LOCATING.max_secants):
+        found = segment.at(at, max(LOCATING.cycle_tolerance, LOCATING.matrix_step_share * abs(step)))
         f = test_function(kind, segment, found)
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
         last, step = abs(step), -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step between the two cycles")
-        if abs(step) <= enough or last / 2 < abs(step) <= STALLED_SECANT * segment.length:
+        if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
             return at, found, slope
         before = at, f
         at += step

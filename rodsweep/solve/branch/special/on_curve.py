@@ -13,10 +13,51 @@ from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..bordered import Scale
 
-CURVE_ACCURACY = 1e-7
-"""Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
-MAX_UNMEASURED_POINTS = 3
-"""The error is measured at least at every third point."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrossingSettings:
+    """Corrections across a curve of special points, and the errors of its points."""
+
+    accuracy: float = 1e-7
+    """Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
+    max_unmeasured: int = 3
+    """The error is measured at least at every third point."""
+    small_fold_cycle: float = 0.05
+    """Largest tip y, in L, of cycles whose fold function is divided by the moment, since it vanishes at the
+    Hopf point too."""
+    first_secant: float = 1e-3
+    """First step of the secant method across a curve if the derivatives are unknown."""
+    longest_secant: float = 0.1
+    """A longer step of the secant method has left the curve."""
+    max_secants: int = 12
+    """Maximum number of secant steps for one point."""
+    max_linear_product: float = 1e-9
+    """The last secant step is taken without solving at its end if its length times the distance of the last
+    two cycles is below this limit; the test function is known to about 1e-8."""
+    max_linear_step: float = 1e-6
+    """The limit of the last step with derivatives from other cycles at the same point, which are known to
+    1e-3."""
+    max_carried_step: float = 1e-7
+    """The limit of the last step with derivatives from the previous point, which are known to a tenth."""
+    min_cosine: float = 0.9
+    """Smallest cosine of the angle between two directions across the curve for which derivatives are
+    reused."""
+    min_span: float = 1e-6
+    """Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
+    1e-8."""
+    error_factor: float = 3.0
+    """Safety factor on the difference of two meshes."""
+    secant_error: float = 3e-9
+    """Relative error of the line's value that the secant method leaves."""
+    more_orders: int = 2
+    """Increase of the order on the next finer mesh."""
+    more_intervals: float = 1.2
+    """Factor on the number of intervals on the next finer mesh."""
+    max_finer_meshes: int = 5
+    """Maximum number of finer meshes for one point."""
+
+
+ACROSS_CURVE = CrossingSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +106,8 @@ class CurveErrors:
 
     def hold_at(self, point: "OnCurve") -> bool:
         """Whether the measured error still applies to the next point and is within the accuracy."""
-        recent = self.age < MAX_UNMEASURED_POINTS - 1 and mesh_of(point.orbit) == self.mesh
-        return recent and self.at(point) <= CURVE_ACCURACY * abs(point.at)
+        recent = self.age < ACROSS_CURVE.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
+        return recent and self.at(point) <= ACROSS_CURVE.accuracy * abs(point.at)
 
     @property
     def carried(self) -> "CurveErrors":

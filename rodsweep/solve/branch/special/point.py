@@ -7,6 +7,53 @@ from math import nan
 from ...orbit.orbit import Orbit
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LocatingSettings:
+    """Location of a special point on a branch."""
+
+    real_multiplier: float = 1e-7
+    """Largest imaginary part of a real multiplier, relative to its modulus."""
+    accuracy: float = 1e-9
+    """Relative accuracy of the parameter at a special point; the accuracy of the branch if that is
+    smaller."""
+    first_mesh_share: float = 0.1
+    """Accuracy for which the first of the two meshes is planned, in units of `accuracy`."""
+    cycle_tolerance: float = 1e-10
+    """Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
+    left."""
+    max_secants: int = 12
+    """Maximum number of secant steps."""
+    stalled_secant: float = 1e-6
+    """A secant step this small, in units of the step of the branch, that did not halve is rounding error."""
+    secant_end: float = 1e-9
+    """Length of the last secant step, in units of the step of the branch."""
+    secant_end_at_fold: float = 1e-5
+    """The same at a fold, where the parameter is quadratic in arc length."""
+    matrix_step_share: float = 1e-2
+    """Relative distance of a matrix from its cycle, in units of the last secant step: the test function then
+    gives the next step to two digits."""
+    enclosure_share: float = 1e-3
+    """Tolerance of the bracketing: test function in units of its values at the ends, bracket in units of the
+    step."""
+    max_mesh_pairs: int = 4
+    """Maximum number of pairs of meshes that are compared."""
+    more_orders: int = 4
+    """Increase of the order on the next finer mesh."""
+    more_intervals: float = 1.3
+    """Factor on the number of intervals on the next finer mesh."""
+    error_factor: float = 3.0
+    """Safety factor on the difference of two meshes."""
+    rounding: float = 1e-13
+    """Relative rounding error of the parameter, the period and the size."""
+    near_one: float = 3e-3
+    """A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
+    max_halvings: int = 7
+    """Maximum number of halvings of a step with several special points, or with one that is not located."""
+
+
+LOCATING = LocatingSettings()
+
+
 class SpecialKind(IntEnum):
     """Kind of a special point of a branch."""
 

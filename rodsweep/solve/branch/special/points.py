@@ -12,13 +12,8 @@ import numpy as np
 
 from ...point import Unsolvable
 from ..arc import ArcPoint, arc_between
-from .locating import REAL_MULTIPLIER, located, through_minus_one
-from .point import SpecialKind, SpecialPoint
-
-NEAR_ONE = 3e-3
-"""A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
-MAX_STEP_HALVINGS = 7
-"""Maximum number of halvings of a step with several special points, or with one that is not located."""
+from .locating import located, through_minus_one
+from .point import LOCATING, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
 """Gives the cycle at a length from another cycle; raises Unsolvable."""
@@ -47,16 +42,16 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
 def _beyond_minus_one(point: ArcPoint) -> int:
     """Number of real multipliers below -1."""
     h = point.returns
-    return int(((h.real < -1) & (np.abs(h.imag) <= REAL_MULTIPLIER * np.abs(h))).sum())
+    return int(((h.real < -1) & (np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h))).sum())
 
 
 def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.returns - 1) < NEAR_ONE).any())
+    return bool((np.abs(point.returns - 1) < LOCATING.near_one).any())
 
 
 def _has_pair(point: ArcPoint) -> bool:
     h = point.returns
-    return bool((np.abs(h.imag) > REAL_MULTIPLIER * np.abs(h)).any())
+    return bool((np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)).any())
 
 
 def special_points(
@@ -73,7 +68,7 @@ def special_points(
     """
     kinds, explained = changes_between(start, end)
     points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []
-    if depth < MAX_STEP_HALVINGS and (not explained or any(point.message for point in points)):
+    if depth < LOCATING.max_halvings and (not explained or any(point.message for point in points)):
         try:
             middle = step(start, arc_between(start, end) / 2)
         except Unsolvable:

@@ -14,12 +14,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.elements.resolution import LARGEST_ORDER
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import (
-    MAX_INTERVALS,
-    MIN_INTERVALS,
-    MIN_ORBIT_ORDER,
-    OrbitMesh,
-)
+from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
 from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
 from ...orbit.tails import lasting_tails, tails_of
 from .cycle_errors import ERROR_ROUNDING, MIN_CLAIM, CycleErrors, largest_error
@@ -143,10 +138,11 @@ class Calibration:
     def planned(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
-        lowest = max(MIN_ORBIT_ORDER, present.order - FEWER_ORDERS)
+        lowest = max(ORBIT_MESH.min_order, present.order - FEWER_ORDERS)
         orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MAX_MORE_ORDERS) + 1)
-        fewest = max(MIN_INTERVALS, ceil(FEWER_INTERVALS * present.intervals))
-        intervals = np.arange(fewest, min(MAX_INTERVAL_RATIO * present.intervals, MAX_INTERVALS) + 1)
+        fewest = max(ORBIT_MESH.min_intervals, ceil(FEWER_INTERVALS * present.intervals))
+        most = min(MAX_INTERVAL_RATIO * present.intervals, ORBIT_MESH.max_intervals)
+        intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
         # distance, and in time with the smallest order.
         least = np.minimum(self.fall, self.fall[APART])

@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, Measures, measures_of
-from ...orbit.newton import QUADRATIC_ERROR, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.newton import ORBIT_NEWTON, Converged, at_orbit, linearised, multipliers_of, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
@@ -211,7 +211,8 @@ def calibrated_cycle(
 
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
     """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
-    last = (newton_tolerance(accuracy) / QUADRATIC_ERROR) ** 0.5  # `linearised` makes one more step
+    # `linearised` makes one more step
+    last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.carry(found.orbit), last, found.workspace)
     return linearised(same_motion(solution, found.orbit.size), parameter)
 

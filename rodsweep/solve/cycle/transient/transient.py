@@ -17,7 +17,7 @@ from ....arrays import Array
 from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
 from ....watch import SolvePosition, report
-from ...motion.integrator import RELAXATION_SHARE, Ending, Trajectory, integrator, relaxed
+from ...motion.integrator import INTEGRATOR, Ending, Trajectory, integrator, relaxed
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import Unsolvable
@@ -193,7 +193,7 @@ class Transient:
         """State to which the stretch of the start z relaxes; the relaxation counts in a stored path."""
         after = relaxed(self.beam, z, self.mode.period)
         if self.trace:
-            self.clock = RELAXATION_SHARE * self.mode.period
+            self.clock = INTEGRATOR.relaxation_share * self.mode.period
             self.trace.begin(z, after, self.clock)
         return after
 

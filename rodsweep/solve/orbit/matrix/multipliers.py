@@ -5,14 +5,24 @@ nonzero eigenvalues of the small matrix R Q. For this purpose Q need not be orth
 rounding, which it does even if the columns of A differ much in size.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.small_eigenvalues import eigenvalues
 
-NEGLIGIBLE = 1e-17
-"""Largest norm of a negligible column, in units of the largest column of the flow's derivative."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MultiplierSettings:
+    """Compression of the flow's derivative."""
+
+    negligible: float = 1e-17
+    """Largest norm of a negligible column, in units of the largest column of the flow's derivative."""
+
+
+MULTIPLIERS = MultiplierSettings()
 
 
 def nonzero_eigenvalues(A: Array) -> Complex:
@@ -20,7 +30,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
     Raises LinAlgError if A has entries that are not finite.
     """
-    values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), NEGLIGIBLE)
+    values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), MULTIPLIERS.negligible)
     if not len(values):
         raise np.linalg.LinAlgError("the derivative of the flow is not finite")
     return values

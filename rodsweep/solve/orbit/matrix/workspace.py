@@ -4,6 +4,7 @@ New memory pages cost as much time as half an elimination, so that the matrices 
 Only the last matrix has its factors in the buffer; an earlier matrix raises an error if they are needed.
 """
 
+from dataclasses import dataclass
 from math import prod
 from typing import NamedTuple
 
@@ -11,8 +12,16 @@ import numpy as np
 
 from ....arrays import Array
 
-KEPT_NUMBERS = 2**23
-"""Numbers that a workspace keeps between rods, 64 MB: enough for most rods."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkspaceSettings:
+    """Memory of the matrices of orbits."""
+
+    kept_numbers: int = 2**23
+    """Numbers that a workspace keeps between rods, 64 MB: enough for most rods."""
+
+
+WORKSPACE = WorkspaceSettings()
 
 
 class Factors(NamedTuple):
@@ -52,9 +61,9 @@ class NewtonWorkspace:
         return self._buffer
 
     def release(self) -> None:
-        """Ends the last claim, and frees a buffer of more than KEPT_NUMBERS."""
+        """Ends the last claim, and frees a buffer of more than WORKSPACE.kept_numbers."""
         self._claim += 1
-        if len(self._buffer) > KEPT_NUMBERS:
+        if len(self._buffer) > WORKSPACE.kept_numbers:
             self._buffer = np.empty(0)
 
 

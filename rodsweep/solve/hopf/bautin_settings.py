@@ -1,0 +1,32 @@
+"""Settings of the curves of generalised Hopf points (`bautin_curves`)."""
+
+from dataclasses import dataclass
+from math import inf
+
+from ..continuation.follower import StepControl
+
+BAUTIN_STEPS = StepControl(
+    first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000
+)
+"""Step lengths in units of the ranges; the prediction error is in units of the step."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BautinSettings:
+    """Corrections and ends of a curve of generalised Hopf points."""
+
+    max_secants: int = 10
+    """Maximum number of secant steps to a generalised Hopf point."""
+    first_secant: float = 1e-3
+    """First secant step along the Hopf curve, in units of the ranges."""
+    tolerance: float = 1e-12
+    """Length of a secant step, in units of the ranges, at which the iteration has converged."""
+    on_edge: float = 1e-12
+    """Distance from an end of a range, in units of the range, below which a point lies on this end."""
+    min_loop_points: int = 5
+    """Minimum number of points of a closed curve."""
+    same_point: float = 1e-6
+    """Two points at a smaller distance, in units of the ranges, are the same."""
+
+
+BAUTIN = BautinSettings()
