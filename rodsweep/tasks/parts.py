@@ -12,7 +12,7 @@ from ..discretization.elements.elements import Elements
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Rod
-from ..solve.changes.anchors import LEADING_MODES, PLACE_ACCURACY
+from ..solve.changes.anchors import MIN_KNOWN_MODES, PLACE_ACCURACY
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
@@ -51,7 +51,7 @@ class ProvedTask(Task):
         accuracy = mesh_accuracy(PLACE_ACCURACY, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
-            return spectrum_mesh(rod, LEADING_MODES, accuracy)
+            return spectrum_mesh(rod, MIN_KNOWN_MODES, accuracy)
 
         return largest_first_mesh(self.points, mesh_of, self.searched())
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from ...arrays import Complex
 
-LEADING_MODES = 4
+MIN_KNOWN_MODES = 4
 """Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
 PLACE_ACCURACY = 1e-6
 """Relative accuracy of these eigenvalues; Newton's method on D does the rest."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import EXPLAINED, LEADING_MODES, PLACE_ACCURACY, lowest_between
+from .anchors import EXPLAINED, MIN_KNOWN_MODES, PLACE_ACCURACY, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
@@ -62,7 +62,7 @@ class CrossingSearch:
     def place(self, p: float) -> AxisPlace:
         """The place at p; raises Unsolvable if its eigenvalues or their count cannot be computed."""
         if p not in self.places:
-            modes = LEADING_MODES
+            modes = MIN_KNOWN_MODES
             found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
                 modes = _needed(found)
