@@ -263,7 +263,7 @@ def test_other_relative_loads_are_refused(given):
 def test_a_load_relative_to_no_flutter_is_refused():
     arm = SlenderArm(**THICK, pressure="1.2 of flutter")
     none = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.ok, 200.0))
-    with pytest.raises(rs.InputError, match="^pressure = '1.2 of flutter' is nothing: .* up to 5560 Pa"):
+    with pytest.raises(rs.InputError, match="^pressure = '1.2 of flutter' has no value: .* up to 5560 Pa"):
         with_load(Planes(PlaneOfMotion(arm, FlutterRange((none,)))))
 
 

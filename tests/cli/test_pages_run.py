@@ -16,7 +16,7 @@ from surveyed import survey_only
 
 DOCS = ROOT / "docs"
 PAGES = [*sorted((DOCS / "tasks").glob("*.md")), *sorted((DOCS / "howto").glob("*.md"))]
-LONG_PAGES = ("branch", "limit_cycle", "phase_diagram", "amplitude-map")
+LONG_PAGES = ("branch", "limit_cycle", "phase_diagram", "criticality", "amplitude-map")
 """Names of pages whose commands take longer than all others together."""
 CLUSTER = ROOT / "tests" / "cluster" / "test_slurm.py"
 BAD_INPUT = 2

@@ -32,13 +32,21 @@ def solved(command, name):
     return command.solved(f"{name}.yaml")
 
 
+PAGES: dict[str, str] = {}
+"""Pages of the small files that were made here, by the names of their configs."""
+
+
 def reported(command, name):
-    """The page of a small file."""
+    """The page of a small file, beside it; made once for all tests."""
     solved(command, name)
-    run = command("report", f"{name}.h5")
-    assert run.returncode == 0, run.stderr
-    assert run.stdout.startswith(f"wrote {name}.html: 1 result, ")
-    return read_page(command.directory / f"{name}.html")
+    path = command.directory / f"{name}.html"
+    if name not in PAGES:
+        run = command("report", f"{name}.h5")
+        assert run.returncode == 0, run.stderr
+        assert run.stdout.startswith(f"wrote {name}.html: 1 result, ")
+        PAGES[name] = path.read_text()
+    path.write_text(PAGES[name])
+    return read_page(path)
 
 
 def test_there_is_a_small_file_of_every_task():
