@@ -85,7 +85,7 @@ def test_results_may_have_each_of_the_endings(name, results):
         ("parameters.accuracy=1", "unknown key parameters.accuracy; did you mean accuracy?"),
         (
             "parameters.twist=3",
-            "unknown key parameters.twist; known keys are F, k1, k2, gamma3, gamma1, taper, points, columns, arm",
+            "unknown key parameters.twist; known keys are F, k1, k2, gamma3, gamma1, taper, points, columns",
         ),
     ],
 )

@@ -135,5 +135,5 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
         raise error
 
     monkeypatch.setattr(relative, "cover", overflowing)
-    with pytest.raises(relative.FlutterUnknown, match="of a relative load fails: (too large|ZeroDivisionError)"):
+    with pytest.raises(relative.FlutterUnknown, match="relative load fails: (too large|ZeroDivisionError)"):
         relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))
