@@ -32,7 +32,7 @@ class Axes(LinearAxes):
         list[Literal[OPTIONAL_PARAMETERS]] | None,  # type: ignore[valid-type]  # read at run time, from the table
         Field(description=f"a list of {' and '.join(OPTIONAL_PARAMETERS)}"),
     ] = None
-    """Columns of `points` beside those that every list has; by default as its header names them."""
+    """Optional parameters among the columns of `points`; by default those in the header of the file."""
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given beside it replaces the arm's value."""
 

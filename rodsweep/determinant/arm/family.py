@@ -74,7 +74,7 @@ def _converged(values: Array, tolerance: float) -> bool:
 
 @cache
 def chebyshev_points(number: int) -> Array:
-    """So many Chebyshev points of [-1, 1], (number,): both ends are among them."""
+    """Chebyshev points of [-1, 1] with both ends, (number,), increasing."""
     return np.asarray(-np.cos(np.pi * np.arange(number) / (number - 1)))
 
 

@@ -42,7 +42,7 @@ INSIDE = 1e-9
 LARGEST_SHARE = 0.9
 """Largest c: the region grows beyond use where c approaches 1."""
 WIDE_SHARE = 0.15
-"""The c from which on a region counts as wide, whatever its a."""
+"""Smallest c of a region that counts as wide for every a."""
 MIDDLES = (0.0, 0.5, 1.0)
 """Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
 WEIGHTS = 41

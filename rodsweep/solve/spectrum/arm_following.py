@@ -17,7 +17,7 @@ from ...determinant.arm.hull import Hull, Hulls, hull_at
 from ...determinant.arm.value import chain_along, chain_value
 from ...determinant.newton import REAL_BELOW
 from ...determinant.roots import sort_descending
-from ...determinant.value import ROUND_OFF, SECOND_STEP, TYPICAL_NOISE
+from ...determinant.value import ROUND_OFF, SECOND_STEP
 from ...model.compiled.compilation import compiled
 from .candidates import BELOW, CLOSE_BELOW
 from .following import (
@@ -27,6 +27,7 @@ from .following import (
     Corrected,
     crowding_of,
     distinct_roots,
+    newton_step,
 )
 from .prediction import Track, guess_at, mates_of, place_two
 
@@ -36,15 +37,9 @@ Level = tuple[float, Array, Array]
 
 @compiled
 def corrected_of_arm(w: complex, level: Level) -> Corrected:
-    """One step of Newton's method; what is real stays real."""
+    """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
-    size = abs(D_w)
-    if not size > 0:
-        return Corrected(w, 0j, math.inf, math.inf)
-    step, slope = D / D_w, -D_p / D_w
-    if w.imag == 0:
-        step, slope = complex(step.real, 0.0), complex(slope.real, 0.0)
-    return Corrected(w - step, slope, abs(step), TYPICAL_NOISE * noise / size)
+    return newton_step(w, D, D_w, D_p, noise)
 
 
 @compiled

@@ -42,6 +42,12 @@ class Corrected(NamedTuple):
 def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> Corrected:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
+    return newton_step(w, D, D_w, D_p, noise)
+
+
+@compiled
+def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, noise: float) -> Corrected:
+    """One Newton step from D, its derivatives by w and p, and its rounding error; real w stays real."""
     size = abs(D_w)
     if not size > 0:
         return Corrected(w, 0j, math.inf, math.inf)
