@@ -72,11 +72,13 @@ def test_a_number_and_its_error_contain_the_true_number():
 
 
 def test_an_error_is_rounded_up():
-    assert [error_text(error) for error in (1e-3, 1.001e-3, 9.5e-3, 0.0)] == [
+    assert [error_text(error) for error in (1e-3, 1.001e-3, 9.5e-3, 0.0, np.inf, np.nan)] == [
         "1e-03",
         "2e-03",
         "1e-02",
         "0e+00",
+        "inf",
+        "nan",
     ]
 
 

@@ -16,12 +16,13 @@ NEVER = [
     '"\\q"', '"\\x1"', "1 2: 3", "\u0000", "\u0007", "\ufffe", "\u2028", "\x85",
 ]  # fmt: skip
 """For no key at all; in some places they are no YAML, or break the line."""
-NOTHING = {"}", ",", "\x85", "\u2028"}
-"""Of NEVER, what YAML may take for no value at all, which MAY_BE_NOTHING allows."""
+NOTHING = {"}", ",", "\x85", "\u2028", "~"}
+"""Of what follows and of NEVER, what YAML may take for no value at all, which MAY_BE_NOTHING allows."""
 OPTIONAL_OF_ARM = ("density_difference", "tip_radius", "law", "section")
 """Keys of an arm in a config, of which it may have none."""
 MAY_BE_NOTHING = {
-    ("parameters", "points"), ("parameters", "gamma1"),
+    ("material",), ("phase_diagram", "bautin_along"),
+    *(("parameters", name) for name in ("points", "gamma1", "taper", "columns", "arm")),
     *(("parameters", "arm", name) for name in OPTIONAL_OF_ARM),
 }  # fmt: skip
 

@@ -63,16 +63,22 @@ def none_is_missing(
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
-    whole = np.array([w.imag == 0 or w.conjugate() in known for w in known], dtype=bool)
+    pairs = is_whole(known)
     examined = 0
     for k in POWERS:
         points = right_of_hull(line, hull.a, hull.c, k)
         if len(points) and points[-1] <= FARTHEST * np.abs(known).max():
-            found = remainder(line, known[whole], error[whole], hull, points, determinant.level(points[-1]))
+            found = remainder(line, known[pairs], error[pairs], hull, points, determinant.level(points[-1]))
             examined += k
             if proves(found):
                 return True, examined
     return False, examined
+
+
+def is_whole(known: Complex) -> Array:
+    """Whether each of some eigenvalues is real or there with its conjugate, (n,)."""
+    conjugates = set(known.conj().tolist())
+    return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
 
 @compiled

@@ -15,6 +15,10 @@ Inside the hull, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimat
 circle bounds the change of f. The maximum is estimated from `CIRCLE` points and a safety factor. Inside the
 hull the count is therefore an estimate; the rounding errors of D and the errors of its elements are estimates
 everywhere.
+
+Known eigenvalues are divided out: the same is done for D(w)/prod (w - w_n), whose other zeros are far from the
+line. The nodes are then few even between many unstable modes, and the known eigenvalues right of the line are
+added to the count.
 """
 
 import cmath
@@ -27,6 +31,7 @@ from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import LEAST_HEIGHT, NOT_AN_INTEGER, WIDTH_ADDED, WIDTH_FACTOR, Count
 from ..value import Value
+from .completeness import is_whole
 from .determinant import ArmDeterminant
 from .hull import Hull, clearance
 from .value import chain_size, chain_value
@@ -42,10 +47,14 @@ CLEARANCE = 0.9
 """Largest allowed change of f, in units of |D|."""
 ROUNDING_OF_ARM_D = 100.0
 """Bound of the rounding error of D, in units of its noise; a node needs a larger |D|."""
-RADII = (3.0, 1.5, 0.75)
-"""Radii of circles to try, in units of the length over which D changes."""
+FIRST_RADIUS, SMALLEST_RADIUS, LARGEST_RADIUS = 3.0, 0.75, 48.0
+"""Radii of circles to try, in units of the length over which D changes: the first at the first node of a
+side, and the smallest and largest at any node. Every trial halves the radius."""
 STEEPEST = 1.0
-"""Largest |L| times the unit of `RADII`, so that circles shrink with the distance to a zero of D."""
+"""Largest |L| times the unit of the radii, so that circles shrink with the distance to a zero of D."""
+SHARP = 1e-3
+"""Largest error of an eigenvalue that is divided out, in units of its distance from the line."""
+NONE_KNOWN: Complex = np.empty(0, complex)
 SMALLEST_ARM_REACH = 1e-12
 """Reach in units of |w| below which the line counts as running through a zero of D."""
 MAX_NODES = 5000
@@ -56,12 +65,18 @@ UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.arange(CIRCLE) + 0.5) / CIRCLE)
 
 
 class PhaseNode(NamedTuple):
-    """A point w with D exp(-S), L = D'/D, and the distance `reach` within which the tangent is valid."""
+    """A point w with the direction of D, L = D'/D, both without known eigenvalues, and the validity of the
+    tangent.
+
+    reach: distance within which the tangent is valid. radius: of the best circle, in units of the length over
+    which D changes, or 0.
+    """
 
     w: complex
-    D: complex
+    direction: complex
     L: complex
     reach: float
+    radius: float
 
 
 class PhaseLost(ArithmeticError):
@@ -72,9 +87,20 @@ class PhaseLost(ArithmeticError):
         self.nodes = nodes
 
 
-def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Count:
+class DividedDeterminant(NamedTuple):
+    """D without known eigenvalues, `known`, (n,), closed under conjugation, and a region with all others."""
+
+    determinant: ArmDeterminant
+    hull: Hull
+    known: Complex
+
+
+def count_right_of(
+    line: float, determinant: ArmDeterminant, hull: Hull, known: Complex = NONE_KNOWN, error: Array | float = 0.0
+) -> Count:
     """The number of transverse eigenvalues with Re w > line, for any real line.
 
+    known, error: some of the eigenvalues, (n,), and how far each may be off; with them the count is faster.
     Raises no error: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
@@ -84,12 +110,15 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
         return Count(0, 0)
     corner = complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
     top = complex(line, corner.imag)
+    known = known[error < SHARP * np.abs(known.real - line)]
+    known = known[is_whole(known)]
+    divided = DividedDeterminant(determinant, hull, known)
     nodes = 0
     total = 0.0
     try:
-        node_at(corner, determinant, hull)  # makes the elements for the largest |w|, which serve most others
+        node_at(corner, divided)  # makes the elements for the largest |w|, which serve most others
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
-            change, used = phase_change(start, end, determinant, hull)
+            change, used = phase_change(start, end, divided)
             total += change
             nodes += used
     except PhaseLost as lost:
@@ -99,25 +128,28 @@ def count_right_of(line: float, determinant: ArmDeterminant, hull: Hull) -> Coun
     number = round(total / math.pi)
     if abs(total / math.pi - number) > NOT_AN_INTEGER:
         return Count(None, nodes, "the winding number is not an integer within rounding")
-    return Count(number, nodes)
+    return Count(number + int((known.real > line).sum()), nodes)
 
 
-def phase_change(start: complex, end: complex, determinant: ArmDeterminant, hull: Hull) -> tuple[float, int]:
-    """(change of arg D along the segment, nodes used); raises `PhaseLost` if the nodes do not connect."""
+def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> tuple[float, int]:
+    """(change of arg D along the segment, nodes used); raises `PhaseLost` if the nodes do not connect.
+
+    D is without the known eigenvalues.
+    """
     length = abs(end - start)
     direction = (end - start) / length
     t = 0.0
     total = 0.0
     nodes = 1
-    here = node_at(start, determinant, hull)
+    here = node_at(start, divided)
     while t < length:
         if not here.reach > SMALLEST_ARM_REACH * abs(here.w) or nodes > MAX_NODES:
             raise PhaseLost(nodes)
         ahead = min(STRIDE * here.reach, length - t)
+        radius = min(2 * here.radius, LARGEST_RADIUS) if here.radius > 0 else FIRST_RADIUS
         while True:
-            there = node_at(
-                end if ahead == length - t else start + direction * (t + ahead), determinant, hull
-            )
+            w = end if ahead == length - t else start + direction * (t + ahead)
+            there = node_at(w, divided, radius)
             nodes += 1
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
@@ -134,49 +166,86 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
     step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
     expected = (here.L * step * share + there.L * step * (1 - share)).imag
-    return expected + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -expected)))
+    return expected + cmath.phase(there.direction / here.direction * cmath.exp(complex(0.0, -expected)))
 
 
-def node_at(w: complex, determinant: ArmDeterminant, hull: Hull) -> PhaseNode:
-    """The node at w; its reach is 0 if rounding errors hide D."""
+def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIUS) -> PhaseNode:
+    """The node at w; its reach is 0 if rounding errors hide D.
+
+    radius: of the largest circle to try, in units of the length over which D changes.
+    """
+    determinant, hull, known = divided
     length = determinant.length(w)
-    return _node(w, length, hull, determinant.level(abs(w) + RADII[0] * length))
+    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length)
+    return _node(w, known, (length, radius), hull, level)
 
 
 @compiled
-def _node(w: complex, length: float, hull: Hull, level: tuple[float, Array]) -> PhaseNode:
-    """The node about w; level: (W, propagators) for |v| <= W, which hold the largest circle about w."""
+def _node(
+    w: complex, known: Complex, trial: tuple[float, float], hull: Hull, level: tuple[float, Array]
+) -> PhaseNode:
+    """The node about w.
+
+    trial: (length over which D changes, largest radius in units of it). level: (W, propagators) for |v| <= W,
+    which hold the largest circle about w.
+    """
     value = chain_value(w, level[0], level[1])
     if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
-        return PhaseNode(w, value.D, 0j, 0.0)
-    L = value.D_w / value.D
+        return PhaseNode(w, value.D, 0j, 0.0, 0.0)
+    direction, L = value.D / abs(value.D), value.D_w / value.D
+    for n in range(len(known)):
+        away = w - known[n]
+        direction *= away.conjugate() / abs(away)
+        L -= 1 / away
     distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
-    reach = 0.0
+    reach, radius = 0.0, 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
         reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
-    if not reach > length:
-        reach = max(reach, _reach_inside(w, value, L, length, level))
-    return PhaseNode(w, value.D, L, reach)
+    if not reach > trial[0]:
+        inside, radius = _reach_inside(value, (w, L), known, trial, level)
+        reach = max(reach, inside)
+    return PhaseNode(w, direction, L, reach, radius)
 
 
 @compiled
-def _reach_inside(w: complex, value: Value, L: complex, length: float, level: tuple[float, Array]) -> float:
-    """The reach of a node at w inside the hull, from the largest |f| on circles about w."""
-    unit = min(length, STEEPEST / max(abs(L), 1e-300))
+def _reach_inside(
+    value: Value,
+    tangent: tuple[complex, complex],
+    known: Complex,
+    trial: tuple[float, float],
+    level: tuple[float, Array],
+) -> tuple[float, float]:
+    """(reach of a node inside the hull, best radius), from the largest |f| on circles.
+
+    tangent: (w, L). The other arguments are as in `_node`.
+    """
+    w, L = tangent
+    unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))
     room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
-    here = math.log(abs(value.D)) + value.S
-    best = 0.0
-    for factor in RADII:
-        rho = factor * unit
+    here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
+    best, best_radius, radius = 0.0, 0.0, max(trial[1], SMALLEST_RADIUS)
+    while radius >= SMALLEST_RADIUS:
+        rho = radius * unit
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in UNIT_CIRCLE:
-            step = rho * direction
-            size = max(size, chain_size(w + step, level[0], level[1]) - (L * step).real)
+            v = w + rho * direction
+            log = chain_size(v, level[0], level[1]) - _log_of_known(v, known)
+            size = max(size, log - (L * (v - w)).real)
         M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
         q = room / M if M > 0 else math.inf
         reach = rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q < math.inf else 0.0
         if reach <= best:
             break
-        best = reach
-    return best
+        best, best_radius = reach, radius
+        radius /= 2
+    return best, best_radius
+
+
+@compiled
+def _log_of_known(v: complex, known: Complex) -> float:
+    """log prod |v - w_n| over known eigenvalues."""
+    total = 0.0
+    for n in range(len(known)):
+        total += math.log(max(abs(v - known[n]), 1e-300))
+    return total

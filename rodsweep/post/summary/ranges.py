@@ -5,7 +5,7 @@ range, without errors, the error is at most half a unit of the last digit.
 """
 
 from collections.abc import Mapping, Sequence
-from math import ceil, floor, isfinite, isnan, log10
+from math import ceil, floor, inf, isfinite, isnan, log10
 
 import numpy as np
 
@@ -94,8 +94,8 @@ def stated_error(value: float, error: float) -> tuple[str, float]:
 
 
 def error_text(error: float) -> str:
-    """An error with one digit, rounded up."""
-    if not error > MIN_ERROR:
+    """An error with one digit, rounded up; inf and nan as they are."""
+    if not MIN_ERROR < error < inf:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))
     return f"{ceil(error / unit * (1 - ROUNDING_EXCESS)) * unit:.0e}"

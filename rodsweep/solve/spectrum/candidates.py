@@ -100,7 +100,7 @@ def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
         here, clear = _right_of(line, w, errors)
         return Verdict(Count(here, evaluations), here, clear)
     for line in lines(w, modes):
-        count = problem.count(line)
+        count = problem.count(line, found)
         if count.number is not None:
             break
     return Verdict(count, *_right_of(line, w, errors))

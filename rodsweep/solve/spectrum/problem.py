@@ -6,7 +6,7 @@ other arm has D from propagators and a pencil that is filled anew.
 
 from abc import ABC, abstractmethod
 from math import isfinite, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import none_is_missing
@@ -36,11 +36,13 @@ class TransverseProblem(ABC):
     """Discretization and determinant of one rod.
 
     shift: right of most spectra, in 1/tau2. bounded: whether an a-priori bound of the eigenvalues is known.
+    is_count_slow: whether a count costs more than some eigenproblems.
     """
 
     rod: Rod
     shift: float
     bounded: bool
+    is_count_slow: ClassVar[bool]
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
@@ -64,8 +66,8 @@ class TransverseProblem(ABC):
         represents."""
 
     @abstractmethod
-    def count(self, line: float) -> Count:
-        """Number of eigenvalues with Re w > line."""
+    def count(self, line: float, found: Roots | None = None) -> Count:
+        """Number of eigenvalues with Re w > line; found: roots that may make the count faster."""
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
         """(whether a proof without a count says that all right of a line are found, evaluations of D)."""
@@ -84,6 +86,8 @@ class TransverseProblem(ABC):
 
 class UniformProblem(TransverseProblem):
     """The problem of a uniform rod of linear material."""
+
+    is_count_slow = False
 
     def __init__(self, rod: Rod):
         self.rod = rod
@@ -110,7 +114,7 @@ class UniformProblem(TransverseProblem):
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
-    def count(self, line: float) -> Count:
+    def count(self, line: float, found: Roots | None = None) -> Count:
         return count_right_of(line, self.rod)
 
     def fields(self, mesh: Resolution, vectors: Complex) -> tuple[Complex, Complex]:
@@ -120,6 +124,8 @@ class UniformProblem(TransverseProblem):
 
 class ArmProblem(TransverseProblem):
     """The problem of an arm that varies along its length."""
+
+    is_count_slow = True
 
     def __init__(self, rod: Rod):
         self.rod = rod
@@ -146,8 +152,9 @@ class ArmProblem(TransverseProblem):
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
         return roots_of_arm(raw, self._determinant, self._hull, most_waves)
 
-    def count(self, line: float) -> Count:
-        return count_of_arm(line, self._determinant, self._hull)
+    def count(self, line: float, found: Roots | None = None) -> Count:
+        known = () if found is None else (found.w, found.error)
+        return count_of_arm(line, self._determinant, self._hull, *known)
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
         return none_is_missing(line, found.w, found.error, self._determinant, self._hull)

@@ -21,6 +21,8 @@ __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 SPARE_MODES = 1
 """Number of eigenvalues requested beyond the count of the winding number."""
+UNKNOWNS_A_MODE = 6
+"""Fewest unknowns of a mesh for each requested eigenvalue."""
 MAX_MESHES_TRIED = 12
 """Maximum number of attempts."""
 MAX_FAILURES = 3
@@ -119,6 +121,9 @@ class Search:
             self.why = found.failure or self.why
             self.wanted, self.mesh = self.wanted + self.modes, self.problem.finer(self.mesh)
             return None
+        if self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all():
+            self.reach_the_axis(len(found.roots.w))
+            return None
         verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
         if verdict is not None and verdict.count.number is None and found.roots.ahead:
             self.unresolved, self.mesh = True, self.problem.finer(self.mesh)
@@ -149,9 +154,20 @@ class Search:
         more = number + SPARE_MODES
         if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
             more, self.mesh = self.wanted + number - here + SPARE_MODES, self.problem.finer(self.mesh)
-        while more > self.mesh.unknowns // 6 and self.mesh.unknowns <= MOST_UNKNOWNS:
+        self.request_more(more)
+
+    def reach_the_axis(self, number: int) -> None:
+        """Requests more than the `number` of eigenvalues found, which all grow: a count needs those beyond."""
+        self.why = "no mesh within the limit resolves all growing modes"
+        if number < self.wanted:
             self.mesh = self.problem.finer(self.mesh)
-        self.wanted = more
+        self.request_more(max(self.wanted, 2 * number + SPARE_MODES))
+
+    def request_more(self, wanted: int) -> None:
+        """Requests a larger number of eigenvalues, on a mesh that holds as many."""
+        while wanted > self.mesh.unknowns // UNKNOWNS_A_MODE and self.mesh.unknowns <= MOST_UNKNOWNS:
+            self.mesh = self.problem.finer(self.mesh)
+        self.wanted = wanted
 
     def keep(self, judged: JudgedCandidates) -> None:
         """Keeps the candidates if better than all before; counts attempts without progress."""
