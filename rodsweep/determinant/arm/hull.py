@@ -32,6 +32,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
+from .averaged_weight import averaged_regions
 
 POINTS = 25
 """Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
@@ -124,7 +125,7 @@ def hull_at(hulls: Hulls, p: float) -> Hull:
 
 
 def _hull(arms: "Arms") -> Hull:
-    candidates = [*_constant(arms), *_following(arms), *_by_clamp(arms)]
+    candidates = [*_constant(arms), *_following(arms), *_averaged(arms), *_by_clamp(arms)]
     best = min(candidates, key=lambda hull: _size(*hull), default=UNKNOWN)
     return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
 
@@ -190,6 +191,23 @@ def _following(arms: Arms) -> Iterator[Hull]:
         return
     for factor in MIDDLES:
         yield Hull(_norm(arms, factor), 0.0)
+
+
+def _averaged(arms: Arms) -> Iterator[Hull]:
+    """The best region for alpha averaged over windows; no region unless alpha has jumps and g > 0."""
+    if arms.continuous or not (arms.local.g > 0).all() or not (arms.local.c2 > 0).all():
+        return
+    starts = np.cumsum(arms.lengths) - arms.lengths
+    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    u = (starts[:, None] + arms.lengths[:, None] * (x + 1) / 2).ravel()
+    local = np.stack(arms.local).reshape(6, len(arms.F), -1)
+    regions = [averaged_regions(u, local[:, i], float(F)) for i, F in enumerate(arms.F.ravel())]
+    a, c = np.max(regions, axis=0).T
+    c *= MARGIN
+    with np.errstate(invalid="ignore"):
+        best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
+    if c[best] < LARGEST_SHARE:
+        yield Hull(float(a[best]), float(c[best]))
 
 
 def _norm(arms: Arms, factor: float) -> float:

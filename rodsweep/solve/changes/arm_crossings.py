@@ -15,7 +15,7 @@ from .anchors import EXPLAINED, MIN_KNOWN_MODES, PLACE_ACCURACY, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
-MAX_KNOWN_MODES = 40
+MAX_KNOWN_MODES = 200
 """Largest number of leading eigenvalues known at a place."""
 SMALLEST_INTERVAL = 1e-6
 """Length of an interval, in units of the path, that is not divided further: two crossings in it stay
@@ -62,7 +62,8 @@ class CrossingSearch:
     def place(self, p: float) -> AxisPlace:
         """The place at p; raises Unsolvable if its eigenvalues or their count cannot be computed."""
         if p not in self.places:
-            modes = MIN_KNOWN_MODES
+            near = min(self.places.values(), key=lambda place: abs(place.p - p), default=None)
+            modes = MIN_KNOWN_MODES if near is None else max(MIN_KNOWN_MODES, 2 + near.unstable)
             found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
                 modes = _needed(found)

@@ -220,9 +220,11 @@ def _counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int
     here: track of this point alone.
     """
     w, error = leading(here, here.w.shape[1])
+    if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
+        return 0
     determinant, hull = arm_determinant(path.at(p)), hull_at(hulls, p)
     for line in lines(w[0].tolist(), modes):
-        number = count_right_of(line, determinant, hull).number
+        number = count_right_of(line, determinant, hull, w[0], error[0]).number
         if number is not None:
             clear = (np.abs(w[0].real - line) > 2 * error[0]).all()
             return number if clear and number == (w[0].real > line).sum() else 0
