@@ -21,9 +21,9 @@ SOFT_ROW = (0.1, 0.01, 0.1, 0.1, 0.1, 0.1)
 SOFT_STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, SOFT_ROW, SOFT_ROW))
 
 
-def line_in_gap(w):
-    """A line between eigenvalues behind the third, in a gap that dense eigenvalues can tell."""
-    at = next(i for i in range(3, 12) if w[i].real - w[i + 1].real > 0.02 * abs(w[i + 1].real))
+def line_in_gap(w, behind=3):
+    """A line between eigenvalues, in a gap that dense eigenvalues can tell."""
+    at = next(i for i in range(behind, behind + 9) if w[i].real - w[i + 1].real > 0.02 * abs(w[i + 1].real))
     return min(float(w[at].real + w[at + 1].real) / 2, 0.0)
 
 
@@ -85,17 +85,39 @@ def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
 
 
 def test_stepped_arm_without_rotational_drag_is_bounded_by_its_clamp():
-    """No weight is continuous across the jump; theta(0) = 0 bounds what is left while shear is stiff."""
+    """No best weight is continuous across the jump; theta(0) = 0 bounds what is left."""
     stiff = Rod(F=2.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
-    soft = Rod(F=2.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=SOFT_STEP))
     assert 0 < hull_of(stiff).c < 0.5
-    assert hull_of(soft).a == np.inf
-    refused = count_right_of(-1.0, ArmDeterminant(soft), hull_of(soft))
-    assert refused.number is None
-    assert refused.why_not == "no a-priori bound on the eigenvalues applies"
     count = count_right_of(-100.0, ArmDeterminant(stiff), hull_of(stiff))
     reference = eigenvalues(Rod(F=2.0, k1=1e4, k2=1e4, gamma3=1e-9, build=Build(profile=STEP)))
     assert count.number == int((reference.real > -100.0).sum())
+
+
+def test_without_a_bound_no_count_is_given():
+    pulled = Rod(F=-3.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=STEP))
+    assert hull_of(pulled).a == np.inf
+    refused = count_right_of(-1.0, ArmDeterminant(pulled), hull_of(pulled))
+    assert refused.number is None
+    assert refused.why_not == "no a-priori bound on the eigenvalues applies"
+
+
+@pytest.mark.parametrize("gamma3", [0.0, 1e-5, 1e-2])
+@pytest.mark.parametrize("F", [2.0, 4.0])
+def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_modes(F, gamma3):
+    """Of the tip's growing modes most are divided out of D, or none."""
+    rod = Rod(F=F, k1=1e4, k2=1.0, gamma3=gamma3, build=Build(profile=SOFT_STEP))
+    dense = eigenvalues(rod if gamma3 else Rod(F=F, k1=1e4, k2=1.0, gamma3=1e-9, build=rod.build), 10)
+    hull, determinant = hull_of(rod), ArmDeterminant(rod)
+    for value in dense[:12]:
+        assert clearance(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(value)
+    line = line_in_gap(dense, int((dense.real > 0).sum()))
+    number = int((dense.real > line).sum())
+    found = roots(dense[: number + 2].astype(complex), determinant, hull, 400.0)
+    alone = count_right_of(line, determinant, hull)
+    fast = count_right_of(line, determinant, hull, found.w, found.error)
+    one_less = count_right_of(line, determinant, hull, found.w[2:], found.error[2:])
+    assert (alone.number, fast.number, one_less.number) == (number,) * 3
+    assert fast.nodes < alone.nodes
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -1,14 +1,14 @@
 """Regions that contain every eigenvalue of an arm with jumps, from weights averaged over a window.
 
-The identity of `rodsweep.determinant.arm.hull` needs a continuous weight alpha. Best would be t = g/(nu + l), l =
-f |F| sqrt(c2 c3 gamma3/gamma2), which jumps with the material. With alpha = exp of the mean of log t over
-[u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h), and what is left of the term with
-theta is split into
+The identity of `rodsweep.determinant.arm.hull` needs a continuous weight alpha. Best would be t = g/(nu + l)
+with l = f |F| sqrt(c2 c3 gamma3/gamma2), which jumps with the material. With log alpha as the mean of log t
+over [u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h), and what is left of the
+term with theta has two parts,
 
     g - alpha nu = (g - t nu) + (t - alpha) nu.
 
-The first part is bounded by the rotational drag. The second differs from 0 near the jumps only and is bounded by
-theta(0) = 0, or both are bounded by the drag.
+The first part is bounded by the rotational drag. The second differs from 0 near the jumps only and is bounded
+by theta(0) = 0; or the drag bounds both.
 """
 
 import math

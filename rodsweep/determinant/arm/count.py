@@ -16,9 +16,9 @@ circle bounds the change of f. The maximum is estimated from `CIRCLE` points and
 hull the count is therefore an estimate; the rounding errors of D and the errors of its elements are estimates
 everywhere.
 
-Known eigenvalues are divided out: the same is done for D(w)/prod (w - w_n), whose other zeros are far from the
-line. The nodes are then few even between many unstable modes, and the known eigenvalues right of the line are
-added to the count.
+Known eigenvalues are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are far from the line.
+The nodes are then few even between many unstable modes, and the known eigenvalues right of the line are added
+to the count.
 """
 
 import cmath
@@ -96,7 +96,11 @@ class DividedDeterminant(NamedTuple):
 
 
 def count_right_of(
-    line: float, determinant: ArmDeterminant, hull: Hull, known: Complex = NONE_KNOWN, error: Array | float = 0.0
+    line: float,
+    determinant: ArmDeterminant,
+    hull: Hull,
+    known: Complex = NONE_KNOWN,
+    error: Array | float = 0.0,
 ) -> Count:
     """The number of transverse eigenvalues with Re w > line, for any real line.
 

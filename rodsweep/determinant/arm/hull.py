@@ -61,6 +61,8 @@ class Hull(NamedTuple):
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """(max Re w, max |Im w|) of the eigenvalues with Re w >= -depth, depth >= 0."""
         a, b = self.a, 1 - self.c
+        if not isfinite(a):
+            return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
         pad = 0.01 * depth + 1e-6

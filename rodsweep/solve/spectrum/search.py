@@ -157,7 +157,7 @@ class Search:
         self.request_more(more)
 
     def reach_the_axis(self, number: int) -> None:
-        """Requests more than the `number` of eigenvalues found, which all grow: a count needs those beyond."""
+        """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""
         self.why = "no mesh within the limit resolves all growing modes"
         if number < self.wanted:
             self.mesh = self.problem.finer(self.mesh)

@@ -71,9 +71,23 @@ def test_two_meshes_agree_with_the_determinant(seed):
     np.testing.assert_array_less(np.abs(found.eigenvalues - proved.eigenvalues), found.error_estimate + 1e-12)
 
 
-def test_without_a_bound_nothing_is_certified():
+def test_without_a_bound_there_are_eigenvalues_but_nothing_is_certified():
+    """A cone that is almost a uniform rod, pulled beyond its shear stiffness without rotational drag."""
+    pulled = Rod(F=-25.0, k1=1e4, k2=20.0, gamma3=0.0)
+    found, uniform = solve_spectrum(replace(pulled, taper=0.999), REQUEST), solve_spectrum(pulled, REQUEST)
+    assert (found.status, found.certified) == (SpectrumStatus.not_certified, False)
+    assert found.unstable_count == uniform.unstable_count == -1
+    assert found.eigenvalues == pytest.approx(uniform.eigenvalues, rel=0.02)
+
+
+def test_many_growing_modes_of_a_soft_segment_are_all_found():
+    """Few modes are asked for; all that grow are counted, between them and beyond."""
     soft = (0.1, 0.01, 0.1, 0.1, 0.1, 0.1)
     jump = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
-    found = solve_spectrum(Rod(F=2.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=jump)), REQUEST)
-    assert not found.certified
-    assert found.status != SpectrumStatus.ok
+    rod = Rod(F=4.0, k1=1e4, k2=1.0, gamma3=1e-2, build=Build(profile=jump))
+    found = solve_spectrum(rod, REQUEST)
+    assert (found.status, found.certified, found.unstable_count) == (SpectrumStatus.ok, True, 24)
+    dense = eigenvalues(rod, 10)[:4]  # two pairs, each in either order
+    assert np.array([found.eigenvalues.real, np.abs(found.eigenvalues.imag)]) == pytest.approx(
+        np.array([dense.real, np.abs(dense.imag)]), rel=1e-6
+    )
