@@ -123,6 +123,12 @@ def count_of(points: Points) -> str:
     return f"{counted(points.count, 'point')} ({shape})"
 
 
+def searched_along_F(config: Config, points: Points, F_max: float) -> str:
+    """The number of points and the range of F that is searched for each of them."""
+    each = "each " * (points.count > 1)
+    return f"{count_of(points)}, {each}searched from F = 0 to {F_max:g}{before_crushed(config)}"
+
+
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
     """Parts of the rod that move for the given values of k1, k2 and gamma3, each of any shape."""
     dragged = bool((columns["gamma3"] > 0).any())
@@ -156,7 +162,7 @@ def arms_line(
     if config.standard:
         return ""
     shapes = _shapes(config, columns) or ["a uniform arm"]
-    if len(shapes) == 1 and shapes[0].startswith("a profile"):
+    if len(shapes) == 1 and shapes[0].startswith(("a profile", "a smooth profile")):
         shapes = ["an arm", *shapes]
     arms, mesh = f"{' with '.join(shapes)} of {_law(config)}", first_mesh()
     if mesh is None:
@@ -173,7 +179,10 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     profile = config.build.profile
     if profile is not None:
         jumps = len(profile.u) - len(profile.breaks)
-        shapes.append(f"a profile of {counted(len(profile.u), 'row')} with {counted(jumps, 'jump')}")
+        rows = counted(len(profile.u), "row")
+        shapes.append(
+            f"a profile of {rows} with {counted(jumps, 'jump')}" if jumps else f"a smooth profile of {rows}"
+        )
     return shapes
 
 

@@ -23,7 +23,7 @@ from rodsweep.model.arm.neglected import (
 )
 from rodsweep.model.rod import Rod
 
-from .page import NUMBER, Page, as_stated, range_as_stated, read
+from .page import NUMBER, Page, as_stated, parameter_lines, range_as_stated, read
 from .truths import changes_on_lines, changes_over_force, leading, rods_of, time_is_known
 
 PREFIXES = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
@@ -161,11 +161,13 @@ def _quantity_lines(view, page):
     """The table of quantities in the units in which they were typed."""
     found = []
     for name, values in view.quantities.items():
-        for line, match in read(page, rf"^{name} +NUMBER +NUMBER +NUMBER +(\S.*)$"):
-            true = np.unique(np.asarray(values, float)) / UNITS.get(match[4], 1.0)
-            why = [as_stated(match[2], true.min()), as_stated(match[3], true.max())]
-            why += [] if int(match[1]) == len({f"{x:.9g}" for x in true}) else [f"{len(true)} values"]
-            found.append((line, "; ".join(filter(None, why))))
+        true = np.unique(np.asarray(values, float))
+        for line, why, low, high, unit in parameter_lines(page, name, true):
+            ends = (
+                as_stated(low, true.min() / UNITS.get(unit, 1.0)),
+                as_stated(high, true.max() / UNITS.get(unit, 1.0)),
+            )
+            found.append((line, "; ".join(filter(None, (why, *ends)))))
     return found
 
 

@@ -113,6 +113,20 @@ def read(page, pattern, only=None):
     return found
 
 
+def parameter_lines(page, name, values):
+    """(line, why its number of values is wrong, smallest, largest as text, unit) of a parameter's row.
+
+    A row has one number where there is one value. Where every row has, their number is not said.
+    """
+    several = len({f"{x:.9g}" for x in np.unique(values)})
+    end = f"({NUMBER}|inf)"
+    counted = "NUMBER +" * any(re.match("parameter +values", line) is not None for line in page)
+    for line, match in read(page, rf"^{name} +{counted}{end}{f' +{end}' * (several > 1)} +(\S.*)$"):
+        *numbers, unit = match.groups()
+        wrong = counted and int(numbers.pop(0)) != several
+        yield line, f"{several} values" * bool(wrong), numbers[0], numbers[-1], unit
+
+
 def unit_of(text):
     """The unit of the last digit of a number that is written."""
     mantissa, _, exponent = text.partition("e")

@@ -33,6 +33,7 @@ from .page import (
     at_most,
     counts,
     page_of,
+    parameter_lines,
     range_as_stated,
     ranges,
     read,
@@ -214,13 +215,12 @@ def table_sentences(view, page, keywords):
     along = {"F": view.variables["F"]} if view.task == "phase_diagram" and "F" in view.variables else {}
     for name, column in (view.quantities | view.point_columns | along).items():
         values = np.unique(np.asarray(column, float))
-        for line, match in read(page, rf"^{name} +NUMBER +({NUMBER}|inf) +({NUMBER}|inf)  "):
+        for line, why, low, high, _ in parameter_lines(page, name, values):
             if name in view.typed:  # in other units, which `arm_sentences` reads
                 continue
-            why = [] if int(match[1]) == len({f"{x:.9g}" for x in values}) else [f"{len(values)} values"]
-            for text, end in zip((match[2], match[3]), (values.min(), values.max()), strict=True):
-                why += [] if text == "inf" and end == inf else [as_stated(text, end)]
-            found.append((line, "; ".join(filter(None, why))))
+            texts = (low, values.min()), (high, values.max())
+            ends = ["" if text == "inf" and end == inf else as_stated(text, end) for text, end in texts]
+            found.append((line, "; ".join(filter(None, (why, *ends)))))
     return found
 
 

@@ -60,7 +60,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
         trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust],
         statuses=TextTable(("status", plural(noun), "meaning"), tuple(_statuses(view, status, every_status))),
         details=lines.details,
-        axes=TextTable(("parameter", "values", "from", "to", "unit"), tuple(_axes(view))),
+        axes=_axes(view),
         numbers=lines.numbers,
         origin=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
     )
@@ -160,22 +160,31 @@ def _printed(table: TextTable) -> Table:
     return printed
 
 
-def _axes(view: View) -> Iterable[tuple[str, ...]]:
-    """Yields (name, number of values, from, to, unit) of an arm's quantities and of every parameter."""
+def _axes(view: View) -> TextTable:
+    """Table of an arm's quantities and of every parameter: ranges, or values where each has one."""
+    rows = []
     for name, values in view.quantities.items():
         si = ALL_QUANTITIES[name].unit
         unit = view.typed.get(name, si)
-        yield name, *_extent(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)), unit
-    for name, values in view.axes.items():
-        yield name, *_extent(values), DIMENSIONS[name][0]
+        rows.append(
+            (name, *_extent(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)), unit)
+        )
+    rows += [(name, *_extent(values), DIMENSIONS[name][0]) for name, values in view.axes.items()]
+    if all(row[1] == "1" for row in rows):
+        return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
+    return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """(number of different values, smallest, largest) of values of any shape, as text; NaN does not count."""
+    """(number of different values, smallest, largest if another) of values of any shape, as text.
+
+    NaN does not count.
+    """
     # Twelve digits, because values computed from an arm may differ by rounding.
     different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
     ends = sorted(map(float, different))
-    return (str(len(ends)), f"{ends[0]:.6g}", f"{ends[-1]:.6g}") if ends else ("0", "", "")
+    texts = [f"{end:.6g}" for end in ends]
+    return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
