@@ -3,6 +3,7 @@
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from ..model.arm.quantities import RELATIVE
@@ -11,6 +12,8 @@ from .arm.axes import AXIS_OF, FLUID
 from .axes import DEFAULTS, DiagramParameters, LinearAxes, words
 from .schema import Crossings, LinearConfig
 from .values import Axis, Number, Strict
+
+THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 
 
 class BautinAlong(LinearAxes):
@@ -42,14 +45,14 @@ class PhaseDiagramOptions(Strict):
     @property
     def third(self) -> tuple[str, Axis] | None:
         """The third parameter and its values, None if not given."""
-        given = [(name, getattr(self.bautin_along, name, None)) for name in LINEAR_PARAMETERS]
+        given = [(name, getattr(self.bautin_along, name, None)) for name in THIRD_PARAMETERS]
         return next(((name, axis) for name, axis in given if axis is not None), None)
 
     @model_validator(mode="after")
     def _one_third_parameter(self) -> "PhaseDiagramOptions":
         if self.bautin_along is None:
             return self
-        given = [name for name in LINEAR_PARAMETERS if getattr(self.bautin_along, name) is not None]
+        given = [name for name in THIRD_PARAMETERS if getattr(self.bautin_along, name) is not None]
         if len(given) != 1:
             raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
         name, axis = given[0], getattr(self.bautin_along, given[0])
@@ -178,7 +181,8 @@ class PhaseDiagramConfig(LinearConfig):
             return self
         name, axis = self.phase_diagram.third
         low, high = axis.array()[[0, -1]]
-        value = self.parameters.axes[name].array()
+        given = self.parameters.axes.get(name)
+        value = np.array([PARAMETERS[name].default]) if given is None else given.array()
         if name in self.plane or not low <= value[0] <= high:
             raise ValueError(
                 f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; it must be a parameter with "

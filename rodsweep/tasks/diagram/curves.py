@@ -181,7 +181,7 @@ class DiagramCurves:
         from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 
         options, (line, row) = self.task.config, self.task.config.plane
-        asked, here = axis.array(), float(options.parameters.axes[name].array()[0])
+        asked, here = axis.array(), float(getattr(plane.rod, name))
         third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
         space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
         curves: list[BautinCurve] = []

@@ -259,6 +259,19 @@ def test_curve_over_a_third_parameter_has_the_points_of_other_diagrams(over_shea
             assert found == pytest.approx(other[f"bautin_{name}"].values[0], rel=1e-9)
 
 
+def test_curve_over_the_taper_begins_at_the_uniform_rod_and_lies_where_cones_change_side():
+    axes = {"F": [60, 85, 110], "k1": [142, 148, 154], "k2": 1e4, "gamma3": 1e-4, "criticality": True}
+    along = rs.sweep("phase_diagram", **axes, bautin_along={"taper": [0.9, 1.0]})
+    k1, taper = along.bautin_along_k1.values, along.bautin_along_taper.values
+    assert k1[np.argmax(taper)] == pytest.approx(149.616891612, rel=1e-9)
+    assert taper.max() == 1.0
+    (at,) = np.flatnonzero(taper == 0.9)
+    for factor, side in ((0.999, -1), (1.001, 1)):
+        cone = rs.Rod(k1=k1[at] * factor, k2=1e4, gamma3=1e-4, taper=0.9).criticality()
+        near = np.argmin(np.abs(cone.crossing_F - along.bautin_along_F.values[at]))
+        assert np.sign(cone.landau_real[near]) == side
+
+
 def test_points_of_the_curve_are_those_of_other_equations(over_shear):
     """By the second normal form, between the values asked for, beyond both."""
     along = over_shear[1]
@@ -340,6 +353,9 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
         ("criticality: true, bautin_along: {k2: [1, inf]}", "none of them inf"),
         ("criticality: true, bautin_along: {}", "has 0 parameters; give one"),
         ("criticality: true, bautin_along: {gamma1: [1, 2]}", "bautin_along.gamma1"),
+        ("criticality: true, bautin_along: {k2: [8, 20], taper: [0.5, 1]}", "has 2 parameters; give one"),
+        ("criticality: true, bautin_along: {taper: [0, 1]}", "bautin_along.taper"),
+        ("criticality: true, bautin_along: {taper: [0.5, 0.9]}", "bautin_along.taper is from 0.5 to 0.9"),
     ],
 )
 def test_a_third_parameter_that_cannot_be_is_refused(tmp_path, options, sentence):
