@@ -26,7 +26,7 @@ class SpectrumOptions(Strict):
     follow: bool = True
     """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
     longitudinal: bool = False
-    """Add the longitudinal modes, -(k1/gamma1) (pi (n - 1/2))^2, in closed form."""
+    """Add the longitudinal modes: of a uniform rod of linear material -(k1/gamma1) (pi (n - 1/2))^2."""
 
 
 class SpectrumConfig(LinearConfig):
@@ -81,10 +81,5 @@ class SpectrumConfig(LinearConfig):
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:
             raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
-        if self.spectrum.longitudinal and not self.standard:
-            raise ValueError(
-                "spectrum.longitudinal is true, but longitudinal modes are known for uniform arms of linear "
-                "material only; remove it"
-            )
         self.refuse_unused()
         return self

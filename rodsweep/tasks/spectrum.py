@@ -11,8 +11,12 @@ from ..config.spectrum import SpectrumConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
+from ..discretization.straight.longitudinal_modes import longitudinal_modes
 from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
+from ..model.material.build import Build
+from ..model.material.laws import LINEAR
+from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
@@ -56,15 +60,32 @@ class SpectrumTask(ProvedTask):
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
-        """Longitudinal growth rates, if requested: along k1 on a grid, otherwise along the points."""
+        """Longitudinal growth rates, if requested: along the parameters on which they depend."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:
             return ()
-        k1, modes = self.points.by_name["k1"], self.config.spectrum.modes
-        shape = self.points.shape if self.points.over else k1.shape
-        rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
-        along = tuple(self.points.over) or ("k1" if self.points.is_grid else "point",)
-        return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
+        along, shape, columns = self._longitudinal_points()
+        modes, standard = self.config.spectrum.modes, self.config.standard
+        variables = longitudinal(gamma1, *along, in_closed_form=standard)
+        if standard:
+            rates = [longitudinal_rates(float(k1), gamma1, modes) for k1 in columns["k1"]]
+            return ((variables[0], np.reshape(rates, (*shape, modes))),)
+        values = zip(*(column.tolist() for column in columns.values()), strict=True)
+        rods = [dict(zip(columns, each, strict=True)) | {"gamma1": gamma1} for each in values]
+        found = np.array(in_order(rods, lambda rod: longitudinal_of_arm(rod, self.config.build, modes)))
+        return tuple((variable, found[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
+
+    def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
+        """(dimensions, shape, parameters on which longitudinal rates depend, flat) of all their values."""
+        points = self.points
+        linear = self.config.build.constitutive_law is LINEAR
+        names = [name for name in ("F", "k1", "taper")[linear:] if name in points.by_name]
+        columns = {name: points.by_name[name] for name in names}
+        if points.over or not points.is_grid:
+            along = tuple(points.over) or ("point",)
+            return along, points.shape, {name: column.ravel() for name, column in columns.items()}
+        grid = np.meshgrid(*columns.values(), indexing="ij")
+        return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
         """Forces at which the rods change their stability; not searched for arms that are not uniform."""
@@ -79,7 +100,7 @@ class SpectrumTask(ProvedTask):
         if options.vectors:
             vectors = f"on {options.nodes} nodes"
         if options.longitudinal:
-            longitudinal = "closed form, no mesh"
+            longitudinal = "closed form, no mesh" if self.config.standard else "on elements of their own"
         return [
             ("transverse modes", True, "task: spectrum"),
             ("longitudinal modes", options.longitudinal, longitudinal),
@@ -145,6 +166,18 @@ class SpectrumTask(ProvedTask):
             succeeded=found.status == SpectrumStatus.ok,
             message=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
         )
+
+
+def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
+    """(rates, relative errors) of an arm, (2, modes); NaN for an arm that is crushed.
+
+    values: those of its parameters on which the rates depend.
+    """
+    try:
+        rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
+    except Crushed:
+        return np.full((2, modes), np.nan)
+    return np.array(longitudinal_modes(rod, modes))
 
 
 def record(result: "Spectrum") -> dict[str, Any]:

@@ -90,6 +90,7 @@ def extended(command, small, changes, ranks=0):
         (SPECTRA, [("modes: 2", "modes: 3")], "8 of 8"),
         (SPECTRA, [("modes: 2", "modes: 2, vectors: true, nodes: 5")], "8 of 8"),
         (SPECTRA.replace(".inf", "200"), LONGITUDINAL, "0 of 8"),
+        (SPECTRA.replace(".inf", "200").replace("k2: 50", "k2: 50\n  taper: 0.8"), LONGITUDINAL, "0 of 8"),
         (THRESHOLDS, [("[100,", "[100, 170,"), ("crossings: 2", "crossings: 20")], "8 of 9"),
         (DIAGRAM, [("160,", "150, 160,"), ("false", "true")], "1 of 4"),
         (DIAGRAM, [("num: 6", "num: 11")], "3 of 3"),

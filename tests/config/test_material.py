@@ -83,7 +83,6 @@ def test_profiles_that_are_none_are_refused_in_a_sentence(tmp_path, text, senten
         ("material: {profile: {u: [0, 1], k3: 2}}", "", "k3 = 2 is not allowed; it should be a list of"),
         ("material: {}", "", "material: the section is empty; give law, section or profile"),
         ("material: {profile: {u: [0, 1], k3: [1]}}", "", "material.profile: k3 has 1 values and u has 2"),
-        ("spectrum: {longitudinal: true}", ", gamma1: 1, taper: 0.5", "spectrum.longitudinal is true, but"),
     ],
 )
 def test_bad_materials_are_refused_in_a_sentence(tmp_path, rest, more, sentence):

@@ -6,6 +6,9 @@ import h5py
 import numpy as np
 import pytest
 
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
+from rodsweep.model.material.build import Build
+from rodsweep.model.rod import Rod
 from rodsweep.post.tables.contents import NAMES
 
 SPECTRA = """
@@ -147,6 +150,19 @@ def test_longitudinal_rates_stand_beside_the_modes(command):
     k1, mode = (np.array(columns[name], float) for name in ("k1", "mode"))
     expected = -k1 / 2 * (np.pi * (mode - 0.5)) ** 2
     assert np.array(columns["longitudinal_rate"], float) == pytest.approx(expected, rel=1e-12)
+
+
+def test_longitudinal_rates_of_rubber_cones_stand_beside_the_modes_with_their_error(command):
+    axes = "F: [1, 20], k1: [200, 300], k2: 1.0e4, gamma3: 1.0e-4, taper: [0.5, 0.8], gamma1: 2"
+    options = "material: {law: neo_hookean}\nspectrum: {longitudinal: true, modes: 2}\n"
+    columns = table_of(*exported(command, f"task: spectrum\nparameters: {{{axes}}}\n{options}")[:2])
+    names = ("F", "k1", "taper", "longitudinal_rate", "longitudinal_error")
+    rows = np.transpose([np.array(columns[name], float) for name in names])[::2]
+    assert len(rows) == 8
+    for F, k1, taper, rate, error in rows:
+        build = Build(law="neo_hookean")
+        alone = longitudinal_modes(Rod(F=F, k1=k1, k2=1e4, gamma3=0.0, gamma1=2, taper=taper, build=build), 1)
+        assert (rate, error < 1e-12) == (pytest.approx(alone[0][0], rel=1e-12), True)
 
 
 def test_an_arm_has_its_quantities_as_they_were_typed_and_results_in_si(command):

@@ -20,6 +20,7 @@ RELATIVE = {
     "frequency_slope": "frequency_slope_error",
     "condition": "condition_error",
     "transient_growth": "growth_error",
+    "longitudinal_rate": "longitudinal_error",
 }
 """Variables with a stored relative error, and the name of the error."""
 ABSOLUTE = {

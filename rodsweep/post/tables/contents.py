@@ -91,8 +91,9 @@ def contents_of(view: View) -> Contents:
     for variable in beside_points(config, view.is_grid):
         if variable.name not in view.variables:
             continue
-        if variable.extra[:1] in (("point",), *((name,) for name in view.parameters)):
-            lists[name_of(variable.extra[1:])].append(variable)
+        of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))
+        if of_items != variable.extra:
+            lists[name_of(of_items)].append(variable)
         elif variable.extra:
             lists.setdefault(name_of(variable.extra), []).append(variable)
     own.sort(key=lambda variable: variable.name != "status")

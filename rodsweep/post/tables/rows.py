@@ -53,8 +53,8 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
 def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
     """Yields columns of the items of a list: places, then variables."""
     names = variables[0].extra
-    for name, places in zip(names, rows[1:], strict=True):
-        yield coordinate(name, *DIMENSIONS[name], view.variables[name][places])
+    for name, items in zip(names, rows[1:], strict=True):
+        yield coordinate(name, *DIMENSIONS[name], view.variables[name][items])
     for variable in variables:
         values = view.variables[variable.name]
         if joint:
@@ -62,10 +62,10 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
         elif _is_of_points(view, variable):
             inner = values.shape[values.ndim - len(names) :]
             yield column_of(variable, values.reshape(-1, *inner)[rows])
-        else:  # the variable depends on one parameter, or on the point, and is stored once
-            along = variable.extra[0]
-            place = rows[0] if along == "point" else _places(view, along)[rows[0]]
-            yield column_of(variable, values[place, *rows[1:]])
+        else:  # the variable depends on some parameters, or on the point, and is stored once
+            along = variable.extra[: -len(names)]
+            places = [rows[0] if name == "point" else _places(view, name)[rows[0]] for name in along]
+            yield column_of(variable, values[(*places, *rows[1:])])
 
 
 def si_columns(

@@ -3,6 +3,7 @@
 The task modes shares the variables.
 """
 
+from collections.abc import Mapping
 from math import nan
 from typing import Any
 
@@ -19,7 +20,9 @@ from .variables import (
     Variable,
     boolean,
     estimates_counts,
+    has_covering,
     integer,
+    is_linear,
     real,
     with_meaning,
     word,
@@ -73,18 +76,22 @@ VECTORS = (
 )
 
 
-def longitudinal(gamma1: float, *along: str) -> Variable:
-    """Variable for the longitudinal rates, which depend on k1 only.
+def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
+    """Variables for the longitudinal rates, with an error where they are not in closed form.
 
-    along: dimension k1, or the dimension of all points if k1 is no axis.
+    along: dimensions of the parameters on which they depend, or that of all points.
     """
-    return real(
-        "longitudinal_rate",
-        "1/tau2",
-        f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}",
-        *along,
-        "mode",
-    )
+    meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
+    rate = real("longitudinal_rate", "1/tau2", meaning, *along, "mode")
+    error = "estimate of the relative error of longitudinal_rate"
+    return (rate,) if in_closed_form else (rate, real("longitudinal_error", "1", error, *along, "mode"))
+
+
+def longitudinal_parameters(config: Mapping[str, Any]) -> tuple[str, ...]:
+    """Parameters on which longitudinal rates depend, besides gamma1; F compresses arms of rubber only."""
+    if has_covering(config):
+        return ("k1",)
+    return ("k1", "taper") if is_linear(config) else ("F", "k1", "taper")
 
 
 CHANGE = "change"
@@ -117,8 +124,11 @@ INCREASES = {
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the file besides the variables of its points."""
     gamma1 = config["parameters"].get("gamma1")
-    rates = () if gamma1 is None else (longitudinal(float(gamma1), "k1" if is_grid else "point"),)
-    return (*rates, *FORCE_CHANGES)
+    if gamma1 is None:
+        return FORCE_CHANGES
+    names = [name for name in longitudinal_parameters(config) if name in config["parameters"]]
+    along = names if is_grid else ["point"]
+    return (*longitudinal(float(gamma1), *along, in_closed_form=has_covering(config)), *FORCE_CHANGES)
 
 
 def layout(config: dict[str, Any]) -> Layout:

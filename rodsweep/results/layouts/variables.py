@@ -225,9 +225,13 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
 
 def has_covering(config: Mapping[str, Any]) -> bool:
     """Whether a covering proves the crossings of all rods: those that are uniform and of linear material."""
+    return is_linear(config) and not estimates_counts(config)
+
+
+def is_linear(config: Mapping[str, Any]) -> bool:
+    """Whether the material of a resolved config is linear."""
     stated = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
-    linear = all(each.get("law", "linear") == "linear" for each in stated)
-    return linear and not estimates_counts(config)
+    return all(each.get("law", "linear") == "linear" for each in stated)
 
 
 def confirmed(

@@ -1,0 +1,97 @@
+"""Longitudinal eigenvalues of an arm that varies along its length, or of rubber.
+
+Beside the straight state longitudinal and transverse modes are decoupled (Sec. VI). With the axial drag
+gamma1(u) and the tangent stiffness K(u) = k1(u) W''(nu(u)) a displacement x obeys
+
+    gamma1 w x = (K x')',   x(0) = 0,   K x'(1) = 0.
+
+This is a Sturm-Liouville problem: all w are real, negative and simple. The unknowns are the strains e = x' at
+the Gauss points of spectral elements that end where the material jumps, each times the root of K and its
+weight. If the matrix A gives the displacements x = int e from them, times the root of gamma1 and its weight,
+then w = -1/sigma^2 for the singular values sigma of A. All integrals are sums of positive numbers, and the
+largest singular values have nearly all digits, however much the material varies. By the Rayleigh quotient the
+n-th eigenvalue found is not right of the true n-th one, so none is missing among those on which two orders
+agree.
+"""
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ...arrays import Array
+from ...model.rod import Rod
+from ..elements.elements import Elements
+from ..elements.quadrature import gauss
+from .arm_resolution import arm_elements
+
+FIRST_ACCURACY = 1e-12
+"""Relative accuracy for which the first mesh is chosen."""
+MORE_ORDERS = 4
+"""Difference of the two orders whose eigenvalues are compared."""
+LARGEST_ORDER = 60
+"""Largest order of an element; a larger error is stated as found."""
+CONVERGED = 1e-13
+"""Relative difference of two orders at which the order is large enough."""
+ROUNDING_OF_RATES = 5e-14
+"""Least relative error that is stated, for rounding."""
+MORE_POINTS = 6
+"""Points of an element for its displacements, beyond those for its strains."""
+
+
+def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
+    """(w, relative error) of the leading longitudinal eigenvalues, (modes,) each, w in 1/tau2.
+
+    Raises ValueError for an arm that is inextensible anywhere.
+    """
+    if not rod.c1 > 0:
+        raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
+    mesh = arm_elements(rod, np.pi * modes, FIRST_ACCURACY)
+    order = max(mesh.order, -(-(modes + 1) // mesh.elements))
+    found = _rates(rod, mesh, order, modes)
+    while True:
+        order += MORE_ORDERS
+        finer = _rates(rod, mesh, order, modes)
+        error = np.abs(finer / found - 1)
+        if error.max() <= CONVERGED or order >= LARGEST_ORDER:
+            return finer, error + ROUNDING_OF_RATES
+        found = finer
+
+
+def _rates(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
+    """The eigenvalues on elements with `order` strains each, (modes,), leading first."""
+    sizes = np.linalg.svd(_displacements(rod, np.asarray(mesh.edges), order), compute_uv=False)
+    rates: Array = -1 / sizes[:modes] ** 2
+    return rates
+
+
+def _displacements(rod: Rod, edges: Array, order: int) -> Array:
+    """The matrix A, (elements (order + MORE_POINTS), elements order)."""
+    (strains, of_strains), (points, weights) = gauss(order), gauss(order + MORE_POINTS)
+    halves, middles = np.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
+    here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))
+    tangent = rod.build.constitutive_law.stiffness(here.nu) / here.compliance[0]
+    scale = np.sqrt(tangent * (halves * of_strains).ravel())
+    root = np.sqrt(there.drag[0] * (halves * weights).ravel())
+    count = len(halves)
+    before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * (halves * of_strains)
+    integral = np.broadcast_to(before, (count, len(points), count, order)).copy()
+    own = np.arange(count)
+    integral[own, :, own, :] = halves[:, :, None] * _integrals(order, points)
+    matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
+    return matrix
+
+
+@cache
+def _weighted_legendre(order: int) -> Array:
+    """Legendre coefficients of the Lagrange polynomials through the Gauss points, (order, order)."""
+    nodes, weights = gauss(order)
+    coefficients: Array = legendre.legvander(nodes, order - 1).T * weights * (np.arange(order)[:, None] + 0.5)
+    return coefficients
+
+
+def _integrals(order: int, points: Array) -> Array:
+    """Integrals from -1 to `points` of the Lagrange polynomials through the Gauss points, (points, order)."""
+    series = legendre.legint(_weighted_legendre(order), lbnd=-1)
+    integrals: Array = legendre.legval(points, series).T
+    return integrals
