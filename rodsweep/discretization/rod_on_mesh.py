@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
+from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
 from .at_jumps import carried, parted
@@ -104,6 +105,20 @@ class RodOnMesh(ABC):
     def least_stretch(self, x: Array) -> float:
         """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive."""
         return float(self.strains(x)[0].min())
+
+    def is_convex(self, x: Array) -> bool:
+        """Whether the energy of every section is convex in its strain, for one state x, (unknowns,).
+
+        Where it is not, the equations are ill-posed: the shortest waves on the mesh grow fastest.
+        """
+        S, c = self.stresses(x), self.nodal
+        sections = np.stack([c.rest[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
+        for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
+            before, behind = np.column_stack([numbers[:, :3], sides])
+            sections[node] = before
+            sections = np.vstack([sections, behind])
+        tangents = (tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
+        return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
 
 
 def _along(constant: Array, field: Values) -> Array:

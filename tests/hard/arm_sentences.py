@@ -38,7 +38,7 @@ WITHOUT_CYCLE = {
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
     "not_settled": "is not settled: no stable cycle is known, nor that there is none",
-    "left_the_model": "is crushed somewhere, where the model ends",
+    "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     "failed": "is not known: the integration failed",
 }
 """What is said of arms of which none beats, by status."""

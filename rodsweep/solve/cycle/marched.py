@@ -21,7 +21,7 @@ from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..motion.integrator import Ending, RunLimit, Trajectory, forget_integrators, integrator, relaxed
+from ..motion.integrator import RunLimit, Trajectory, forget_integrators, integrator, relaxed
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
@@ -38,7 +38,7 @@ from .transient.returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
     angle_weights,
-    early_end_reason,
+    early_end,
     repetition,
     section_crossings,
     until_returns,
@@ -171,9 +171,9 @@ class _Marching:
     def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
         """A complete run; raises _Ended if the run fails or leaves the model."""
         run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
-        if why := early_end_reason(self.beam, run, self.waited):
-            left = run.ending == Ending.left_the_model
-            raise _Ended(MarchedStatus.left_the_model if left else MarchedStatus.failed, why)
+        if end := early_end(self.beam, run, self.waited):
+            status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
+            raise _Ended(status, end.why)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:

@@ -20,8 +20,8 @@ class CycleStatus(PointStatus):
     )
     left_the_model = (
         3,
-        "the rod was crushed somewhere (h1 <= 0), where the model ends; start from a smaller amplitude or "
-        "from a neighbour's cycle, or lower F or raise k1",
+        "the rod was crushed somewhere (h1 <= 0), or its rubber lost its stiffness, where the model ends; "
+        "start from a smaller amplitude or from a neighbour's cycle, or lower F or raise k1",
     )
     failed = 4, "the integration failed and nothing is stored; the message says why"
     unstable = (
@@ -56,7 +56,7 @@ class MarchedStatus(PointStatus):
     )
     left_the_model = (
         3,
-        "the rod was crushed somewhere (h1 <= 0), where the model ends; start from a smaller amplitude, or "
-        "lower F or raise k1",
+        "the rod was crushed somewhere (h1 <= 0), or its rubber lost its stiffness, where the model ends; "
+        "start from a smaller amplitude, or lower F or raise k1",
     )
     failed = 4, "the integration failed and nothing is stored; the message says why"

@@ -15,7 +15,18 @@ from ...arrays import Array
 from ...discretization.stress.rates import rate
 from ...model.compiled.compilation import compiled
 from ..backend.c_functions import INT, POINTER, c_function, floats, integers, pointer, record_at
-from .context import AT_ITERATE, CONTEXT, OUTPUTS, UP_TO_DATE, matrices_of, rod_of, roots_of
+from .context import (
+    AT_BASE,
+    AT_ITERATE,
+    CONTEXT,
+    MAX_STAGES,
+    OUTPUTS,
+    UP_TO_DATE,
+    matrices_of,
+    rod_of,
+    roots_of,
+    states_of,
+)
 from .petsc_calls import (
     context_of_snes,
     read_array,
@@ -49,6 +60,17 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 
 
 @compiled
+def linearise_at_start(c: Any) -> None:
+    """After a failed stage: the shorter step takes its matrix at the state at the start of the step.
+
+    The last matrix may be that of a diverged iterate, with entries that are not finite; with it all shorter
+    steps would fail as well.
+    """
+    floats(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
+    c.matrix_due = AT_BASE
+
+
+@compiled
 def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     """SNESConvergedReason by the error estimate contraction * last step (Hairer & Wanner II, IV.8).
 
@@ -58,6 +80,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     that was small once, with errors a hundred times too large.
     """
     if not np.isfinite(dx):
+        linearise_at_start(c)
         return NOT_FINITE
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
@@ -70,6 +93,7 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     if small or (theta > STAGNANT and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
     if c.growing >= MAX_GROWING and iteration > 3:
+        linearise_at_start(c)
         return NOT_CONTRACTING
     if theta > NEW_MATRIX_CONTRACTION:
         c.matrix_due = AT_ITERATE
@@ -85,6 +109,7 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
     answer = numba.carray(pointer(reason), (1,), np.int32)
     answer[0] = ITERATING
     if not np.isfinite(size):
+        linearise_at_start(c)
         answer[0] = NOT_FINITE
     elif iteration > 0:
         answer[0] = convergence_reason(c, iteration, dx)
@@ -170,6 +195,7 @@ def solve_stage(snes: int, X: int) -> int:
         iteration += 1
         reason = convergence_reason(c, iteration, newton_step(c, at, X))
         if reason == ITERATING and iteration >= c.most_iterations:
+            linearise_at_start(c)
             reason = NOT_CONTRACTING
     read_array(X, at)
     remember(c, floats(integers(at, 1)[0], c.unknowns))

@@ -6,6 +6,7 @@ A motion is integrated from return to return. A cycle is near where the states a
 from collections.abc import Sequence
 from math import inf, isfinite, isnan
 from operator import mul
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,13 +48,25 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
     return RunLimit(enough, STEPS_PER_CHUNK)
 
 
-def early_end_reason(beam: Beam, run: Trajectory, returns: int) -> str:
-    """The reason why a run ended early, `returns` returns after the start; empty if it did not."""
+class EarlyEnd(NamedTuple):
+    """The end of a run before its limit: whether the rod has left the model, and the reason."""
+
+    left_the_model: bool
+    why: str
+
+
+def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
+    """The early end of a run, `returns` returns after the start; None if the run is complete."""
     if run.ending in (Ending.reached, Ending.stopped):
-        return ""
+        return None
     if run.ending == Ending.left_the_model:
-        return f"h1 = {beam.least_stretch(run.states[-1]):.3g} somewhere, {returns} returns from the start"
-    return run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
+        h1 = beam.least_stretch(run.states[-1])
+        return EarlyEnd(True, f"h1 = {h1:.3g} somewhere, {returns} returns from the start")
+    if not run.message and not beam.is_convex(run.states[-1]):
+        why = f"the energy of a section is not convex, {returns} returns from the start"
+        return EarlyEnd(True, why)
+    why = "too many steps" if run.ending == Ending.too_many_steps else "no step succeeds"
+    return EarlyEnd(False, run.message or why)
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:

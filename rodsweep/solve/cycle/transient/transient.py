@@ -32,7 +32,7 @@ from .returns import (
     LONGEST_ORBIT,
     STRAIGHT_SIZE,
     angle_weights,
-    early_end_reason,
+    early_end,
     repetition,
     section_crossings,
     until_returns,
@@ -121,9 +121,9 @@ class Transient:
         while self.waited < self.most_periods:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._chunk(z, first)
-            if why := early_end_reason(self.beam, run, self.waited):
-                left = run.ending == Ending.left_the_model
-                return self._ended(CycleStatus.left_the_model if left else CycleStatus.failed, why)
+            if end := early_end(self.beam, run, self.waited):
+                status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
+                return self._ended(status, end.why)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)
