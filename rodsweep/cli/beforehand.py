@@ -9,7 +9,8 @@ import click
 from ..config.schema import Config
 from ..results.file.creation import Plan
 from ..solve.backend.availability import require_solvers
-from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod, rods_of_flutter
+from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod
+from ..sweep.points.grid import flutter_rods
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
 from ..tasks.protocol import Task
@@ -50,7 +51,7 @@ def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> Flutter
 
     Empty without such loads. None if a stop signal came first.
     """
-    rods = team.on_first(lambda: rods_of_flutter(config.parameters.arm, config.stated_build))
+    rods = team.on_first(lambda: flutter_rods(config))
     if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together
         team.require_on_all_ranks(require_solvers)
     shared = _SharedWork(team, stop)

@@ -8,7 +8,6 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from ..model.arm.quantities import RELATIVE
 from ..model.material.build import STANDARD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import OF_MATERIAL, SHAPES, refuse_compressible, refuse_misused_shape
@@ -134,11 +133,6 @@ class Config(Strict):
                 f"material and parameters.arm.{own} are both given; give law and section in parameters.arm"
             )
         refuse_misused_shape(arm, self.parameters.given_axes)
-        if arm.load_axis in RELATIVE and "taper" in self.parameters.given_axes:
-            raise ValueError(
-                f"parameters.arm.{arm.load} is relative to flutter of the arm, and parameters.taper stands "
-                "beside the arm; give parameters.arm.tip_radius instead, or the load in its unit"
-            )
         refuse_compressible(arm, self.build.section)
         return self
 

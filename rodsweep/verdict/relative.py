@@ -45,22 +45,26 @@ def turned(arm: A) -> A:
     return replace(arm, width=arm.height, height=arm.width)
 
 
-def plane_rods(arm: SlenderArm, build: Build | None = None) -> list[tuple[Rod, float]]:
+def plane_rods(
+    arm: SlenderArm, build: Build | None = None, taper: float | None = None
+) -> list[tuple[Rod, float]]:
     """(rod in a plane with the likeliest drag, its k3/L^2 in units of the arm's) for each plane of an arm.
 
-    The rods have no load. build: law and profile in place of the arm's.
+    The rods have no load. build, taper: law and profile, and tip radius over base radius, in place of the
+    arm's.
     """
-    planes = [(_in_its_plane(arm, build), 1.0)]
+    planes = [(_in_its_plane(arm, build, taper), 1.0)]
     if not arm.isotropic:
         other = turned(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
-        planes.append((_in_its_plane(other, build), scale))
+        planes.append((_in_its_plane(other, build, taper), scale))
     return planes
 
 
-def _in_its_plane(arm: SlenderArm, build: Build | None) -> Rod:
+def _in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
     """The rod in the plane of the arm's height."""
-    return rod_with(arm, arm.drags[0], build)
+    rod = rod_with(arm, arm.drags[0], build)
+    return rod if taper is None else replace(rod, taper=taper)
 
 
 def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:

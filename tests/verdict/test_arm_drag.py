@@ -20,6 +20,7 @@ from rodsweep.model.arm.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effec
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.points import same_rods
@@ -145,22 +146,36 @@ def test_a_law_beside_the_arm_moves_the_flutter_of_relative_loads():
     assert beside.F.item() != pytest.approx(rs.sweep("spectrum", arm=loaded, modes=1).F.item(), rel=1e-3)
 
 
-def test_a_taper_beside_an_arm_whose_load_is_relative_is_refused():
-    loaded = SILICONE | {"pressure": "1.2 of flutter"}
-    with pytest.raises(rs.InputError, match=r"parameters\.taper stands beside the arm; give .*tip_radius"):
-        rs.sweep("modes", arm=loaded, taper=0.5)
+def test_a_taper_beside_an_arm_moves_the_flutter_of_relative_loads():
+    """Each cone is loaded relative to its own threshold; a taper of 1 to that of the uniform arm."""
+    arm = SILICONE | {"pressure": ["0.9999 of flutter", "1.0001 of flutter"]}
+    data = rs.sweep("spectrum", arm=arm, taper=[0.5, 1.0], modes=1, certify=False)
+    uniform = rs.sweep("spectrum", arm=arm, modes=1, certify=False)
+    assert data.growth_rate.dims == ("pressure_over_flutter", "taper", "mode")
+    assert data.F.sel(taper=1.0).values == pytest.approx(uniform.F.values, rel=1e-9)
+    own = SlenderArm(**SILICONE)
+    cone = Rod(F=0.0, k1=own.k1, k2=own.k2, gamma3=own.gamma3, taper=0.5)
+    found = solve_thresholds(cone, ThresholdsRequest(40.0, 1e-10, True, 8))
+    hopf = next(each.at for each in found.crossings if each.kind == Kind.hopf)
+    assert data.F.sel(taper=0.5).values == pytest.approx([0.9999 * hopf, 1.0001 * hopf], rel=1e-9)
+    assert (np.sign(data.growth_rate[..., 0].values) == [[-1, -1], [1, 1]]).all()
+
+
+def test_a_taper_beside_an_arm_that_is_no_taper_is_refused_before_flutter_is_searched_for():
+    with pytest.raises(rs.InputError, match=r"parameters\.taper = 0 is not allowed"):
+        rs.sweep("modes", arm=SILICONE | {"pressure": "1.2 of flutter"}, taper=[0.0, 1.0])
 
 
 def test_an_arm_without_flutter_is_a_point_with_a_status():
     section = ArmSection(**SILICONE | {"length": ["10 cm", "14 cm"], "pressure": "1.2 of flutter"})
     stiff = SlenderArm(**SILICONE).k1
     grid = grid_of_arms(
-        section, {}, ("F", "k1"), lambda arm: FlutterForce(36.0 if arm.k1 == stiff else np.inf)
+        section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(36.0 if arm.k1 == stiff else np.inf)
     )
     assert grid.covered is not None and grid.covered.tolist() == [NO_FLUTTER, 0]
     assert np.isnan(grid.by_name["F"][0])
     with pytest.raises(ValueError, match="relative to flutter, which no arm has with the likeliest drag"):
-        grid_of_arms(section, {}, ("F", "k1"), lambda arm: FlutterForce(np.inf))
+        grid_of_arms(section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(np.inf))
 
 
 def test_shards_ranks_and_an_extension_give_the_same_file(command):

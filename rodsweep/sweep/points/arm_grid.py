@@ -1,10 +1,11 @@
 """Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter, methodcaller
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER
@@ -18,8 +19,10 @@ from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from .flutter_forces import FlutterForce
 from .points import Points
 
-FlutterOf = Callable[[SlenderArm], FlutterForce]
-"""Function from an arm to its first flutter with the likeliest drag."""
+FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
+"""Function from an arm, and a taper in place of its own, to its first flutter with the likeliest drag."""
+Forces = NDArray[np.object_]
+"""Objects `FlutterForce` over (arms, 1, replaced parameters)."""
 UNCOVERED = FlutterForce(np.nan)
 """Stands for the force of an arm without a rod."""
 
@@ -43,13 +46,13 @@ def grid_of_arms(
     own = (*all_but("F", NONLINEAR_PARAMETERS), *section.tapering)
     table = {name: _of_each(arms, methodcaller("parameter", name)) for name in own}
     units = {name: _of_each(arms, attrgetter(name)) for name in ARM_UNITS}
-    forces = [_force_of(section, arm, flutter) if arm else UNCOVERED for arm in arms]
-    scale = np.array([force.F for force in forces])
-    if section.load_axis in RELATIVE:
-        statuses = _with_flutter(statuses, scale)
+    forces = _forces(section, arms, crossed.get("taper"), flutter)
+    scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     covered = np.broadcast_to(_along(0, statuses), shape).copy()
+    if section.load_axis in RELATIVE:
+        covered = _with_flutter(covered, scale)
     if section.load:
-        table["F"] = _along(0, np.where(np.isinf(scale), np.nan, scale)) * _along(1, loads)
+        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
         if section.load_axis in RELATIVE:
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
@@ -86,32 +89,49 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
         return None, error.status
 
 
-def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> FlutterForce:
+def _forces(
+    section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
+) -> Forces:
+    """F of a load of 1 on each arm; tapers: those of the replaced parameters, None for the arms' own."""
+    beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
+    forces = np.empty((len(arms), 1, len(beside)), object)
+    for i, arm in enumerate(arms):
+        found = {taper: _force_of(section, arm, taper, flutter) for taper in set(beside)}
+        forces[i, 0] = [found[taper] for taper in beside]
+    return forces
+
+
+def _force_of(
+    section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
+) -> FlutterForce:
     """F of a load of 1 on an arm; the load is in SI units or relative to flutter, or there is none."""
+    if arm is None or not section.load:
+        return UNCOVERED
     if section.load_axis in RELATIVE:
-        return flutter(arm)
-    return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load])) if section.load else UNCOVERED
+        return flutter(arm, taper)
+    return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load]))
 
 
-def _with_flutter(statuses: Iterable[int], flutter: Array) -> tuple[int, ...]:
-    """Statuses of arms with those of a load relative to flutter; flutter: its F for each arm, (n,)."""
+def _with_flutter(covered: Array, flutter: Array) -> Array:
+    """Codes of points with those of a load relative to flutter, (arms, loads, replaced parameters) each.
+
+    flutter: F of flutter, which is the same for all loads.
+    """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    return tuple(own if own != SLENDER else int(new) for own, new in zip(statuses, found, strict=True))
+    codes: Array = np.where(covered == SLENDER, found, covered)
+    return codes
 
 
-def _failures(covered: Array, forces: Sequence[FlutterForce]) -> dict[int, str]:
+def _failures(covered: Array, forces: Forces) -> dict[int, str]:
     """Why no flutter is found, by flat index; covered: codes over (arms, loads, replaced parameters)."""
-    unknown = np.flatnonzero(covered == FLUTTER_UNKNOWN)
-    arms = unknown // (covered.size // len(covered))
-    return {int(index): forces[arm].failure for index, arm in zip(unknown, arms, strict=True)}
+    each = np.broadcast_to(forces, covered.shape).ravel()
+    return {int(index): each[index].failure for index in np.flatnonzero(covered == FLUTTER_UNKNOWN)}
 
 
-def _refuse_all(
-    section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Sequence[FlutterForce]
-) -> None:
+def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
     """Raises ValueError with the cause at the first point; no_flutter: whether some arm does not flutter."""
     section.made(section.firsts, loaded=True)
-    for force in forces:
+    for force in forces.ravel():
         if force.failure:
             raise ValueError(f"parameters.arm.{section.load}: {force.failure}")
     if no_flutter:

@@ -4,7 +4,7 @@ The search takes most of the time in which points are made, so the ranks of a ru
 fails gives its points a status. The solver is imported on demand.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, nan
 from typing import TypeAlias
@@ -31,9 +31,14 @@ class FlutterForce:
 
 FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
 """Flutter of rods that move in one plane, without load."""
+Tapers: TypeAlias = Sequence[float | None]
+"""Tip radius over base radius beside a section, None where the arm has its own."""
+OWN_TAPER: Tapers = (None,)
 
 
-def rods_of_flutter(section: ArmSection | None, build: Build | None = None) -> list[Rod]:
+def rods_of_flutter(
+    section: ArmSection | None, build: Build | None = None, tapers: Tapers = OWN_TAPER
+) -> list[Rod]:
     """The different rods whose flutter the points of a section need; none unless its load is relative.
 
     build: law and profile beside the section. Raises InputError for an arm that is refused.
@@ -42,7 +47,8 @@ def rods_of_flutter(section: ArmSection | None, build: Build | None = None) -> l
         return []
     from ...verdict.relative import plane_rods
 
-    rods = (rod for arm in _arms(section) for rod, _ in plane_rods(arm, build))
+    shapes = ((arm, taper) for arm in _arms(section) for taper in tapers)
+    rods = (rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper))
     return list(dict.fromkeys(rods))
 
 
@@ -67,15 +73,17 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
         return FlutterForce(nan, str(error))
 
 
-def flutter_of_arm(arm: SlenderArm, known: FlutterForces, build: Build | None = None) -> FlutterForce:
+def flutter_of_arm(
+    arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
+) -> FlutterForce:
     """Flutter of an arm, in its k3/L^2: the smallest over its planes, a failure if one of them fails.
 
-    build: as in `rods_of_flutter`.
+    taper: in place of the arm's. build: as in `rods_of_flutter`.
     """
     from ...verdict.relative import plane_rods
 
     first = inf
-    for rod, scale in plane_rods(arm, build):
+    for rod, scale in plane_rods(arm, build, taper):
         found = known[rod]
         if found.failure:
             return found

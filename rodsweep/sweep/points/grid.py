@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
-from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
+from ...model.rod import Rod
 from .arm_grid import FlutterOf, grid_of_arms
 from .flutter_forces import FlutterForces, flutter_of_arm, flutter_of_rod, rods_of_flutter
 from .lists import read_points
@@ -32,7 +32,7 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
     """Points of the sweep of a config; raises InputError for any value outside the model.
 
-    flutter: of all rods of `rods_of_flutter`, where it is known; else it is searched for here.
+    flutter: of all rods of `flutter_rods`, where it is known; else it is searched for here.
     """
     parameters = config.parameters
     for name, value in parameters.numbers.items():
@@ -45,7 +45,7 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:
-            of_arm = _flutter_in(parameters.arm, flutter, config.stated_build)
+            of_arm = _flutter_in(config, flutter)
             return grid_of_arms(parameters.arm, axes, config.names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
@@ -72,14 +72,23 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
-def _flutter_in(section: ArmSection, known: FlutterForces | None, build: Build | None) -> FlutterOf:
-    """Function from an arm of a section to its first flutter, which is searched for where it is not known.
+def flutter_rods(config: Config) -> list[Rod]:
+    """The different rods whose flutter the points of a config need; none unless a load is relative to it.
 
-    build: law and profile beside the section.
+    Raises InputError for an arm or a taper that is refused.
     """
+    given = config.parameters.given_axes.get("taper")
+    if given is None:
+        return rods_of_flutter(config.parameters.arm, config.stated_build)
+    refuse_outside(PARAMETERS["taper"].allowed, "taper", given.array())
+    return rods_of_flutter(config.parameters.arm, config.stated_build, given.array().tolist())
+
+
+def _flutter_in(config: Config, known: FlutterForces | None) -> FlutterOf:
+    """Function from (arm, taper beside it) to first flutter, which is searched for where it is not known."""
     if known is None:
-        known = {rod: flutter_of_rod(rod) for rod in rods_of_flutter(section, build)}
-    return partial(flutter_of_arm, known=known, build=build)
+        known = {rod: flutter_of_rod(rod) for rod in flutter_rods(config)}
+    return partial(flutter_of_arm, known=known, build=config.stated_build)
 
 
 def refuse_outside(
