@@ -17,7 +17,12 @@ from ..model.longitudinal import longitudinal_rates
 from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
-from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
+from ..results.layouts.spectrum import (
+    EACH_FOLLOWED_POINT,
+    EACH_MODE,
+    longitudinal,
+    longitudinal_parameters,
+)
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
@@ -79,7 +84,8 @@ class SpectrumTask(ProvedTask):
         """(dimensions, shape, parameters on which longitudinal rates depend, flat) of all their values."""
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
-        names = [name for name in ("F", "k1", "taper")[linear:] if name in points.by_name]
+        depends_on = longitudinal_parameters(self.config.standard, linear)
+        names = [name for name in depends_on if name in points.by_name]
         columns = {name: points.by_name[name] for name in names}
         if points.over or not points.is_grid:
             along = tuple(points.over) or ("point",)

@@ -152,6 +152,26 @@ def test_longitudinal_rates_stand_beside_the_modes(command):
     assert np.array(columns["longitudinal_rate"], float) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("more", "law", "closed"), [(", taper: 1", "linear", True), ("", "neo_hookean", False)]
+)
+def test_longitudinal_rates_of_uniform_arms_stand_beside_the_modes(command, more, law, closed):
+    axes = f"F: [1, 20], k1: [200, 300], k2: 1.0e4, gamma3: 1.0e-4, gamma1: 2{more}"
+    options = f"material: {{law: {law}}}\nspectrum: {{longitudinal: true, modes: 2}}\n"
+    columns = table_of(*exported(command, f"task: spectrum\nparameters: {{{axes}}}\n{options}")[:2])
+    F, k1, mode, rate = (np.array(columns[name], float) for name in ("F", "k1", "mode", "longitudinal_rate"))
+    assert ("longitudinal_error" in columns) != closed
+    nu = np.array([1.0 if closed else stretch_of_rubber(x) for x in F / k1])
+    expected = -k1 * (1 + 2 / nu**3) / 3 / 2 * (np.pi * (mode - 0.5)) ** 2
+    assert rate == pytest.approx(expected, rel=1e-12)
+
+
+def stretch_of_rubber(x):
+    """nu with nu^3 + 3 x nu^2 = 1."""
+    (nu,) = (root.real for root in np.roots([1, 3 * x, 0, -1]) if root.real > 0)
+    return nu
+
+
 def test_longitudinal_rates_of_rubber_cones_stand_beside_the_modes_with_their_error(command):
     axes = "F: [1, 20], k1: [200, 300], k2: 1.0e4, gamma3: 1.0e-4, taper: [0.5, 0.8], gamma1: 2"
     options = "material: {law: neo_hookean}\nspectrum: {longitudinal: true, modes: 2}\n"

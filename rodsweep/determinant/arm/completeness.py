@@ -76,7 +76,7 @@ def none_is_missing(
 
 
 def is_whole(known: Complex) -> Array:
-    """Whether each of some eigenvalues is real or there with its conjugate, (n,)."""
+    """Mask of the eigenvalues that are real or whose conjugates are among them, (n,)."""
     conjugates = set(known.conj().tolist())
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 

@@ -36,7 +36,7 @@ CONVERGED = 1e-13
 ROUNDING_OF_RATES = 5e-14
 """Least relative error that is stated, for rounding."""
 MORE_POINTS = 6
-"""Points of an element for its displacements, beyond those for its strains."""
+"""Number of quadrature points for displacements in an element, beyond the number for strains."""
 
 
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:

@@ -3,7 +3,6 @@
 The task modes shares the variables.
 """
 
-from collections.abc import Mapping
 from math import nan
 from typing import Any
 
@@ -87,11 +86,15 @@ def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tup
     return (rate,) if in_closed_form else (rate, real("longitudinal_error", "1", error, *along, "mode"))
 
 
-def longitudinal_parameters(config: Mapping[str, Any]) -> tuple[str, ...]:
-    """Parameters on which longitudinal rates depend, besides gamma1; F compresses arms of rubber only."""
-    if has_covering(config):
+def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ...]:
+    """Parameters on which longitudinal rates depend, besides gamma1.
+
+    in_closed_form: whether every arm is uniform and of linear material. linear: whether the material is
+    linear, so that the rates do not depend on F.
+    """
+    if in_closed_form:
         return ("k1",)
-    return ("k1", "taper") if is_linear(config) else ("F", "k1", "taper")
+    return ("k1", "taper") if linear else ("F", "k1", "taper")
 
 
 CHANGE = "change"
@@ -126,9 +129,10 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGES
-    names = [name for name in longitudinal_parameters(config) if name in config["parameters"]]
-    along = names if is_grid else ["point"]
-    return (*longitudinal(float(gamma1), *along, in_closed_form=has_covering(config)), *FORCE_CHANGES)
+    in_closed_form = has_covering(config)
+    names = longitudinal_parameters(in_closed_form, is_linear(config))
+    along = [name for name in names if name in config["parameters"]] if is_grid else ["point"]
+    return (*longitudinal(float(gamma1), *along, in_closed_form=in_closed_form), *FORCE_CHANGES)
 
 
 def layout(config: dict[str, Any]) -> Layout:

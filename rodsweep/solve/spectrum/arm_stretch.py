@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import POWERS, right_of_hull
+from ...determinant.arm.completeness import POWERS, is_whole, right_of_hull
 from ...determinant.arm.count import count_right_of
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of
@@ -146,7 +146,7 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: i
     if search.best is None:
         return None
     w = search.best.found.roots.w
-    return w[np.array([value.imag == 0 or value.conjugate() in w for value in w], dtype=bool)]
+    return w[is_whole(w)]
 
 
 class FollowedArms:

@@ -158,7 +158,7 @@ class Search:
 
     def reach_the_axis(self, number: int) -> None:
         """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""
-        self.why = "no mesh within the limit resolves all growing modes"
+        self.unresolved = True
         if number < self.wanted:
             self.mesh = self.problem.finer(self.mesh)
         self.request_more(max(self.wanted, 2 * number + SPARE_MODES))

@@ -62,7 +62,8 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if run.ending == Ending.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
         return EarlyEnd(True, f"h1 = {h1:.3g} somewhere, {returns} returns from the start")
-    if not run.message and not beam.is_convex(run.states[-1]):
+    end = run.states[-1]
+    if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
         why = f"the energy of a section is not convex, {returns} returns from the start"
         return EarlyEnd(True, why)
     why = "too many steps" if run.ending == Ending.too_many_steps else "no step succeeds"
