@@ -94,7 +94,8 @@ def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ..
     """
     if in_closed_form:
         return ("k1",)
-    return ("k1", "taper") if linear else ("F", "k1", "taper")
+    of_the_arm = ("k1", "taper")
+    return of_the_arm if linear else ("F", *of_the_arm)
 
 
 CHANGE = "change"
