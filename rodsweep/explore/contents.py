@@ -47,8 +47,10 @@ class PageContents:
                 ("branch", "branches", "Solve the branches"),
                 ("cycles", "cycles", "Add folds and torus points of cycles (minutes)"),
                 ("film", "film", "Save a film of the cycle (GIF)"),
+                ("stop", "stop", "Stop"),
             )
         }
+        self.buttons["stop"].visible = False
         self.numbers.root.stylesheets = [texts]
         for div in (card.message for card in self.cards):
             div.update(sizing_mode="stretch_width", stylesheets=[texts])

@@ -28,7 +28,7 @@ class ImmediateSolvers:
         self.kinds = kinds
         self.questions: list[Question] = []
 
-    def ask(self, session, question, done):
+    def ask(self, session, question, done, progress=None):
         self.questions.append(question)
         if question.kind not in self.kinds:
             return
@@ -125,7 +125,7 @@ def test_the_sign_names_what_is_being_solved_until_it_is_answered():
 def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
     kept = []
     solvers = ImmediateSolvers()
-    solvers.ask = lambda session, question, done: kept.append((question, done))
+    solvers.ask = lambda session, question, done, progress: kept.append((question, done))
     page = page_with(solvers)
     page.change({"F": "60"})
     question, done = next(each for each in kept if each[0].kind == "spectrum")
@@ -172,3 +172,28 @@ def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
         DiagramCell(0.0, 0.5, pytest.approx(root), pytest.approx(10 * root), 0),
         DiagramCell(0.5, 2.0, pytest.approx(root), pytest.approx(10 * root), 2),
     ]
+
+
+def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
+    class Halfway(ImmediateSolvers):
+        dropped: list[str] = []
+
+        def ask(self, session, question, done, progress=None):
+            super().ask(session, question, done)
+            if question.kind == "cycles":
+                progress(Reply("progress", {"words": "curve 1 of <2>", "share": 0.5}, 1.0))
+
+        def drop(self, session, kind):
+            self.dropped.append(kind)
+
+    solvers = Halfway()
+    page = page_with(solvers)
+    stop = page.contents.buttons["stop"]
+    run_callbacks(page.document)
+    assert not stop.visible
+    page.solve("cycles")
+    run_callbacks(page.document)
+    assert page.contents.working.text == "solving folds and torus points (curve 1 of &lt;2&gt;, 50%) ..."
+    assert stop.visible
+    page.stop()
+    assert (page.contents.working.text, stop.visible, solvers.dropped) == ("", False, ["cycles"])

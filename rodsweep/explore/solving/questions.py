@@ -47,7 +47,8 @@ class Question:
 class Reply(NamedTuple):
     """Reply of a solver process.
 
-    outcome: "answer", "refused", "failed" or "cancelled"; "ready" is sent once, when the process has started.
+    outcome: "answer", "refused", "failed" or "cancelled"; "ready" is sent once, when the process has started,
+    and "progress" during a long solve, with `words` and `share` of a `SolvePosition` as content.
     content: variables of an answer by name; for other outcomes a sentence by the name `sentence`. seconds:
     time of the solve.
     """
