@@ -26,7 +26,7 @@ WHEN_IDLE = ("branch", "diagram")
 """Kinds of questions that take seconds, and are asked after a pause of `IDLE`."""
 ON_REQUEST = ("motion", "film", "cycles")
 """Questions that only the user asks; a change of the rod drops them."""
-STOPPABLE = ("branch", *ON_REQUEST)
+STOPPABLE = (*WHEN_IDLE, *ON_REQUEST)
 """Questions that the button "Stop" cancels."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
@@ -86,16 +86,18 @@ class Page:
 
     def solve(self, kind: str) -> None:
         """Asks a question now, even if its answer is already shown."""
-        if kind == "cycles":
+        if kind == "cycles" and "diagram" in self.solving:
             self._drop("diagram")
         self._drop(kind)
         self._ask(kind, is_solved_again=True)
 
     def stop(self) -> None:
-        """Cancels the long solves; what is drawn stays."""
+        """Cancels the long solves; drawn pictures stay, and a bent arm goes on as before it was bent."""
         for kind in STOPPABLE:
             if kind in self.solving:
                 self._drop(kind)
+                if kind in OF_TIP:
+                    self.contents.beating.let_go()
 
     def bend(self, tip: Tip) -> None:
         """Bends the arm so that its tip is at a place, in L."""

@@ -197,3 +197,40 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
     assert stop.visible
     page.stop()
     assert (page.contents.working.text, stop.visible, solvers.dropped) == ("", False, ["cycles"])
+
+
+def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
+    solvers = ImmediateSolvers((*AT_ONCE, "bent"))
+    page = page_with(solvers)
+    run_callbacks(page.document, seconds=True)
+    diagram, *_ = [question for question in solvers.questions if question.kind == "diagram"]
+    page._answered(diagram, Reply("refused", {"sentence": ""}, 0.0))
+    page.solve("cycles")
+    page.stop()
+    page.bend((0.6, 0.5))
+    run_callbacks(page.document)
+    assert len(page.contents.beating.bent.data["x"]) > 0
+    page.let_go((0.6, 0.5))
+    page.stop()
+    assert len(page.contents.beating.bent.data["x"]) == 0
+    solvers.questions.clear()
+    page.change({"F": "51"})
+    run_callbacks(page.document, seconds=True)
+    assert "branch" in {question.kind for question in solvers.questions}
+    assert "diagram" not in {question.kind for question in solvers.questions}
+
+
+def test_a_failure_takes_the_sign_and_the_button_away():
+    class Failing(ImmediateSolvers):
+        def ask(self, session, question, done, progress=None):
+            super().ask(session, question, done)
+            if question.kind == "cycles":
+                progress(Reply("progress", {"words": "point 1 of 8", "share": None}, 1.0))
+                done(Reply("failed", {"sentence": "the solver ended unexpectedly"}, 2.0))
+
+    page = page_with(Failing())
+    page.solve("cycles")
+    run_callbacks(page.document)
+    assert page.contents.working.text == ""
+    assert not page.contents.buttons["stop"].visible
+    assert page.contents.diagram.card.message.text == "the solver ended unexpectedly"

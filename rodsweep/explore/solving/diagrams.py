@@ -82,7 +82,7 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
     rows = span(state, SLOW_ROWS if with_cycles else ROWS)
     keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
     keywords |= {"cycles": True, "gamma1": state.parameters()["gamma1"]} if with_cycles else {}
-    data = sweep("phase_diagram", **keywords)
+    data = sweep("phase_diagram", progress=False, **keywords)
     return of_phases(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second)
 
 
@@ -129,7 +129,7 @@ def of_grid(data: Dataset, second: str) -> dict[str, Any]:
 def _of_thresholds(state: PageState) -> dict[str, Any]:
     keywords: dict[str, Any] = {**_fixed(state), state.second: span(state, SLOW_ROWS)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
-    data = sweep("thresholds", **keywords, F_max=state.largest_force())
+    data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
     return of_rows(data, span(state, SLOW_ROWS), "crossing_F", state.largest_force())
 
@@ -142,7 +142,7 @@ def _of_arm(state: PageState) -> dict[str, Any]:
     subject = state.subject()
     assert isinstance(subject, Arm)
     arms = given | {state.second: list(map(float, values))}
-    data = sweep("thresholds", arm=arms, F_max=state.largest_force())
+    data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]

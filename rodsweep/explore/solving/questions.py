@@ -1,4 +1,7 @@
-"""Questions of the page and the answers of a solver process, as plain arrays without objects of solvers."""
+"""Questions of the page and the answers of a solver process, as plain arrays without objects of solvers.
+
+The page shows progress, so that no solve displays it on the terminal, which all solver processes share.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -69,12 +72,12 @@ def variables(answer: Answer) -> Found:
 
 def spectrum(state: PageState) -> Found:
     """Leading eigenvalues with their count, and the shapes of the modes."""
-    return variables(state.subject().spectrum(modes=MODES, vectors=True))
+    return variables(state.subject().spectrum(modes=MODES, vectors=True, progress=False))
 
 
 def thresholds(state: PageState) -> Found:
     """Forces at which stability changes; `kinds` are the words of `crossing_kind`."""
-    answer = state.subject().thresholds(F_max=state.largest_force())
+    answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
 
 
@@ -84,19 +87,19 @@ def growth(state: PageState) -> Found:
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), GROWTH_FORCES)
-    data = sweep("spectrum", F=F, **keywords, certify=False)
+    data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
     rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1)
     return {"F": F, "growth_rate": rates, "unstable_count": data["unstable_count"].values.reshape(-1)}
 
 
 def cycle(state: PageState) -> Found:
     """The limit cycle, with the shapes of the arm over a period; x, y: the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPES)) | straight(state)
+    return variables(state.subject().cycle(shapes=SHAPES, progress=False)) | straight(state)
 
 
 def film(state: PageState) -> Found:
     """gif: the film that `rodsweep plot` makes of the limit cycle; empty for a rod without a cycle."""
-    answer = state.subject().cycle(shapes=SHAPES)
+    answer = state.subject().cycle(shapes=SHAPES, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
     return {"gif": plot(answer, what="animation").image}
@@ -108,7 +111,7 @@ def branch(state: PageState) -> Found:
     pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1 or 0, -1 if not
     known. special: (F, y, kind, period) of each special point.
     """
-    answer = state.subject().branch(stop=state.largest_force())
+    answer = state.subject().branch(stop=state.largest_force(), progress=False)
     found = drawn_branches(curves_of(view_of(answer.whole, Path(answer.rod)), 0))
     found["pieces"] += straight_pieces(answer.data, state.largest_force())
     return found | {"status": str(answer.status), "sentence": answer.sentence}
