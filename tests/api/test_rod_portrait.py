@@ -1,6 +1,7 @@
 """`rod.portrait()` and `rodsweep portrait`: the numbers are the solver's, and what is missing is said."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from matplotlib.text import Text
 from pages import read_page
 
 import rodsweep as rs
+from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.tasks.rod_portrait import cycle_forces
 
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
@@ -38,6 +40,14 @@ def test_thresholds_and_criticality_are_those_of_their_tasks(portrait):
     assert portrait.thresholds.crossings.equals(crossings)
     sides = FOLDED.criticality().crossings["criticality"].tolist()
     assert re.findall(r"(supercritical|subcritical)", text) == sides == ["supercritical", "subcritical"]
+
+
+def test_an_arm_has_the_si_values_of_its_units(portrait):
+    scales = {"force_scale": 0.012, "pressure_scale": 155.0, "tau2": 3.5}
+    rod = replace(portrait.results.rod, scales=scales)
+    sentence = "F = 1 stands for 0.012 N, or a pressure of 155 Pa on the face of its tip, and tau2 for 3.5 s."
+    assert sentence in paragraph(replace(portrait.results, rod=rod))
+    assert "stands for" not in portrait.paragraph
 
 
 def test_ranges_with_two_states_are_those_of_the_branch(portrait):
@@ -111,6 +121,9 @@ def test_a_notebook_shows_the_picture_and_a_terminal_the_paragraph(portrait):
 def test_a_rod_that_never_beats_has_the_reasons_in_the_places_of_the_drawings():
     portrait = rs.Rod(k1=100, k2=1e4, gamma3=1e-4).portrait(accuracy=ACCURACY)
     assert "No branch of cycles begins at a Hopf point in this range." in portrait.paragraph
+    end = portrait.thresholds.F_end
+    assert end < 200
+    assert f"gamma1 = 1 was searched up to F = {end:.6g}, not to F = 200:" in portrait.paragraph
     assert portrait.cycles == {}
     said = " ".join(
         " ".join(text.get_text().split()) for axes in portrait.figure().axes for text in axes.findobj(Text)
@@ -126,6 +139,8 @@ def test_segments_of_rubber_have_cycles():
     assert portrait.branch is not None
     assert portrait.cycles
     assert not portrait.missing
+    words = "The rod with k1 = 500, k2 = 10000, gamma3 = 0.0001, gamma1 = 1, law neo_hookean, a profile along"
+    assert portrait.paragraph.startswith(f"{words} its length was searched up to F = 50. ")
 
 
 def test_bad_choices_are_refused():
