@@ -240,6 +240,5 @@ class Page:
     def _move_load(self, event: Tap) -> None:
         """Moves the load to the x of a click."""
         if event.x is not None:
-            stored = self.stored if self.state.tab == "rod" else None
-            at = event.x if stored is None else stored.load_near(event.x)
+            at = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
             self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(at)})

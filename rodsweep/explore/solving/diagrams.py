@@ -144,9 +144,17 @@ def _of_arm(state: PageState) -> dict[str, Any]:
     arms = given | {state.second: list(map(float, values))}
     data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
+    return of_arms(data, values, subject.si.pressure)
+
+
+def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
+    """The diagram from a result of the task thresholds for arms, (rows,), over values of a quantity, (rows,).
+
+    It reaches to twice the pressure of the page, in Pa, or twice the least pressure of flutter.
+    """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
-    largest = 2 * max(subject.si.pressure or 0.0, known.min() if len(known) else 0.0)
+    largest = 2 * max(pressure or 0.0, known.min() if len(known) else 0.0)
     return of_rows(data, values, "crossing_pressure", largest or float(data["pressure_end"].max()))
 
 
