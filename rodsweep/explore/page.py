@@ -28,6 +28,8 @@ ON_REQUEST = ("motion", "film", "cycles")
 """Questions that only the user asks; a change of the rod drops them."""
 STOPPABLE = (*WHEN_IDLE, *ON_REQUEST)
 """Questions that the button "Stop" cancels."""
+STOPPED = "Stopped. A change of the rod starts it again, or the button below."
+"""Sentence in place of a picture whose solve the user has stopped."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
 
@@ -92,12 +94,16 @@ class Page:
         self._ask(kind, is_solved_again=True)
 
     def stop(self) -> None:
-        """Cancels the long solves; drawn pictures stay, and a bent arm goes on as before it was bent."""
+        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures of an earlier rod
+        do not stay without a word.
+        """
         for kind in STOPPABLE:
             if kind in self.solving:
                 self._drop(kind)
                 if kind in OF_TIP:
                     self.contents.beating.let_go()
+                elif kind in WHEN_IDLE:
+                    self.contents.say(kind, STOPPED)
 
     def bend(self, tip: Tip) -> None:
         """Bends the arm so that its tip is at a place, in L."""

@@ -9,7 +9,7 @@ from bokeh.document import Document
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
-from rodsweep.explore.page import AT_ONCE, Page
+from rodsweep.explore.page import AT_ONCE, STOPPED, Page
 from rodsweep.explore.pictures.diagram import DiagramCell, cells
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
@@ -234,3 +234,32 @@ def test_a_failure_takes_the_sign_and_the_button_away():
     assert page.contents.working.text == ""
     assert not page.contents.buttons["stop"].visible
     assert page.contents.diagram.card.message.text == "the solver ended unexpectedly"
+
+
+def test_the_pictures_of_an_arm_are_in_si_units():
+    page = page_with(ImmediateSolvers(("spectrum", "thresholds", "growth")), "tab=arm&F_max=60")
+    arm = rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="12 Pa s", pressure="4 kPa")
+    spectrum, growth = page.contents.spectrum, page.contents.growth
+    answer, thresholds = arm.spectrum(), arm.thresholds(F_max=60)
+    labels = [axis.axis_label for axis in (*spectrum.card.figure.axis, *growth.card.figure.axis)]
+    assert labels == ["growth rate (1/s)", "frequency (Hz)", "pressure (kPa)", "growth rate (1/s)"]
+    assert spectrum.source.data["growth"][0] == pytest.approx(float(answer.growth_rate_si[0]))
+    assert spectrum.source.data["frequency"][0] == pytest.approx(float(answer.frequency_hz[0]))
+    assert len(growth.rates.data["F"]) > 100
+    at = np.interp(3.2, growth.rates.data["F"], growth.rates.data["first"])
+    softer = arm.replace(pressure="3.2 kPa").spectrum()
+    assert at == pytest.approx(float(softer.growth_rate_si[0]), rel=1e-3)
+    onset, hopf = (float(at) / 1e3 for at in (thresholds.pressure_onset, thresholds.pressure_hopf))
+    title = f"Oscillates from {onset:.5g} kPa, flutters from {hopf:.5g} kPa (certified)"
+    assert growth.card.figure.title.text == title
+    assert growth.lines.data["frequency"][1] == pytest.approx(float(thresholds.frequency_hopf_hz))
+
+
+def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
+    page = page_with(ImmediateSolvers())
+    run_callbacks(page.document, seconds=True)
+    page.stop()
+    for picture in (page.contents.branches, page.contents.diagram):
+        assert picture.card.message.text == STOPPED
+        assert not picture.card.figure.visible
+    assert page.contents.working.text == ""

@@ -6,8 +6,11 @@ from explore.test_page import ImmediateSolvers, page_with, run_callbacks, shown
 
 import rodsweep as rs
 from rodsweep.explore.page import Page
+from rodsweep.explore.pictures.card import TORUS
 from rodsweep.explore.pictures.numbers import written
-from rodsweep.explore.stored import opened
+from rodsweep.explore.solving.diagrams import code_of
+from rodsweep.explore.stored import opened, stored_diagram
+from rodsweep.explore.stored_results import StoredResults
 
 ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
 CYCLES = f"task: limit_cycle\nparameters: {{F: [20, 40, 50], {ROD}}}\nlimit_cycle: {{shapes: 16}}\n"
@@ -101,6 +104,24 @@ def test_stored_curves_of_folds_are_drawn_in_the_diagram(command):
     assert page.contents.diagram.legend.visible
 
 
+def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own(command):
+    """On the smallest plane with folds, whose curves become torus points: real ones take 5 s."""
+    command.write("result.yaml", PLANE)
+    path = command.solved("result.yaml")
+    state, _ = opened(path)
+    data = rs.open(path).load()
+    kind = data["cycle_curve_kind"]
+    kind.values[:] = code_of(kind, "torus")
+    page = page_with(
+        NoSolvers(), state=state, stored=StoredResults(path, data, state, stored_diagram(data, state))
+    )
+    curves = page.contents.diagram.of_cycles.data
+    assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS, "dashed")]
+    assert curves["x"][0] == pytest.approx(data["cycle_curve_F"].values)
+    words = [item.label.value for item in page.contents.diagram.legend.items]
+    assert (page.contents.diagram.legend.visible, words) == (True, ["folds of cycles", "torus points"])
+
+
 def test_curves_of_folds_are_solved_by_their_button_only():
     solvers = NoSolvers()
     page = page_with(solvers)
@@ -133,6 +154,8 @@ def test_stored_cycles_of_arms_are_drawn_and_not_solved_again(command):
     drawn = page.contents.branches.cycles.data
     assert drawn["F"] == pytest.approx([1, 4.00004, 5])
     assert drawn["y"] == pytest.approx([0, *10 * arms["tip_y_max"].values[1:]])
+    loads = page.contents.branches.card.figure.x_range
+    assert (loads.start < 1, loads.end > 5) == (True, True)  # no dot is cut at an edge
     page._move_load(type("Click", (), {"x": 4.9}))
     assert page.state.arm["pressure"] == "5 kPa"
     page.change({"length": "8 cm"})

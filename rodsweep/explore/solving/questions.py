@@ -12,6 +12,7 @@ import numpy as np
 
 from ...api.answers.answer import Answer
 from ...api.answers.picture import plot
+from ...api.arm import Arm
 from ...api.dataset import view_of
 from ...api.sweeping import sweep
 from ...config.axes import DEFAULTS
@@ -82,14 +83,18 @@ def thresholds(state: PageState) -> Found:
 
 
 def growth(state: PageState) -> Found:
-    """Growth rates of the leading modes along F."""
-    rod = rod_of(state.subject())
+    """Growth rates of the leading modes along F, in `unit`: 1/tau2 of a rod, 1/s of an arm."""
+    subject = state.subject()
+    tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
+    rod = rod_of(subject)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), GROWTH_FORCES)
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
-    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1)
-    return {"F": F, "growth_rate": rates, "unstable_count": data["unstable_count"].values.reshape(-1)}
+    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1) / tau2
+    unit = "1/s" if isinstance(subject, Arm) else "1/tau2"
+    count = data["unstable_count"].values.reshape(-1)
+    return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
 
 def cycle(state: PageState) -> Found:
