@@ -18,6 +18,7 @@ from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
+from .solving.diagrams import has_cycle_curves
 from .state import PageState
 
 
@@ -92,6 +93,7 @@ class PageContents:
         y = second.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
+        self.buttons["cycles"].visible = has_cycle_curves(state)
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:

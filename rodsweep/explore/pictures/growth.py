@@ -73,7 +73,7 @@ class GrowthPicture:
         ]
         names = ("F", "kind", "colour", "frequency")
         self.lines.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
-        self.card.figure.title.text = named(found, load)
+        self.card.entitle(named(found, load))
 
     def move_point(self, F: float) -> None:
         """Moves the thick line that marks the page's force."""

@@ -43,7 +43,7 @@ class SpectrumPicture:
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
         )
-        figure.title.text = count_of(found)
+        self.card.entitle(count_of(found))
         self.card.reveal()
 
 

@@ -50,12 +50,17 @@ def diagram(state: PageState) -> dict[str, Any]:
 def cycle_diagram(state: PageState) -> dict[str, Any]:
     """The diagram with the curves of folds and torus points of cycles, of fewer rows."""
     state.subject()
-    if state.tab == "arm" or not uniform(state):
+    if not has_cycle_curves(state):
         raise InputError(
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
         )
     return _of_phases(state, with_cycles=True)
+
+
+def has_cycle_curves(state: PageState) -> bool:
+    """Whether folds and torus points of cycles can be followed in the diagram of a state."""
+    return state.tab == "rod" and uniform(state)
 
 
 def uniform(state: PageState) -> bool:
