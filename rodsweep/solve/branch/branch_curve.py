@@ -18,7 +18,7 @@ from .symmetry import Breaking
 class BranchPoint:
     """Numbers of one cycle of a branch.
 
-    at: value of the parameter. at_error: relative error of the parameter at an equal clamp moment. errors: at
+    at: value of the parameter. at_error: relative error of the parameter at an equal deflection. errors: at
     an equal parameter. multiplier: modulus of the largest nontrivial Floquet multiplier. unstable: number of
     multipliers outside the unit circle, -1 if one lies on the circle within its error.
     """
