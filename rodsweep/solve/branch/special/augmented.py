@@ -220,6 +220,23 @@ class TorusFunction:
         self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
 
 
+def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
+    """Corrects a test function at a cycle until its value is known to rounding; raises Unsolvable."""
+    value = function.value(orbit)
+    last = np.inf
+    for _ in range(AUGMENTED.max_corrections):
+        function.correct(orbit)
+        before = value
+        value = function.value(orbit)
+        change = abs(value - before)
+        if change <= LOCATING.cycle_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+            return
+        if change > last:
+            break
+        last = change
+    raise Unsolvable("the corrections of the test function do not converge")
+
+
 def _parts(vector: Array) -> Array:
     """Real and imaginary part of a vector, (2, n)."""
     return np.array([vector.real, vector.imag])

@@ -25,13 +25,18 @@ class LocatingSettings:
     """Maximum number of secant steps."""
     stalled_secant: float = 1e-6
     """A secant step this small, in units of the step of the branch, that did not halve is rounding error."""
-    secant_end: float = 1e-9
-    """Length of the last secant step, in units of the step of the branch."""
-    secant_end_at_fold: float = 1e-5
+    linear_step: float = 1e-6
+    """Longest last secant step, in units of the step of the branch: the cycle is moved along its tangent, and
+    the slope, known to a thousandth, leaves an error of `secant_end`."""
+    linear_step_at_fold: float = 1e-4
     """The same at a fold, where the parameter is quadratic in arc length."""
-    matrix_step_share: float = 1e-2
-    """Relative distance of a matrix from its cycle, in units of the last secant step: the test function then
-    gives the next step to two digits."""
+    secant_end: float = 1e-9
+    """Error of the place that the last secant step leaves, in units of the step of the branch."""
+    secant_end_at_fold: float = 1e-5
+    """The same at a fold: its slope may come from a coarser mesh and is known to a tenth."""
+    matrix_distance: float = 1e-3
+    """Largest relative distance of a matrix from the cycle whose test function is corrected with its factors:
+    each correction then gains two digits or more."""
     enclosure_share: float = 1e-3
     """Tolerance of the bracketing: test function in units of its values at the ends, bracket in units of the
     step."""
