@@ -229,7 +229,7 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
         before = value
         value = function.value(orbit)
         change = abs(value - before)
-        if change <= LOCATING.cycle_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+        if change <= LOCATING.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
             return
         if change > last:
             break

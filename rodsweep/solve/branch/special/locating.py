@@ -238,7 +238,10 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
             raise Unsolvable("the secant method leaves the step between the two cycles")
         if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
             _, orbit, tangent = segment.known
-            return at + step, moved(orbit, segment.start.scale.name, step * tangent), slope
+            change = step * tangent
+            if kind == SpecialKind.fold:
+                change[-1] /= 2  # the parameter's derivative falls to 0 along the step
+            return at + step, moved(orbit, segment.start.scale.name, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method does not converge")

@@ -18,9 +18,11 @@ class LocatingSettings:
     smaller."""
     first_mesh_share: float = 0.1
     """Accuracy for which the first of the two meshes is planned, in units of `accuracy`."""
-    cycle_tolerance: float = 1e-10
-    """Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
-    left."""
+    cycle_tolerance: float = 1e-12
+    """Relative tolerance of a cycle on the way; corrections with one matrix leave an error of this size."""
+    function_tolerance: float = 1e-10
+    """Change of a test function by its last correction; folds are quadratic in it, and corrections gain two
+    digits each."""
     max_secants: int = 12
     """Maximum number of secant steps."""
     stalled_secant: float = 1e-6
@@ -28,7 +30,7 @@ class LocatingSettings:
     linear_step: float = 1e-6
     """Longest last secant step, in units of the step of the branch: the cycle is moved along its tangent, and
     the slope, known to a thousandth, leaves an error of `secant_end`."""
-    linear_step_at_fold: float = 1e-4
+    linear_step_at_fold: float = 1e-5
     """The same at a fold, where the parameter is quadratic in arc length."""
     secant_end: float = 1e-9
     """Error of the place that the last secant step leaves, in units of the step of the branch."""
