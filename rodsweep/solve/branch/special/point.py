@@ -16,7 +16,7 @@ class LocatingSettings:
     accuracy: float = 1e-9
     """Relative accuracy of the parameter at a special point; the accuracy of the branch if that is
     smaller."""
-    first_mesh_share: float = 0.1
+    first_mesh_share: float = 0.2
     """Accuracy for which the first of the two meshes is planned, in units of `accuracy`."""
     cycle_tolerance: float = 1e-12
     """Relative tolerance of a cycle on the way; corrections with one matrix leave an error of this size."""
@@ -44,9 +44,9 @@ class LocatingSettings:
     step."""
     max_mesh_pairs: int = 4
     """Maximum number of pairs of meshes that are compared."""
-    more_orders: int = 4
+    more_orders: int = 2
     """Increase of the order on the next finer mesh."""
-    more_intervals: float = 1.3
+    more_intervals: float = 1.2
     """Factor on the number of intervals on the next finer mesh."""
     error_factor: float = 3.0
     """Safety factor on the difference of two meshes."""
