@@ -21,7 +21,7 @@ from .point import SpecialPoint
 class CurveStartSettings:
     """First mesh of a curve of special points."""
 
-    order_share: float = 0.6
+    order_share: float = 0.62
     """Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
     interval_share: float = 0.5
     """Intervals of a curve's first mesh, in units of the intervals that located the special point."""

@@ -120,7 +120,7 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
         length, slope = _enclosed(kind, segment)
         mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
-        point = None
+        point: SpecialPoint | None = None
         for _ in range(LOCATING.max_mesh_pairs + 1):
             segment.start_on(mesh)
             length, orbit, slope = _zero(kind, segment, length, slope)
