@@ -14,8 +14,9 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
-from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement_settings import REFINEMENT
+from ..cycle.hopf_start import HOPF_START, orbit_with
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -109,7 +110,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
     w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
-    normal = accurate_normal_form(at, w, NORMAL_FORM_ACCURACY)
+    normal = accurate_normal_form(at, w, HOPF_START.normal_form_accuracy)
     return HopfBirth(
         crossing=crossing,
         rod=at,
@@ -117,7 +118,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
         coordinate=path.variable(crossing.at),
         slope=complex(slope),
         normal=normal,
-        coefficients=hopf_coefficients(at, crossing, NORMAL_FORM_ACCURACY),
+        coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
     )
 
 
@@ -157,12 +158,12 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
     scale = Scale.of(start, hopf.name, least)
     border = np.sign(deflection_of(start)) * DEFLECTION
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEARBY_TOLERANCE, workspace)
+    rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     if not 0.5 < y / amplitude < 2.0:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
-    aim = max(accuracy, FIRST_ACCURACY)
+    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...model.floquet import least_outside
 from ..cycle.accuracy.cycle_errors import CycleErrors
-from ..cycle.accuracy.refinement import MULTIPLIER_FACTOR
+from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint
@@ -60,7 +60,7 @@ def _margin(point: ArcPoint) -> float:
     """
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + MULTIPLIER_FACTOR * cycle.trivial_error
+    return relative + REFINEMENT.multiplier_factor * cycle.trivial_error
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,9 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..cycle.accuracy.calibration import ERROR_FACTOR, MULTIPLIER, Calibration, calibration_of
-from ..cycle.accuracy.cycle_errors import ERROR_ROUNDING, MIN_CLAIM, CycleErrors
-from ..cycle.accuracy.finer_meshes import COMPARED_DISTANCE, finer_meshes
+from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
+from ..cycle.accuracy.calibration_settings import CALIBRATION
+from ..cycle.accuracy.cycle_errors import CYCLE_ERRORS, CycleErrors
+from ..cycle.accuracy.finer_meshes import COMPARISON, finer_meshes
 from ..cycle.along_parameter import carried
 from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of
@@ -104,7 +105,11 @@ class BranchCalibration:
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at an equal deflection."""
-        return max(ERROR_FACTOR * float(self.parameter.sum()), MIN_CLAIM * accuracy, ERROR_ROUNDING)
+        return max(
+            CALIBRATION.safety * float(self.parameter.sum()),
+            CYCLE_ERRORS.min_claim * accuracy,
+            CYCLE_ERRORS.rounding,
+        )
 
     def largest(self, accuracy: float) -> float:
         """The error that must not exceed the accuracy."""
@@ -175,7 +180,7 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARED_DISTANCE)
+        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARISON.matrix_distance)
         part[:] = _difference(rough, multipliers, fine, place)
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)

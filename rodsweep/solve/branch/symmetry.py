@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
@@ -146,13 +147,13 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     scale = whole.scale
     border = np.sign(change) * DEFLECTION
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEARBY_TOLERANCE, whole.workspace)
+    rough = condition.solved(start, REFINEMENT.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not ENDINGS.asymmetry_ratios[0] < found < ENDINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
-    aim = max(accuracy, FIRST_ACCURACY)
+    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     return first_point(first, scale, border, abs(change) / scale.deflection, accuracy)

@@ -31,7 +31,7 @@ from .second_state import second_state
 from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
-from .transient.motion_mesh import MOTION_ACCURACY, motion_mesh
+from .transient.motion_mesh import MOTION_MESH, motion_mesh
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.trace import TipTrace
@@ -106,7 +106,7 @@ def _solve(
 ) -> Cycle:
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
-    form = StressForm(rod, motion_mesh(rod, MOTION_ACCURACY))
+    form = StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
     if request.start == "hopf":
         return _from_hopf(form, request, straight, stability, workspace)
     found = None
