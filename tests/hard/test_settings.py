@@ -1,8 +1,8 @@
 """Every number of a solver's settings, halved and doubled: answers stay within the errors that they state.
 
 An honest status in place of an answer counts too. Every field of every settings object is found by
-introspection, but for those of ANOTHER_START; an object without a case fails. The suite takes every nineteenth
-field, without the slow cases; RODSWEEP_RODS=1 takes all (`make survey`).
+introspection, but for those of ANOTHER_START; an object without a case fails. The suite takes every
+nineteenth field, without the slow cases; RODSWEEP_RODS=1 takes all (`make survey`).
 """
 
 import importlib

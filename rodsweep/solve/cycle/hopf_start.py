@@ -38,8 +38,8 @@ LEADING = SpectrumRequest(1, 1e-9, False)
 class HopfStartSettings:
     """Search for the Hopf point below a force, and the start of Newton's method beside it."""
 
-    scan_ratio: float = 0.93
-    """Ratio of successive forces at which the scan evaluates the leading growth rate."""
+    scan_step: float = 0.07
+    """Relative decrease of successive forces at which the scan evaluates the leading growth rate."""
     min_force: float = 1e-2
     """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of
     pi^2."""
@@ -95,7 +95,7 @@ def hopf_point_below(rod: Rod) -> Onset | None:
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START.min_force < F:
-        lower = F * HOPF_START.scan_ratio
+        lower = F * (1 - HOPF_START.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _crossing(rod, (lower, below), (F, above))

@@ -28,8 +28,8 @@ class CoarserMeshSettings:
 
     fewer_orders: int = 2
     """Orders of the fine mesh minus those of the coarse mesh made to predict it."""
-    interval_ratio: float = 1.4
-    """Ratio of the intervals of the fine mesh and of the coarse mesh made to predict it."""
+    more_intervals: float = 0.4
+    """Intervals that the fine mesh has more, in units of those of the coarse mesh made to predict it."""
     served_orders: int = 4
     """Largest difference in orders of a predicted mesh and the coarse mesh."""
     served_intervals: float = 2.0
@@ -47,7 +47,7 @@ class CoarserMeshes:
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
         order = mesh.order - COARSER_MESHES.fewer_orders
-        intervals = round((mesh.intervals - 1) / COARSER_MESHES.interval_ratio) + 1
+        intervals = round((mesh.intervals - 1) / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = COMPARISON.newton_share * accuracy
         self._workspace = workspace

@@ -24,8 +24,9 @@ class ComparisonSettings:
 
     more_orders: int = 2
     """Additional orders of the mesh finer in space: errors fall by a tenth or more."""
-    interval_ratio: float = 1.4
-    """Ratio of intervals of the mesh finer in time. The share of the error that it removes is known."""
+    more_intervals: float = 0.4
+    """Additional intervals of the mesh finer in time, in units of the mesh's; the share of the error that
+    they remove is known."""
     newton_share: float = 0.1
     """Tolerance of Newton's method on the compared meshes, in units of the accuracy."""
     matrix_distance: float = 1e-3
@@ -37,7 +38,7 @@ COMPARISON = ComparisonSettings()
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
-    longer = ceil(COMPARISON.interval_ratio * mesh.intervals)
+    longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
     share = 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
