@@ -137,7 +137,8 @@ def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -
 
 def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     """Difference of two rods' coordinates of a parameter, in units of the larger modulus."""
-    a, b = one.rod.coordinate(name), other.rod.coordinate(name)
+    a = one.rod.coordinate(name)
+    b = other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 

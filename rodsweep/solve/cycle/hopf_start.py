@@ -224,6 +224,7 @@ def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency
     """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
     X = normal.motion(amplitude, np.pi * node_times(HOPF_START.intervals, HOPF_START.stages))
     S, V = normal.form.fields(X)
-    source, target = normal.form.mesh, form.mesh
+    source = normal.form.mesh
+    target = form.mesh
     states = form.layout.state(carried(form.rod, S, source, target), V @ transfer(source, target).T)
     return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START.stages)

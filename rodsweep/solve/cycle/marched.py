@@ -60,7 +60,8 @@ class _Ended(Exception):
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
         super().__init__(why)
-        self.status, self.why = status, why
+        self.status = status
+        self.why = why
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
@@ -77,7 +78,8 @@ class _Marching:
     """The motion of one rod, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
-        self.request, self.limit = request, rod
+        self.request = request
+        self.limit = rod
         self.rod = near_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
@@ -95,7 +97,8 @@ class _Marching:
             path = self._path(settled)
             for _ in range(MARCHING.max_comparisons):
                 settled = self._refined(settled)
-                before, path = path, self._path(settled)
+                before = path
+                path = self._path(settled)
                 errors = _errors(before, path, MARCHING.settled_distance * self.request.accuracy)
                 if errors.largest <= self.request.accuracy:
                     break
@@ -122,7 +125,8 @@ class _Marching:
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = angle_weights(self.beam)
         step = self.mode.period / 1000
-        last, rate = nan, 0.0
+        last = nan
+        rate = 0.0
         most = self.request.most_periods
         while self.waited < most:
             report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
@@ -132,7 +136,8 @@ class _Marching:
                 step,
                 until_returns(row, z, MARCHING.returns_per_test),
             )
-            z, step = run.states[-1], float(run.times[-1] - run.times[-2])
+            z = run.states[-1]
+            step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
@@ -201,7 +206,8 @@ class _Marching:
 
     def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """The errors plus the effect of integrating a rod near the limit instead of in it; raises _Ended."""
-        known, limit = path.orbit.form.rod, self.limit
+        known = path.orbit.form.rod
+        limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
         coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
@@ -229,7 +235,8 @@ class _Marching:
 
 def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     """Errors by the difference of two integrations, plus `share`, the distance left of a settled motion."""
-    a, b = one.extrema, other.extrema
+    a = one.extrema
+    b = other.extrema
     size = abs(b["tip_y_max"])
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size

@@ -132,7 +132,8 @@ class Calibration:
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
     """Errors of `CycleErrors`, (4, ...), from the parts of the error in space and in time, (5, ...) each."""
-    whole, apart = CALIBRATION.safety * (space + time), space[APART] + time[APART]
+    whole = CALIBRATION.safety * (space + time)
+    apart = space[APART] + time[APART]
     in_time = CALIBRATION.share_in_time * time[APART]
     either = CALIBRATION.mutual_bound * sum(np.maximum(part[PERIOD], part[HEIGHT]) for part in (space, time))
     stated = [
@@ -181,7 +182,9 @@ def calibration_of(
         fall = np.full(PARTS, min(max(decay, CALIBRATION.min_fall), CALIBRATION.max_fall))
         power = np.full(PARTS, CALIBRATION.power_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
-    previous, fall, power = before.mesh, before.fall, before.power
+    previous = before.mesh
+    fall = before.fall
+    power = before.power
     if previous.order != mesh.order and previous.edges == mesh.edges:
         fall = _fall(before.space, space, mesh.order - previous.order)
     if previous.intervals != mesh.intervals:

@@ -42,7 +42,8 @@ def common_divisor(path: CyclePath, present: float) -> int:
 @compiled
 def _divisor_of(sizes: Array, present: float) -> int:
     """`common_divisor` of harmonics of these sizes, (harmonics,), from the first; 0 if all sizes are 0."""
-    divisor, least = 0, present * sizes.max()
+    divisor = 0
+    least = present * sizes.max()
     for k in range(len(sizes)):
         if sizes[k] > least:
             divisor = gcd(divisor, k + 1)

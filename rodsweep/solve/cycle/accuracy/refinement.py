@@ -83,7 +83,8 @@ class RefinedCycle:
 
 def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
     """A cycle with the errors of its calibrated mesh."""
-    path, errors = CyclePath(found.orbit), calibration.errors(accuracy)
+    path = CyclePath(found.orbit)
+    errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     by_matrix = REFINEMENT.multiplier_factor * largest * (found.distance + trivial_error)
@@ -113,7 +114,8 @@ def refine(
     Near a Hopf point a coarse mesh may have no cycle, because its own Hopf point lies beyond. Finer meshes
     are tried in this case.
     """
-    aim, start = max(accuracy, REFINEMENT.first_accuracy), orbit
+    aim = max(accuracy, REFINEMENT.first_accuracy)
+    start = orbit
     while True:
         try:
             rough = same_motion(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
@@ -143,7 +145,8 @@ def _predicted_cycle(
     The best cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a coarser mesh
     has no such cycle, if the errors do not decrease, or if the cycle is far from its prediction.
     """
-    coarser, last = CoarserMeshes(mesh, near, accuracy, workspace), inf
+    coarser = CoarserMeshes(mesh, near, accuracy, workspace)
+    last = inf
     orbit, known = best = coarser.predicted(mesh)
     for _ in range(REFINEMENT.max_rounds):
         error = known.errors(accuracy).largest
@@ -153,7 +156,8 @@ def _predicted_cycle(
             break
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh, last = finer_mesh(mesh, known.planned(accuracy)), REFINEMENT.allowed_increase * error
+        mesh = finer_mesh(mesh, known.planned(accuracy))
+        last = REFINEMENT.allowed_increase * error
         if not mesh.allowed:
             break
         if not coarser.serve(mesh):
@@ -173,7 +177,8 @@ def calibrated_cycle(
 
     before: calibration at a nearby cycle. The best cycle is returned if no allowed mesh reaches the accuracy.
     """
-    best, last = None, inf
+    best = None
+    last = inf
     for _ in range(REFINEMENT.max_rounds):
         before = calibrated(found, accuracy, before)
         cycle = judged_by(before, found, accuracy)

@@ -47,8 +47,10 @@ class AmplitudeEquation:
     """
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
-        self.period, self.linear_rate = period, linear_rate
-        self.excess, self.noise = excess, noise
+        self.period = period
+        self.linear_rate = linear_rate
+        self.excess = excess
+        self.noise = noise
         self.coefficient = nan
         """Coefficient c; NaN until the growth shows it."""
 

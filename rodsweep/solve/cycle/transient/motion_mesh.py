@@ -40,10 +40,8 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh of a motion, for a relative accuracy."""
     by_force = MOTION_MESH.waves_per_root_force * abs(rod.F) ** 0.5
     if not rod.standard:
-        modal, bent = (
-            arm_mesh(rod, MOTION_MESH.expected_modes, accuracy),
-            arm_elements(rod, by_force, accuracy),
-        )
+        modal = arm_mesh(rod, MOTION_MESH.expected_modes, accuracy)
+        bent = arm_elements(rod, by_force, accuracy)
         finest = max(modal, bent, key=lambda each: each.nodes)
         return mesh_on(finest.edges, finest.order)
     wave = max(expected_wave_number(MOTION_MESH.expected_modes, most_amplified_wave(rod)[1]), by_force)

@@ -95,14 +95,19 @@ class Transient:
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
-        self.beam, self.form = Beam(near_rod(form.rod), form.mesh), form
-        self.straight, self.along, self.workspace = straight, along, workspace
-        self.accuracy, self.most_periods = request.accuracy, request.most_periods
+        self.beam = Beam(near_rod(form.rod), form.mesh)
+        self.form = form
+        self.straight = straight
+        self.along = along
+        self.workspace = workspace
+        self.accuracy = request.accuracy
+        self.most_periods = request.most_periods
         self.unstable = unstable
         self.mode = leading_mode(self.beam)
         self.trace = self._trace(request)
         self.row = angle_weights(self.beam)
-        rate, period = straight.growth_rate(self.mode.w.real), self.mode.period
+        rate = straight.growth_rate(self.mode.w.real)
+        period = self.mode.period
         self.first_scheme, self.scheme, noise = schemes_of(rate * period, request.transient > 0)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / 1000
@@ -120,7 +125,8 @@ class Transient:
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from z, shape (unknowns,)."""
-        z, first = self._relaxed(z), True
+        z = self._relaxed(z)
+        first = True
         while self.waited < self.most_periods:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._chunk(z, first)
@@ -137,7 +143,8 @@ class Transient:
                     break
                 z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
                 continue
-            early, first = first, False
+            early = first
+            first = False
             if len(times) < 3 or (early and self.small.slow(times, states)):
                 continue
             shown = self.trace is not None and self.trace.shows(z)
