@@ -18,8 +18,7 @@ class WorkspaceSettings:
     """Memory of the matrices of orbits."""
 
     kept_numbers: int = 2**23
-    """Numbers that a workspace reserves at first and keeps between rods, 64 MB: enough for most rods. The
-    system gives the memory page by page as it is used; a buffer that grows would use new pages again."""
+    """Numbers that a workspace keeps between rods, 64 MB: enough for most rods."""
 
 
 WORKSPACE = WorkspaceSettings()
@@ -51,7 +50,7 @@ class NewtonWorkspace:
         """Number of a new claim on the buffer, for a matrix of this size; earlier claims end."""
         if len(self._buffer) < size:
             self._buffer = np.empty(0)  # frees the old buffer before the new one is allocated
-            self._buffer = np.empty(max(size, WORKSPACE.kept_numbers))
+            self._buffer = np.empty(size)
         self._claim += 1
         return self._claim
 
