@@ -16,6 +16,7 @@ from ..model.material.jump import Unknowns, before_jump, behind_jump
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
 from .elements.basis import interpolation
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh, transfer
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import Integers, NodalRod
@@ -103,7 +104,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Row from values at an element's nodes to its first or last one, without its nodes at jumps, (p + 1,).
 

@@ -15,6 +15,7 @@ The weight rho is free; the best rho makes both entries of the maximum equal.
 No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
 """
 
+from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, inf, log, sqrt
 
@@ -24,8 +25,17 @@ from ..parameter_path import Path, changes, coefficients_at
 
 BOX_MARGIN = 1.01
 """Safety factor on every bound, for rounding errors in the bound."""
-QUIET = 0.5
-"""Bound of |D - 1| near w = 0, where D therefore has no zero."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuietSettings:
+    """The disc about w = 0 without a zero of D."""
+
+    departure: float = 0.5
+    """Bound of |D - 1| near w = 0, where D therefore has no zero; any bound below 1 would do."""
+
+
+QUIET = QuietSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
@@ -111,7 +121,7 @@ def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
 
 def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
     """The first radius of r, r/2, r/4, ... with |D(i eta) - 1| < 1/2 inside; 0 for underflow."""
-    while _departure(r, T, X, G, pull) >= QUIET:
+    while _departure(r, T, X, G, pull) >= QUIET.departure:
         r /= 2
     return r
 

@@ -33,13 +33,25 @@ from .dominance import dominated_stretch
 
 STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Zero changes along a path, for bounds of a single rod."""
-WIDTH_FACTOR = 4.0
-"""Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
-cheaper."""
-WIDTH_ADDED = 50.0
-"""Width added to the box, in 1/tau2, for the same reason."""
-LEAST_HEIGHT = 0.5
-"""Smallest height of the box, in units of the line's distance from the imaginary axis."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CountSettings:
+    """The contour of a count."""
+
+    width_factor: float = 4.0
+    """Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
+    cheaper."""
+    width_added: float = 50.0
+    """Width added to the box, in 1/tau2, for the same reason."""
+    least_height: float = 0.5
+    """Smallest height of the box, in units of the line's distance from the imaginary axis."""
+    not_an_integer: float = 1e-3
+    """Distance of a winding number from the nearest integer beyond which the count fails."""
+
+
+COUNT = CountSettings()
+
 PATIENCE = 0.25
 """Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled after
 every failure."""
@@ -47,8 +59,6 @@ SMALLEST_REACH = 1e-13
 """Reach in units of |w| below which the line counts as running through a zero of D."""
 MAX_EDGE_NODES = 20_000
 """Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
-NOT_AN_INTEGER = 1e-3
-"""Distance of a winding number from the nearest integer beyond which the count fails."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,13 +223,13 @@ def count_right_of(line: float, rod: Rod) -> Count:
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real = WIDTH_FACTOR * real + WIDTH_ADDED
-    imag = max(imag, LEAST_HEIGHT * abs(line))
+    real = COUNT.width_factor * real + COUNT.width_added
+    imag = max(imag, COUNT.least_height * abs(line))
     change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
         return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
     total += change
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > NOT_AN_INTEGER:
+    if abs(total / math.pi - number) > COUNT.not_an_integer:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number, nodes)

@@ -16,7 +16,7 @@ from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.elements import Elements
 from ..elements.quadrature import gauss, gauss_lobatto
-from .pencil import LEAST_ANGLE_WEIGHT, SHEAR_WEIGHT
+from .pencil import PENCIL_NORM
 
 
 class ArmMesh(Elements):
@@ -97,9 +97,9 @@ class ArmPencil:
         lumped = self._w * self._h[:, None] / 2
         push = self._at_nodes(lumped * at_nodes.gamma2)
         turn = self._at_nodes(lumped * at_nodes.gamma3)
-        least = LEAST_ANGLE_WEIGHT**2 * self._at_nodes(lumped)
+        least = PENCIL_NORM.least_angle_weight**2 * self._at_nodes(lumped)
         angle = np.maximum(turn, least)
-        masses = np.concatenate([push, angle, weight.ravel() * SHEAR_WEIGHT**2])
+        masses = np.concatenate([push, angle, weight.ravel() * PENCIL_NORM.shear_weight**2])
         scale = 1 / np.sqrt(masses)
         B = np.concatenate([np.ones(self.nodes), turn / angle, np.zeros(self.nodes)])
         A = summed * scale[self.rows] * scale[self.columns]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ..elements.elements import INSIDE, Elements
+from ..elements.elements import ELEMENTS, Elements
 from .arm_pencil import ArmPencil
 from .pencil import Pencil, shear_force, slope
 
@@ -71,6 +71,6 @@ def _inside(mesh: Elements, points: Array) -> Array:
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
-        share = np.clip((local + 1) / 2, INSIDE, 1 - INSIDE)
+        share = np.clip((local + 1) / 2, ELEMENTS.inside, 1 - ELEMENTS.inside)
         moved[inside] = mesh.edges[e] + mesh.lengths[e] * share
     return moved

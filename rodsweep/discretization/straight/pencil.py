@@ -10,8 +10,8 @@ the shear force s in discontinuous P_{p-1} (Gauss nodes). With test functions (a
 which is Sec. VI with the shear force kept as an unknown. Only compliances appear, no stiffness, so
 k1, k2 = inf and gamma3 = 0 are allowed.
 
-Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by
-SHEAR_WEIGHT. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma
+Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by a
+small weight. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma
 inner product (Sec. VI): the problem at F = 0 is symmetric, and s, which has no time derivative, has
 almost no weight. Without the scaling the fourth eigenvalue loses four digits.
 """
@@ -26,15 +26,23 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
-from ..elements.elements import Elements, equal_edges
+from ..elements.elements import ELEMENTS, Elements, equal_edges
 from ..elements.quadrature import gauss, gauss_lobatto
 
-SHEAR_WEIGHT = 1e-9
-"""Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""
-LEAST_ANGLE_WEIGHT = 1e-4
-"""Smallest weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
-NO_TIP = 1e-10
-"""Smallest y(1), in units of the mode's largest value, for which a mode can be normalised to y(1) = 1."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PencilNormSettings:
+    """Weights of the unknowns in the norm, and normalisation at the tip."""
+
+    shear_weight: float = 1e-9
+    """Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""
+    least_angle_weight: float = 1e-4
+    """Smallest weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
+    no_tip: float = 1e-10
+    """Smallest y(1), in units of the mode's largest value, for which a mode can be normalised to y(1) = 1."""
+
+
+PENCIL_NORM = PencilNormSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,20 +111,20 @@ class Pencil(Elements):
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm: sqrt(gamma3), at least `LEAST_ANGLE_WEIGHT`."""
-    return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
+    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.least_angle_weight`."""
+    return max(sqrt(gamma3), PENCIL_NORM.least_angle_weight)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
     """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode with y(1) = 0."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
+    return np.where(np.abs(y[-1]) > PENCIL_NORM.no_tip * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points; shape (points, k)."""
     nodes, weights = gauss(mesh.order)
-    mass = (weights * mesh.lengths[:, None] / 2).ravel() * SHEAR_WEIGHT**2
+    mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM.shear_weight**2
     values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
     for first, inside, local in mesh.by_element(points):
@@ -135,7 +143,7 @@ def slope(mesh: Elements, values: Complex, points: Array) -> Complex:
     return result
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def assemble(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order
@@ -166,7 +174,7 @@ def assemble(elements: int, order: int) -> Pencil:
             (5, s, s, -np.diag(weight)),
         ]
     entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
-    masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * SHEAR_WEIGHT**2])
+    masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM.shear_weight**2])
     return _gather(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
-from ..elements.elements import Elements
+from ..elements.elements import ELEMENTS, Elements
 from ..elements.mesh import reconstruction
 
 
@@ -31,7 +31,7 @@ class TipMatrices(NamedTuple):
     lengths: Array
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """`TipMatrices` of a mesh."""
     values, angles, integrals, ends = reconstruction(grid.order)

@@ -6,13 +6,21 @@ from functools import cached_property
 
 from ...arrays import Complex
 
-MIN_KNOWN_MODES = 4
-"""Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
-PLACE_ACCURACY = 1e-6
-"""Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
-EXPLAINED = 0.25
-"""Tolerance of the interpolation between two places: the interpolant stays above this fraction of the smaller
-end value, so that no zero hides, and the slopes explain the change but for this fraction."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnchorSettings:
+    """Interpolation between two places of a path."""
+
+    min_known_modes: int = 4
+    """Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
+    place_accuracy: float = 1e-6
+    """Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
+    explained: float = 0.25
+    """Tolerance of the interpolation between two places: the interpolant stays above this fraction of the
+    smaller end value, so that no zero hides, and the slopes explain the change but for this fraction."""
+
+
+ANCHORS = AnchorSettings()
 
 
 @dataclass(frozen=True)
@@ -91,8 +99,8 @@ def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
         lowest, share = lowest_between(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < EXPLAINED * smallest:
+        if a[0] * b[0] <= 0 or lowest < ANCHORS.explained * smallest:
             return share, True
-        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])):
+        if missed > ANCHORS.explained * max(smallest, abs(b[0] - a[0])):
             return 0.5, False
     return 0.0, False

@@ -25,7 +25,7 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.value import newton_correction
 from ...discretization.elements.elements import Elements, equal_edges, halved
 from ...discretization.elements.mesh import mesh_on
-from ...discretization.elements.resolution import LARGEST_ORDER, resolution_for
+from ...discretization.elements.resolution import RESOLUTION, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...discretization.straight.mixed_form import MixedForm
@@ -165,10 +165,10 @@ def of_odd_order(elements: Elements) -> Elements:
 
 def a_third_finer(elements: Elements) -> Elements:
     """Elements with a third more unknowns, of odd order."""
-    order = ceil(elements.order * 4 / 3)
-    if order <= LARGEST_ORDER:
+    order = ceil(elements.order * RESOLUTION.refinement)
+    if order <= RESOLUTION.largest_order:
         return of_odd_order(Elements(elements.edges, order))
-    return of_odd_order(Elements(halved(elements.edges), ceil(2 / 3 * elements.order)))
+    return of_odd_order(Elements(halved(elements.edges), ceil(RESOLUTION.refinement / 2 * elements.order)))
 
 
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:

@@ -6,10 +6,7 @@ from numpy.typing import NDArray
 from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil, Matrices
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import Loaded, ShiftInvertSolver
-
-ARM_SOLVERS_KEPT = 8
-"""Number of solvers kept for later points on equal meshes."""
+from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
@@ -41,7 +38,7 @@ class ArmSolver(ShiftInvertSolver):
         return Loaded(self.pencil.finite(rod), shift)
 
 
-_kept = LruPool(ArmSolver, ARM_SOLVERS_KEPT)
+_kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:

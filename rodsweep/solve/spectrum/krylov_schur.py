@@ -11,11 +11,7 @@ from ...discretization.straight.pencil import Pencil, assemble
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import Loaded, ShiftInvertSolver
-
-EIGEN_SOLVERS_KEPT = 24
-"""Number of solvers kept for later points of equal resolution; a sweep uses few, and each takes some
-megabytes."""
+from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
 
 
 @compiled
@@ -72,7 +68,7 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(EigenSolver, EIGEN_SOLVERS_KEPT)
+_kept = LruPool(EigenSolver, KRYLOV.uniform_solvers_kept)
 
 
 def eigen_solver(resolution: Resolution) -> EigenSolver:

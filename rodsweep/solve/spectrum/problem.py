@@ -24,9 +24,7 @@ from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver, forget_arm_solvers
 from .krylov_schur import EigenSolver, eigen_solver, forget_uniform_solvers
-
-SHIFT_ABOVE_GROWTH = 1.05
-"""Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
+from .shift_invert import KRYLOV
 
 Mesh = Resolution | ArmMesh
 """Mesh of a uniform rod or of an arm."""
@@ -92,7 +90,7 @@ class UniformProblem(TransverseProblem):
     def __init__(self, rod: Rod):
         self.rod = rod
         growth, self._wave = most_amplified_wave(rod)
-        self.shift = SHIFT_ABOVE_GROWTH * growth
+        self.shift = KRYLOV.shift_above_growth * growth
         self._amplification = sqrt(squared_amplification(rod))
         self.bounded = isfinite(self._amplification)
 
@@ -133,7 +131,7 @@ class ArmProblem(TransverseProblem):
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
         growth, _ = local_growth(rod)
-        self.shift = SHIFT_ABOVE_GROWTH * float(growth.max())
+        self.shift = KRYLOV.shift_above_growth * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)

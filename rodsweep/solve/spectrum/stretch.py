@@ -27,8 +27,16 @@ from .search import warm_up as warm_up_search
 from .spectrum import Reached, Spectrum
 from .status import SpectrumStatus
 
-FURTHER_MODES = 2
-"""Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StretchSettings:
+    """Eigenvalues followed along a stretch."""
+
+    further_modes: int = 2
+    """Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+
+
+STRETCH = StretchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +149,7 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
     """(eigenvalues to follow, pairs unsplit; number of leading ones that are proved complete), or None."""
     try:
-        modes = request.modes + FURTHER_MODES
+        modes = request.modes + STRETCH.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()

@@ -14,7 +14,7 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import problem as problem_module
 from rodsweep.solve.spectrum.krylov_schur import EIGEN_SOLVERS_KEPT, eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.shift_invert import DENSE_UP_TO
+from rodsweep.solve.spectrum.shift_invert import KRYLOV
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -417,7 +417,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
-    assert 3 * result.elements * result.order > DENSE_UP_TO
+    assert 3 * result.elements * result.order > KRYLOV.dense_up_to
     assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
 
 

@@ -12,7 +12,7 @@ from math import ceil, inf
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.elements.resolution import LARGEST_ORDER
+from ....discretization.elements.resolution import RESOLUTION
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
 from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
@@ -139,7 +139,7 @@ class Calibration:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - FEWER_ORDERS)
-        orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MAX_MORE_ORDERS) + 1)
+        orders = np.arange(lowest, min(RESOLUTION.largest_order, present.order + MAX_MORE_ORDERS) + 1)
         fewest = max(ORBIT_MESH.min_intervals, ceil(FEWER_INTERVALS * present.intervals))
         most = min(MAX_INTERVAL_RATIO * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
