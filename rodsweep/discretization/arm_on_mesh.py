@@ -45,7 +45,8 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
-    points, weights = grid.points_inside.ravel()[inside], _places_of(grid)[1][inside]
+    points = grid.points_inside.ravel()[inside]
+    weights = _places_of(grid)[1][inside]
     sections = rod.sections(points.ravel())
     c1, _, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)

@@ -23,6 +23,10 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients, Rod
 from ..parameter_path import Path, changes, coefficients_at
 
+PADDING = 0.01
+"""Padding of the box in units of the depth."""
+LEAST_PADDING = 1e-6
+"""Padding of the box at depth 0, in 1/tau2; far below the smallest eigenvalue of a rod at rest, 12."""
 BOX_MARGIN = 1.01
 """Safety factor on every bound, for rounding errors in the bound."""
 
@@ -48,7 +52,7 @@ def box_of(a: float, depth: float) -> tuple[float, float]:
     """`eigenvalue_box` from a, the square root of `squared_amplification`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
-    pad = 0.01 * depth + 1e-6
+    pad = PADDING * depth + LEAST_PADDING
     return BOX_MARGIN * a * a / 4 + pad, BOX_MARGIN * a * n + pad
 
 

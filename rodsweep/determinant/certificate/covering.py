@@ -27,6 +27,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
+from ..exponents import LEAST_DIVISOR
 from ..newton import FAILED, Zero, crossing_newton
 from ..parameter_path import Path, changes, coefficients_at, determinant_along
 from .box import BOX_MARGIN, quiet_radius, squared_amplification_over
@@ -66,7 +67,12 @@ MAX_BOXES = 1_000_000
 """Maximum number of boxes to examine; all others are left open."""
 SAME_ZERO = 1.5
 """Distance from the centre of a regular box, in half-widths, within which a known zero is the box's zero."""
-EMPTY, REGULAR, UNDECIDED = 0, 1, 2
+BESIDE = 1.01
+"""Distance of a zero from the centre of a box, in half-widths, from which a neighbouring box finds the
+zero."""
+EMPTY = 0
+REGULAR = 1
+UNDECIDED = 2
 """Result of examining a box: no zero, at most one zero in the doubled box, or no proof of either."""
 
 
@@ -166,7 +172,7 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
-    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, 1e-300))
+    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, LEAST_DIVISOR))
 
 
 @compiled
@@ -191,7 +197,7 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
             zero = crossing_newton(eta, p, origin, direction, half)
             away = _half_widths_away(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
-                known = away > 1.01  # outside the box: a neighbouring box finds the same zero
+                known = away > BESIDE  # outside the box: a neighbouring box finds the same zero
                 for other in zeros:  # the doubled box contains at most one zero
                     known = known or _half_widths_away(other, eta, p, half) <= SAME_ZERO
                 if not known:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Complex
+from ...arrays import Array
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.elements import Elements
@@ -70,10 +70,6 @@ class ArmPencil:
         """u of all nodes, both ends included, shape (nodes + 1,)."""
         return self.mesh.positions
 
-    def finite(self, rod: Rod) -> int:
-        """The number of finite eigenvalues; theta adds none without shear or without rotational drag."""
-        return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
-
     def matrices(self, rod: Rod) -> Matrices:
         """The pencil of an arm."""
         inside = rod.local(self._gauss_points)
@@ -111,16 +107,6 @@ class ArmPencil:
         A = np.zeros((self.unknowns, self.unknowns))
         A[self.rows, self.columns] = sparse.A
         return A, sparse.B
-
-    def fields(self, vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k).
-
-        scale: `Matrices.scale`, (2, nodes).
-        """
-        clamp = np.zeros((1, vectors.shape[1]))
-        y = vectors[: self.nodes] * scale[0][:, None]
-        theta = vectors[self.nodes : 2 * self.nodes] * scale[1][:, None]
-        return np.vstack([clamp, y]), np.vstack([clamp, theta])
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""

@@ -12,7 +12,7 @@ from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.elements import ELEMENTS, Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, shear_force, slope
+from .pencil import Pencil, fields_of, shear_force, slope
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of any arm."""
@@ -34,10 +34,7 @@ class DenseForm:
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
-        n = self.mesh.nodes
-        clamp = np.zeros((1, vectors.shape[1]))
-        y, theta = (vectors[i * n : (i + 1) * n] * self.scale[i][:, None] for i in range(2))
-        return np.vstack([clamp, y]), np.vstack([clamp, theta])
+        return fields_of(vectors, self.scale)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
         """(h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors at points, (2, k, points).

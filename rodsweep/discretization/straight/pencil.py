@@ -64,10 +64,6 @@ class Pencil(Elements):
     def unknowns(self) -> int:
         return 3 * self.nodes
 
-    def finite(self, rod: Rod) -> int:
-        """The number of finite eigenvalues; theta adds none without shear or without rotational drag."""
-        return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
-
     def coefficients(self, rod: Rod) -> Array:
         """Factors of the pieces for a rod, shape (6,)."""
         t = angle_weight(rod.rotational_drag)
@@ -101,13 +97,21 @@ class Pencil(Elements):
         push = 1 / np.sqrt(self.mass)
         return np.stack([push, push / angle_weight(rod.rotational_drag)])
 
-    def fields(self, vectors: Complex, rod: Rod) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
-        push, turn = self.scale(rod)[:, :, None]
-        clamp = np.zeros((1, vectors.shape[1]))
-        y = vectors[: self.nodes] * push
-        theta = vectors[self.nodes : 2 * self.nodes] * turn
-        return np.vstack([clamp, y]), np.vstack([clamp, theta])
+
+def finite_eigenvalues(rod: Rod, nodes: int) -> int:
+    """Number of finite eigenvalues on a mesh; theta adds none without shear or without rotational drag."""
+    return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
+
+
+def fields_of(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
+    """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k).
+
+    scale: factors from unknowns to y and theta at the nodes, (2, nodes).
+    """
+    n = scale.shape[1]
+    clamp = np.zeros((1, vectors.shape[1]))
+    y, theta = (np.vstack([clamp, vectors[i * n : (i + 1) * n] * scale[i][:, None]]) for i in range(2))
+    return y, theta
 
 
 def angle_weight(gamma3: float) -> float:

@@ -61,7 +61,8 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
     hopfs, gaps, examined = _crossings(problem, low, high, certify)
-    tracer, counts = Tracer(problem, certify), Counts(problem, gaps, certify)
+    tracer = Tracer(problem, certify)
+    counts = Counts(problem, gaps, certify)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, hopfs)
     oscillates = tracer.anchor(path.variable(start)).oscillates
     edges = problem.edges(low, high)

@@ -68,8 +68,10 @@ class Anchor:
 
 def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
     """(least value on [0, 1], its place) of the cubic with values a, b and slopes at the ends."""
-    square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
-    lowest, at = min(a, b), 0.5
+    square = 3 * (b - a) - 2 * slope_a - slope_b
+    cube = slope_a + slope_b - 2 * (b - a)
+    lowest = min(a, b)
+    at = 0.5
     spread = square * square - 3 * cube * slope_a
     if spread >= 0 and (square or cube):
         # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
@@ -77,7 +79,8 @@ def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[
         t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
         value = a + t * (slope_a + t * (square + t * cube))
         if 0 < t < 1 and value < lowest:
-            lowest, at = value, t
+            lowest = value
+            at = t
     return lowest, at
 
 

@@ -113,7 +113,8 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_BOUNDARIES.change_distance else math.inf
     best = math.inf
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
-        a, b = points[i], points[i + 1]
+        a = points[i]
+        b = points[i + 1]
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
         if beside > CHANGE_BOUNDARIES.beside:
             continue

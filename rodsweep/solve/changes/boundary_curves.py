@@ -138,7 +138,8 @@ class _Trace:
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
         """Whether the curve returns to its first point within the step."""
-        first, last = behind[0], behind[-1]
+        first = behind[0]
+        last = behind[-1]
         step = float(np.linalg.norm(there.v - last.v))
         near = float(np.linalg.norm(there.v - first.v)) < step
         return (
@@ -155,7 +156,8 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
 
     The curve is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
     """
-    curve, guess = _Trace(Boundary(plane, sign)), np.array([*start, math.log(abs(eigenvalue))])
+    curve = _Trace(Boundary(plane, sign))
+    guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
         first = _CurvePoint.on(curve.near(guess, tangent), tangent)
@@ -173,7 +175,8 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
 
 def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
     """The curve through points, (points, 3), with the folds between them."""
-    boundary, folds = curve.boundary, []
+    boundary = curve.boundary
+    folds = []
     if len(points) > 1:
         forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
         tangents = np.array([boundary.tangent(v) for v in points])
@@ -193,8 +196,10 @@ def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
 
 def _fold(curve: _Trace, a: _CurvePoint, b: _CurvePoint, axis: int) -> Fold | None:
     """The point between two where the tangent has no component along an axis; None if not found."""
-    boundary, noise = curve.boundary, _tangent_noise(curve.boundary)
-    chord, found = b.v - a.v, dict[float, OnBoundary]()
+    boundary = curve.boundary
+    noise = _tangent_noise(curve.boundary)
+    chord = b.v - a.v
+    found = dict[float, OnBoundary]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:

@@ -68,7 +68,9 @@ class Tracer:
     """Follows the leading eigenvalue along one path; solved anchors are kept."""
 
     def __init__(self, problem: PathProblem, certify: bool):
-        self.problem, self.path, self.certify = problem, problem.path, certify
+        self.problem = problem
+        self.path = problem.path
+        self.certify = certify
         self.anchors: dict[float, Anchor] = {}
         self.proved = certify
         """Whether every anchor is certified and no eigenvalue lies right of any change."""
@@ -85,7 +87,8 @@ class Tracer:
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.at(p)}: {found.status.name} {found.message}".rstrip())
-        w, slope = found.eigenvalues.copy(), np.empty(ANCHOR_MODES, dtype=complex)
+        w = found.eigenvalues.copy()
+        slope = np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
             if abs(polished - guess) <= max(
@@ -101,7 +104,8 @@ class Tracer:
         length = abs(edges[-1] - edges[0])
         while stack:
             a, b = stack.pop()
-            left, right = self.anchor(a), self.anchor(b)
+            left = self.anchor(a)
+            right = self.anchor(b)
             if left.oscillates == right.oscillates:
                 share, hides = unexplained(left, right)
                 if share == 0.0:
@@ -128,9 +132,11 @@ class Tracer:
         lead."""
         pair, real = (left, right) if left.oscillates else (right, left)
         if right.oscillates != self.path.inverse:
-            double, single = Kind.onset, Kind.pair_leads
+            double = Kind.onset
+            single = Kind.pair_leads
         else:
-            double, single = Kind.real_again, Kind.real_leads
+            double = Kind.real_again
+            single = Kind.real_leads
         for find, kind, meeting in ((self._double, double, 2), (self._overtaking, single, 3)):
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
@@ -146,7 +152,8 @@ class Tracer:
     def _double(self, pair: Anchor, real: Anchor) -> Meeting | None:
         """The double eigenvalue between an anchor with a leading pair and one with two real eigenvalues; or
         None."""
-        below, above = pair.partner(), real.partner()
+        below = pair.partner()
+        above = real.partner()
         width = abs(pair.p - real.p)
         if below is None or above is None:
             return None
@@ -161,7 +168,8 @@ class Tracer:
         or None."""
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
             return None  # no eigenvalue of the other kind is known
-        p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
+        p = (pair.p + real.p) / 2
+        ends = sorted((pair.p, real.p))
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
         w_real = self._carried(complex(real.w[0]), real.p, p)
         w_pair = self._carried(complex(pair.w[0]), pair.p, p)
@@ -178,7 +186,8 @@ class Tracer:
                 return None
             if abs(step) <= LEADER.converged * error:
                 return Meeting(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
-            w_real, w_pair = w_real + step * s_real, w_pair + step * s_pair
+            w_real = w_real + step * s_real
+            w_pair = w_pair + step * s_pair
             if w_real.imag != 0:
                 w_real = complex(w_real.real, 0.0)
         return None
@@ -190,5 +199,6 @@ class Tracer:
             w, slope, _ = self.problem.eigenvalue(w, p)
             following = start + (stop - start) * i / LEADER.carrying_steps
             ahead = w + slope * (following - p)
-            w, p = complex(ahead.real, 0.0) if w.imag == 0 else ahead, following
+            w = complex(ahead.real, 0.0) if w.imag == 0 else ahead
+            p = following
         return w

@@ -85,7 +85,8 @@ class UniformPath(PathProblem):
         return count_right_of(line, self.path.at(p))
 
     def relaxation(self, p: float) -> tuple[float, float]:
-        here, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+        here = coefficients_at(p, self.path.origin, self.path.direction)
+        rate = self.path.direction
         time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
         return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3
 
@@ -127,7 +128,8 @@ class ArmPath(PathProblem):
     def count(self, line: float, p: float) -> Count:
         found = self._followed.spectrum(p, ARM_PATH.followed_modes) if self._followed is not None else None
         if found is not None:
-            w, error = found.eigenvalues, found.error_estimate
+            w = found.eigenvalues
+            error = found.error_estimate
             clear = (np.abs(w.real - line) > 2 * error).all()
             if clear and w[-1].real < line <= 0:
                 return Count(int((w.real > line).sum()), 0)

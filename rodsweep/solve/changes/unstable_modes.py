@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
+from ...model.rod import Rod
+
 if TYPE_CHECKING:
     from .path_problem import PathProblem  # for annotations only: the module imports solvers
 
@@ -31,6 +33,11 @@ class ChangeCountSettings:
 
 
 CHANGE_COUNTS = ChangeCountSettings()
+
+
+def end_below_crushing(rod: Rod, F: float) -> float:
+    """The force F, or the largest force of a search on a rod that a smaller force crushes."""
+    return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 
 class Kind(IntEnum):
@@ -80,7 +87,10 @@ class Counts:
     """
 
     def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
-        self.problem, self.path, self.gaps, self.certify = problem, problem.path, gaps, certify
+        self.problem = problem
+        self.path = problem.path
+        self.gaps = gaps
+        self.certify = certify
         self.doubts: list[str] = []
 
     def at(self, value: float) -> int:

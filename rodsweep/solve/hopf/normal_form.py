@@ -21,8 +21,7 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.arm.determinant import arm_determinant
-from ...determinant.value import newton_correction
+from ...determinant.wave_number import wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halved
 from ...discretization.elements.mesh import mesh_on
 from ...discretization.elements.resolution import RESOLUTION, resolution_for
@@ -150,11 +149,10 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
     accuracy *= NORMAL_FORM.accuracy_share
+    waves = HARMONIC * wave_number(rod, w)
     if not rod.standard:
-        wave_number = arm_determinant(rod).wave_number(w)
-        return arm_elements(rod, HARMONIC * wave_number, accuracy, NORMAL_FORM.largest_order)
-    wave_number = newton_correction(w, rod.coefficients)[2]
-    resolution = resolution_for(HARMONIC * wave_number, accuracy, NORMAL_FORM.largest_order)
+        return arm_elements(rod, waves, accuracy, NORMAL_FORM.largest_order)
+    resolution = resolution_for(waves, accuracy, NORMAL_FORM.largest_order)
     return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 

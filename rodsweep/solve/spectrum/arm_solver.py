@@ -3,7 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Complex
 from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil, Matrices
+from ...discretization.straight.pencil import fields_of, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
 from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
@@ -35,7 +37,11 @@ class ArmSolver(ShiftInvertSolver):
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return Loaded(self.pencil.finite(rod), shift)
+        return Loaded(finite_eigenvalues(rod, self.nodes), shift)
+
+    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+        return fields_of(vectors, self.matrices.scale)
 
 
 _kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
@@ -44,8 +50,3 @@ _kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
     """The solver for a mesh; kept for later points."""
     return _kept.get(mesh)
-
-
-def forget_arm_solvers() -> None:
-    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
-    _kept.clear()

@@ -13,9 +13,11 @@ import numpy as np
 from ...arrays import Complex
 from ...determinant.certificate.winding_number import Count
 from ...determinant.roots import Roots
+from ...discretization.straight.transverse_mesh import AnyMesh
+from ..backend.kept import forget_all
 from ..backend.petsc import PETSC_ERRORS
 from ..point import cause_of
-from .problem import Mesh, TransverseProblem, forget_solvers
+from .problem import TransverseProblem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +44,8 @@ class CandidateSettings:
 
 CANDIDATES = CandidateSettings()
 
-BELOW, CLOSE_BELOW = 3.0, 1e-9
+BELOW = 3.0
+CLOSE_BELOW = 1e-9
 """Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its error and
 of its modulus."""
 
@@ -54,7 +57,7 @@ class Candidates:
     vectors: of the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty.
     """
 
-    mesh: Mesh
+    mesh: AnyMesh
     roots: Roots
     vectors: Complex | None
     failure: str = ""
@@ -80,7 +83,7 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
+def attempt(problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
     """Eigenvalues nearest the shift of the problem, at least `wanted` if enough converge, without spurious
     ones.
 
@@ -89,13 +92,14 @@ def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, 
     succeed.
     """
     raw: Complex = np.empty(0, complex)
-    kept, failure = None, ""
+    kept = None
+    failure = ""
     try:
         solver = problem.solver(mesh)
         raw = solver.solve(problem.rod, problem.shift, wanted, tight)
         kept = solver.vectors(len(raw)) if vectors else None
     except PETSC_ERRORS as error:
-        forget_solvers()
+        forget_all()
         failure = cause_of(error)
     kept_roots = problem.roots(raw, CANDIDATES.max_waves_per_node * mesh.elements * mesh.order)
     kept = kept[:, kept_roots.chosen] if kept is not None else None

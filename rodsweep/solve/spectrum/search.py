@@ -11,9 +11,10 @@ from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...model.rod import Rod
+from ..backend.kept import forget_all
 from ..point import solved
 from .candidates import Candidates, Verdict, attempt, judge
-from .problem import TransverseProblem, forget_solvers, problem_of
+from .problem import TransverseProblem, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
@@ -69,7 +70,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is a status, never an exception."""
 
     def failed(cause: str) -> Spectrum:
-        forget_solvers()
+        forget_all()
         return no_spectrum(SpectrumStatus.failed, request, cause)
 
     if rod.uniform and not rod.standard:
@@ -96,7 +97,9 @@ class Search:
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
-        self.problem, self.request, self.modes = problem_of(rod), request, request.modes
+        self.problem = problem_of(rod)
+        self.request = request
+        self.modes = request.modes
         self.with_vectors = request.vector_nodes > 0
         bounded = self.problem.bounded
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
@@ -132,14 +135,16 @@ class Search:
             # Too few converged, or converged to no root, or SLEPc failed: request more, on a finer mesh.
             self.failures += bool(found.failure)
             self.why = found.failure or self.why
-            self.wanted, self.mesh = self.wanted + self.modes, self.problem.finer(self.mesh)
+            self.wanted = self.wanted + self.modes
+            self.mesh = self.problem.finer(self.mesh)
             return None
         if self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all():
             self.reach_the_axis(len(found.roots.w))
             return None
         verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
         if verdict is not None and verdict.count.number is None and found.roots.ahead:
-            self.unresolved, self.mesh = True, self.problem.finer(self.mesh)
+            self.unresolved = True
+            self.mesh = self.problem.finer(self.mesh)
             return None
         if verdict is not None and verdict.count.number is not None and not verdict.agrees:
             self.lost = verdict
@@ -166,7 +171,8 @@ class Search:
             return
         more = number + SEARCH.spare_modes
         if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
-            more, self.mesh = self.wanted + number - here + SEARCH.spare_modes, self.problem.finer(self.mesh)
+            more = self.wanted + number - here + SEARCH.spare_modes
+            self.mesh = self.problem.finer(self.mesh)
         self.request_more(more)
 
     def reach_the_axis(self, number: int) -> None:
@@ -209,7 +215,8 @@ class Search:
 
 def _result(best: JudgedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The outcome with its numbers and the extent of their proof."""
-    found, verdict = best.found.roots, best.verdict
+    found = best.found.roots
+    verdict = best.verdict
     accurate = best.short <= SEARCH.stalled_error_share
     status = SpectrumStatus.ok if accurate else SpectrumStatus.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
@@ -221,7 +228,8 @@ def _result(best: JudgedCandidates, problem: TransverseProblem, request: Spectru
         if undecided:
             status = SpectrumStatus.undecided
         elif not proved:
-            status, message = SpectrumStatus.not_certified, verdict.count.why_not if verdict else ""
+            status = SpectrumStatus.not_certified
+            message = verdict.count.why_not if verdict else ""
     unstable = sum(value.real > 0 for value in w)
     # Without a request for a proof, the unstable modes are known if the search went beyond them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))

@@ -103,13 +103,15 @@ class ShiftInvertSolver(ABC):
     """
 
     def __init__(self, pattern: Pattern, mass: Array):
-        self.nodes, n = pattern.nodes, pattern.unknowns
+        self.nodes = pattern.nodes
+        n = pattern.unknowns
         package = sparse_package()
         self.dense = n <= KRYLOV.dense_up_to or package is None
         self.diagonal = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
-        self.A, self.B = PETSc.Mat(), PETSc.Mat()
+        self.A = PETSc.Mat()
+        self.B = PETSc.Mat()
         if self.dense:
             self.A.createDense([n, n], comm=PETSc.COMM_SELF).setUp()
         else:
@@ -146,6 +148,10 @@ class ShiftInvertSolver(ABC):
     @abstractmethod
     def load(self, rod: Rod, shift: float) -> Loaded:
         """Fills A - shift B and B for a rod."""
+
+    @abstractmethod
+    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
 
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
         """At least `wanted` eigenvalues nearest the shift if they converge, unsorted, complex, (k,), in

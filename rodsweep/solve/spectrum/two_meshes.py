@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
+from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
+from ..backend.kept import forget_all
 from ..point import Unsolvable, solved
-from .problem import Mesh, TransverseProblem, forget_solvers, problem_of
+from .problem import TransverseProblem, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
@@ -50,16 +52,17 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """
 
     def failed(cause: str) -> Spectrum:
-        forget_solvers()
+        forget_all()
         return no_spectrum(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: _solve(rod, request), failed)
 
 
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    problem, modes = problem_of(rod), request.modes
+    problem = problem_of(rod)
+    modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
-    mesh: Mesh = problem.mesh_for(modes, aim)
+    mesh: AnyMesh = problem.mesh_for(modes, aim)
     before = _leading(problem, mesh, modes)
     best: Spectrum | None = None
     for _ in range(TWO_MESHES.max_finer_meshes):
@@ -90,12 +93,14 @@ class _Found(NamedTuple):
     indices: NDArray[np.intp]
 
 
-def _leading(problem: TransverseProblem, mesh: Mesh, modes: int) -> _Found:
+def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
     """Eigenvalues of a mesh, sorted; more eigenvalues do not change the leading `modes` ones.
 
     Empty if the mesh is too coarse for twice as many eigenvalues.
     """
-    solver, wanted, before = problem.solver(mesh), modes + TWO_MESHES.first_spare, np.empty(0, complex)
+    solver = problem.solver(mesh)
+    wanted = modes + TWO_MESHES.first_spare
+    before = np.empty(0, complex)
     while True:
         raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)
         order = np.lexsort((-raw.imag, -raw.real))
@@ -105,7 +110,8 @@ def _leading(problem: TransverseProblem, mesh: Mesh, modes: int) -> _Found:
             return _Found(raw[order], order)
         if 2 * wanted > mesh.unknowns // TWO_MESHES.unknowns_a_mode:
             return _Found(raw[:0], order[:0])
-        before, wanted = leading, 2 * wanted
+        before = leading
+        wanted = 2 * wanted
 
 
 def _worst(found: Spectrum) -> float:
@@ -133,10 +139,11 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
 
 
 def _spectrum(
-    problem: TransverseProblem, request: SpectrumRequest, mesh: Mesh, found: _Found, error: Array
+    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _Found, error: Array
 ) -> Spectrum:
     """The outcome of a mesh. error: absolute error of each eigenvalue found, (k,)."""
-    w, modes = found.w, request.modes
+    w = found.w
+    modes = request.modes
     enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
     if request.vector_nodes and enough:
