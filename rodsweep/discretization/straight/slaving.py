@@ -21,8 +21,6 @@ from ..elements.quadrature import gauss, gauss_lobatto
 class SlavingSettings:
     """Elements of the tip layer."""
 
-    order: int = 16
-    """Order of the elements, which resolves exp(kappa u) over `longest`/kappa to rounding."""
     longest: float = 4.0
     """Longest element in units of the layer's thickness; elements away from the tip may be longer."""
     max_equal: int = 64
@@ -32,6 +30,9 @@ class SlavingSettings:
 
 
 SLAVING = SlavingSettings()
+ORDER = 16
+"""Order of the elements, derived: it resolves exp(kappa u) over `SLAVING.longest`/kappa to rounding, since no
+error of T is stated. Half of it would leave 4e-11 of a numerical abscissa."""
 
 
 def slaving_of(rod: Rod) -> float:
@@ -41,8 +42,8 @@ def slaving_of(rod: Rod) -> float:
     if rod.standard:
         return slaving_layer(rod)
     edges = _edges(rod)
-    x, _ = gauss_lobatto(SLAVING.order)
-    points, weights = gauss(SLAVING.order + 2)
+    x, _ = gauss_lobatto(ORDER)
+    points, weights = gauss(ORDER + 2)
     value = interpolation(x, points)
     slope = value @ differentiation(x)
     lengths = np.diff(edges)
