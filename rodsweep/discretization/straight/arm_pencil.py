@@ -6,8 +6,6 @@ solution is smooth within each element. The matrix is not affine in any paramete
 arm.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +14,7 @@ from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.elements import Elements
 from ..elements.quadrature import gauss, gauss_lobatto
-from .pencil import PENCIL_NORM
+from .pencil import PENCIL_NORM, Matrices
 
 
 class ArmMesh(Elements):
@@ -26,18 +24,6 @@ class ArmMesh(Elements):
     def unknowns(self) -> int:
         """The total number of unknowns y, theta and s."""
         return 3 * self.nodes
-
-
-class Matrices(NamedTuple):
-    """The pencil of one arm.
-
-    A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
-    unknowns to y and theta at the nodes, (2, nodes).
-    """
-
-    A: Array
-    B: Array
-    scale: Array
 
 
 class ArmPencil:
@@ -100,13 +86,6 @@ class ArmPencil:
         B = np.concatenate([np.ones(self.nodes), turn / angle, np.zeros(self.nodes)])
         A = summed * scale[self.rows] * scale[self.columns]
         return Matrices(A, B, scale[: 2 * self.nodes].reshape(2, -1))
-
-    def dense(self, rod: Rod) -> tuple[Array, Array]:
-        """(A, diagonal of B) of the arm as dense arrays, shapes (unknowns, unknowns) and (unknowns,)."""
-        sparse = self.matrices(rod)
-        A = np.zeros((self.unknowns, self.unknowns))
-        A[self.rows, self.columns] = sparse.A
-        return A, sparse.B
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""

@@ -58,9 +58,10 @@ class DenseForm:
 
 def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
     """The dense eigenproblem of a rod on the mesh of a pencil."""
-    if isinstance(pencil, Pencil):
-        return DenseForm(rod, pencil, *pencil.dense(rod), pencil.scale(rod))
-    return DenseForm(rod, pencil.mesh, *pencil.dense(rod), pencil.matrices(rod).scale)
+    found = pencil.matrices(rod)
+    A = np.zeros((pencil.unknowns, pencil.unknowns))
+    A[pencil.rows, pencil.columns] = found.A
+    return DenseForm(rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.scale)
 
 
 def _inside(mesh: Elements, points: Array) -> Array:

@@ -19,6 +19,7 @@ almost no weight. Without the scaling the fourth eigenvalue loses four digits.
 from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,18 @@ class PencilNormSettings:
 
 
 PENCIL_NORM = PencilNormSettings()
+
+
+class Matrices(NamedTuple):
+    """The pencil of one rod or arm.
+
+    A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
+    unknowns to y and theta at the nodes, (2, nodes).
+    """
+
+    A: Array
+    B: Array
+    scale: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,11 +92,9 @@ class Pencil(Elements):
         whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
         return whole
 
-    def dense(self, rod: Rod) -> tuple[Array, Array]:
-        """(A, diagonal of B) of the rod as dense arrays, shapes (unknowns, unknowns) and (unknowns,)."""
-        A = np.zeros((self.unknowns, self.unknowns))
-        A[self.rows, self.columns] = self.stiffness(rod)
-        return A, self.inertia(rod)
+    def matrices(self, rod: Rod) -> Matrices:
+        """The pencil of one rod."""
+        return Matrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
 
     def inertia(self, rod: Rod) -> Array:
         """The diagonal of B, shape (unknowns,)."""

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Complex
-from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil, Matrices
-from ...discretization.straight.pencil import fields_of, finite_eigenvalues
+from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil
+from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
 from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver

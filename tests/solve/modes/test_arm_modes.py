@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from surveyed import RODS
 
+from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.slaving import slaving_of
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
 from rodsweep.model.adjoint import slaving_layer
@@ -209,7 +210,9 @@ def test_the_abscissa_of_a_slaved_arm_is_the_largest_quotient(rod):
     found = solve_modes(rod, TIGHT).growth.numerical_abscissa
     mesh = mesh_for(rod, 160.0, 1e-12)
     assert numerical_abscissa(rod, pencil_on(mesh)) == pytest.approx(found, rel=1e-9)
-    A, B = pencil_on(mesh).dense(rod)
+    form = dense_form(rod, pencil_on(mesh))
+    A = form.A
+    B = form.B
     n = mesh.nodes
     y, slaved = slice(n), slice(n, None)
     L = A[y, y] - A[y, slaved] @ np.linalg.solve(A[slaved, slaved], A[slaved, y])

@@ -14,6 +14,7 @@ from rodsweep.determinant.value import distance_to_next
 from rodsweep.discretization.elements.basis import differentiation
 from rodsweep.discretization.elements.quadrature import gauss_lobatto, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
+from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.pencil import assemble, fields_of, shear_force, tip_scale
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
@@ -271,8 +272,8 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     left_over = []
     for order in (8, 12, 16):
         pencil = assemble(1, order)
-        A, B = pencil.dense(rod)
-        _, z = null_vectors(A, B, w)
+        form = dense_form(rod, pencil)
+        _, z = null_vectors(form.A, form.B, w)
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())
     assert left_over[0] < 1e-3
