@@ -76,7 +76,11 @@ def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[
     if spread >= 0 and (square or cube):
         # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
         root = math.sqrt(spread)
-        t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
+        t = 0.5
+        if square + root > 0:
+            t = -slope_a / (square + root)
+        elif cube:
+            t = (root - square) / (3 * cube)
         value = a + t * (slope_a + t * (square + t * cube))
         if 0 < t < 1 and value < lowest:
             lowest = value
