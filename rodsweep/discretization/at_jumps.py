@@ -16,11 +16,13 @@ from ..model.material.jump import Unknowns, before_jump, behind_jump
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
 from .elements.basis import interpolation
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh, transfer
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import Integers, NodalRod
 
-STRETCHING, BENDING = 0, 2
+STRETCHING = 0
+BENDING = 2
 """Components of S that are not smooth at a jump, in the order of their shares."""
 
 
@@ -31,7 +33,10 @@ def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
         q = Unknowns(q1[i], q3[i])
         a = before_jump(law, sides, q)
         b = behind_jump(sides, q, a)
-        out[0, i], out[1, i], out[2, i], out[3, i] = a.q1, a.q3, b.q1, b.q3
+        out[0, i] = a.q1
+        out[1, i] = a.q3
+        out[2, i] = b.q1
+        out[3, i] = b.q3
 
 
 def parted(rod: NodalRod, S: Array) -> Array:
@@ -85,12 +90,14 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
     here, there: nodes of the jumps, (k,) each. shares: of both sides in the unknown of a jump, (k, 2).
     """
-    out, p = E.copy(), source.order
+    out = E.copy()
+    p = source.order
     element = np.searchsorted(source.edges, target.positions, side="right") - 1
     at_jumps = [int(node) // p for node in here]
     for e, node in zip(at_jumps, here, strict=True):
         for side in (e - 1, e):
-            rows, columns = element == side, slice(side * p, (side + 1) * p + 1)
+            rows = element == side
+            columns = slice(side * p, (side + 1) * p + 1)
             row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
             weights = out[rows, node].copy()
             out[rows, node] = 0.0
@@ -103,7 +110,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Row from values at an element's nodes to its first or last one, without its nodes at jumps, (p + 1,).
 

@@ -12,7 +12,7 @@ from ..discretization.elements.elements import Elements
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Rod
-from ..solve.changes.anchors import MIN_KNOWN_MODES, PLACE_ACCURACY
+from ..solve.changes.anchors import ANCHORS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
@@ -48,10 +48,10 @@ class ProvedTask(Task):
 
         By default rods are searched along a line, `searched`, for places where eigenvalues cross the axis.
         """
-        accuracy = mesh_accuracy(PLACE_ACCURACY, vectors=False)
+        accuracy = mesh_accuracy(ANCHORS.place_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
-            return spectrum_mesh(rod, MIN_KNOWN_MODES, accuracy)
+            return spectrum_mesh(rod, ANCHORS.min_known_modes, accuracy)
 
         return largest_first_mesh(self.points, mesh_of, self.searched())
 

@@ -32,7 +32,8 @@ LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the
 for _name in CALLED:
     binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
 
-POINTER, INT = types.intp, types.int32 if PETSc.IntType == np.int32 else types.int64
+POINTER = types.intp
+INT = types.int32 if PETSc.IntType == np.int32 else types.int64
 
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:

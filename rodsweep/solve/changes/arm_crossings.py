@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import EXPLAINED, MIN_KNOWN_MODES, PLACE_ACCURACY, lowest_between
+from .anchors import ANCHORS, lowest_between
 from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
@@ -63,11 +63,13 @@ class CrossingSearch:
         """The place at p; raises Unsolvable if its eigenvalues or their count cannot be computed."""
         if p not in self.places:
             near = min(self.places.values(), key=lambda place: abs(place.p - p), default=None)
-            modes = MIN_KNOWN_MODES if near is None else max(MIN_KNOWN_MODES, 2 + near.unstable)
-            found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
+            modes = (
+                ANCHORS.min_known_modes if near is None else max(ANCHORS.min_known_modes, 2 + near.unstable)
+            )
+            found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
                 modes = _needed(found)
-                found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
+                found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
             slopes = found.eigenvalues.copy()
@@ -173,6 +175,6 @@ def hidden(left: AxisPlace, right: AxisPlace) -> float:
                 return 0.5
             continue
         lowest, share = lowest_between(a[0], b[0], h * a[1], h * b[1])
-        if lowest < EXPLAINED * min(a[0], b[0]):
+        if lowest < ANCHORS.explained * min(a[0], b[0]):
             return share
     return 0.0

@@ -59,6 +59,7 @@ class StepControl:
     number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest: largest
     angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most: maximum number
     of solutions; no curve has more. min_measured: smallest prediction error, or angle, distinguished from 0.
+    Raises ValueError unless steps may grow.
     """
 
     first: float
@@ -73,6 +74,10 @@ class StepControl:
     shrinkage: float = 0.5
     most: int = 5000
     min_measured: float = 1e-9
+
+    def __post_init__(self) -> None:
+        if not self.growth > 1:
+            raise ValueError(f"growth = {self.growth}, but steps must grow")
 
     def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
         """The next solution; raises Unsolvable if the solution may lie on another curve."""

@@ -18,12 +18,12 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of
 from ...determinant.arm.hull import Hulls, hull_at, hulls_along
 from ...determinant.parameter_path import Path
+from ..backend.kept import forget_all
 from ..point import FAILURES
 from .arm_following import follow_arms
 from .candidates import lines
 from .carried_count import judge_points, leading
-from .prediction import Track, part
-from .problem import forget_solvers
+from .prediction import Track, part, track_from
 from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
@@ -94,21 +94,11 @@ def _followed(path: Path, p: Array, request: SpectrumRequest, further: int) -> I
     if first is None or made is None:
         return None
     family, hulls = made
-    track, known = _empty_track(first, n), np.zeros(n, np.int64)
+    track, known = track_from(first, n), np.zeros(n, np.int64)
     reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
     return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls)
-
-
-def _empty_track(first: Complex, points: int) -> Track:
-    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
-    shape = (points, len(first))
-    order = np.zeros(shape, np.int64)
-    order[0] = np.arange(len(first))
-    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
-    track.w[0] = first
-    return track
 
 
 def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, Hulls] | None:
@@ -141,7 +131,7 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: i
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:
-        forget_solvers()
+        forget_all()
         return None
     if search.best is None:
         return None
@@ -186,7 +176,7 @@ class FollowedArms:
         start = float(one.p[i])
         for steps in STEPS_FROM_NEAREST:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track, known = _empty_track(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
+            track, known = track_from(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
             if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
                 return self._judged(one, p, modes, part(track, len(grid) - 1, len(grid)), known[-1:])

@@ -34,6 +34,16 @@ class Track(NamedTuple):
     order: NDArray[np.int64]
 
 
+def track_from(first: Complex, points: int) -> Track:
+    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
+    shape = (points, len(first))
+    order = np.zeros(shape, np.int64)
+    order[0] = np.arange(len(first))
+    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
+    track.w[0] = first
+    return track
+
+
 def part(track: Track, start: int, stop: int) -> Track:
     """The track from point start up to point stop."""
     here = slice(start, stop)
@@ -55,17 +65,22 @@ def mates_of(w: Complex, mate: NDArray) -> None:
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
     """Also makes mates of real eigenvalues that meet within some steps, the earliest meeting first."""
     while True:
-        soonest, a, b = CLOSING, -1, -1
+        soonest = CLOSING
+        a = -1
+        b = -1
         for k in range(len(w)):
             for j in range(k + 1, len(w)):
                 if mate[k] < 0 and mate[j] < 0 and w[k].imag == 0 and w[j].imag == 0:
                     closing = abs((slope[k] - slope[j]).real * step)
                     gap = abs(w[k] - w[j])
                     if gap < soonest * closing:
-                        soonest, a, b = gap / closing, k, j
+                        soonest = gap / closing
+                        a = k
+                        b = j
         if a < 0:
             return
-        mate[a], mate[b] = b, a
+        mate[a] = b
+        mate[b] = a
 
 
 @compiled
@@ -87,7 +102,8 @@ def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, 
     """(half the sum of two eigenvalues, squared half of their difference, slopes of both)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
-    middle, slope_of_middle = (w[k] + w[j]).real / 2, (slope[k] + slope[j]).real / 2
+    middle = (w[k] + w[j]).real / 2
+    slope_of_middle = (slope[k] + slope[j]).real / 2
     return middle, (half * half).real, slope_of_middle, (2 * half * slope_of_half).real
 
 
@@ -107,7 +123,8 @@ def _two_ahead(
         middle = extrapolated((middle_0, middle), (m0, m1), steps)
         square = extrapolated((square_0, square), (s0, s1), steps)
     else:
-        middle, square = middle + m1 * steps[1], square + s1 * steps[1]
+        middle = middle + m1 * steps[1]
+        square = square + s1 * steps[1]
     if square * before <= 0 or abs(square) < MEETING * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
@@ -132,7 +149,8 @@ def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -
     decided: shape (m,), filled with the number of the other one where D has to decide what two are, whose
     guess is their middle; -1 elsewhere.
     """
-    w, slope = track.w[i - 1], track.slope[i - 1]
+    w = track.w[i - 1]
+    slope = track.slope[i - 1]
     mate = np.empty(len(w), np.int64)
     mates_of(w, mate)
     ahead = p[i] - p[i - 1]

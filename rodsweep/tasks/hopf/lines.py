@@ -39,14 +39,14 @@ class HopfLine:
         """Hopf points on the line; None if the range is empty or the search fails. Needs no PETSc."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
-        from ...solve.changes.unstable_modes import CRUSHING_MARGIN
+        from ...solve.changes.unstable_modes import CHANGE_COUNTS
         from ...solve.point import FAILURES
 
         start, stop = self.start, self.stop
         if self.name == "F":
-            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CRUSHING_MARGIN))
+            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CHANGE_COUNTS.crushing_margin))
         if self.name == "k1":
-            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - CRUSHING_MARGIN)))
+            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - CHANGE_COUNTS.crushing_margin)))
         if not start < stop:
             return None
         at_start: dict[str, Any] = self.fixed | {self.name: start}
