@@ -9,7 +9,7 @@ from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, before_crushed, count_of
+from .parts import NonlinearTask, before_crushed, each_point
 from .protocol import Part, Solver
 from .thresholds import search_record
 
@@ -25,7 +25,7 @@ class CriticalityTask(NonlinearTask):
 
     def headline(self) -> str:
         F_max = self.config.criticality.F_max
-        return f"{count_of(self.points)}, each searched from F = 0 to {F_max:g}{before_crushed(self.config)}"
+        return each_point(self.points, f"searched from F = 0 to {F_max:g}{before_crushed(self.config)}")
 
     def asked(self) -> list[Part]:
         most = self.config.criticality.crossings

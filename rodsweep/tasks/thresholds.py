@@ -9,7 +9,7 @@ from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
-from .parts import ProvedTask, before_crushed, count_of
+from .parts import ProvedTask, before_crushed, each_point
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class ThresholdsTask(ProvedTask):
 
     def headline(self) -> str:
         until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
-        return f"{count_of(self.points)}, each searched from F = 0 to {until}"
+        return each_point(self.points, f"searched from F = 0 to {until}")
 
     def asked(self) -> list[Part]:
         most = self.config.thresholds.crossings

@@ -171,11 +171,15 @@ def _axes(view: View) -> Iterable[tuple[str, ...]]:
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """(number of different values, smallest, largest) of values of any shape, as text; NaN does not count."""
+    """(number of different values, smallest, largest) of values of any shape, as text; NaN does not count.
+
+    The largest is empty unless values differ.
+    """
     # Twelve digits, because values computed from an arm may differ by rounding.
     different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
     ends = sorted(map(float, different))
-    return (str(len(ends)), f"{ends[0]:.6g}", f"{ends[-1]:.6g}") if ends else ("0", "", "")
+    low, high = (f"{ends[0]:.6g}", f"{ends[-1]:.6g}") if ends else ("", "")
+    return str(len(ends)), low, high if len(ends) > 1 else ""
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
