@@ -10,7 +10,7 @@ from ..config.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_branches
-from .parts import NonlinearTask, before_crushed, count_of
+from .parts import NonlinearTask, before_crushed, each_point
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class BranchTask(NonlinearTask):
         options = self.config.branch
         along, short = options.along, before_crushed(self.config) * (options.along == "F")
         ends = f"from {options.start:g} to {options.stop:g}"
-        return f"{count_of(self.points)}, each followed in {along} {ends}{short}"
+        return each_point(self.points, f"followed in {along} {ends}{short}")
 
     @property
     def moved(self) -> dict[str, np.ndarray]:

@@ -30,7 +30,7 @@ from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import arms_line, count_of, material_parts, rod_parts
+from .parts import arms_line, count_of, each_point, material_parts, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class LimitCycleTask(Task):
         if options.start == "hopf":
             start = "the Hopf point below its force"
         if chains is None:
-            return f"{count_of(self.points)}, each started from {start}"
+            return each_point(self.points, f"started from {start}")
         chained = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
             f"{count_of(self.points)} in {chained}, {options.direction} in {self.config.along}: each started "

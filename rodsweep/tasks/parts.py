@@ -10,6 +10,7 @@ import numpy as np
 from ..config.schema import Config
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.resolution import mesh_accuracy
+from ..model.material.profile import Profile
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Rod
 from ..solve.changes.anchors import ANCHORS
@@ -123,10 +124,9 @@ def count_of(points: Points) -> str:
     return f"{counted(points.count, 'point')} ({shape})"
 
 
-def searched_along_F(config: Config, points: Points, F_max: float) -> str:
-    """The number of points and the range of F that is searched for each of them."""
-    each = "each " * (points.count > 1)
-    return f"{count_of(points)}, {each}searched from F = 0 to {F_max:g}{before_crushed(config)}"
+def each_point(points: Points, clause: str) -> str:
+    """The number of points with a clause about each of them, as in "each searched from F = 0 to 200"."""
+    return f"{count_of(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
@@ -178,12 +178,17 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     shapes = [] if (tapers == 1).all() else [f"{ratios} {_span(tapers)}"]
     profile = config.build.profile
     if profile is not None:
-        jumps = len(profile.u) - len(profile.breaks)
-        rows = counted(len(profile.u), "row")
-        shapes.append(
-            f"a profile of {rows} with {counted(jumps, 'jump')}" if jumps else f"a smooth profile of {rows}"
-        )
+        shapes.append(_profile(config, profile))
     return shapes
+
+
+def _profile(config: Config, profile: Profile) -> str:
+    """A profile in words; that of a cone in SI units is made by rodsweep, from the drag at each radius."""
+    if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
+        return "the drag of each local radius"
+    jumps = len(profile.u) - len(profile.breaks)
+    rows = f"a profile of {counted(len(profile.u), 'row')}"
+    return f"{rows} with {counted(jumps, 'jump')}" if jumps else rows
 
 
 def _law(config: Config) -> str:

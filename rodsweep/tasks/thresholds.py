@@ -9,7 +9,7 @@ from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
-from .parts import ProvedTask, searched_along_F
+from .parts import ProvedTask, before_crushed, each_point
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -29,7 +29,8 @@ class ThresholdsTask(ProvedTask):
     not_proved: ClassVar[str] = "crossings may be missed"
 
     def headline(self) -> str:
-        return searched_along_F(self.config, self.points, self.config.thresholds.F_max)
+        until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
+        return each_point(self.points, f"searched from F = 0 to {until}")
 
     def asked(self) -> list[Part]:
         most = self.config.thresholds.crossings

@@ -30,7 +30,7 @@ def series_of(column: Column) -> Any:
     if column.values.dtype.kind in "iu" and column.absent.any():
         return pd.Series(column.values, dtype="Int64").mask(column.absent)
     if column.values.dtype.kind == "f":
-        return np.where(column.absent, np.nan, column.values)
+        return np.where(column.absent, np.nan, column.values) + column.values.dtype.type(0)  # no -0.0
     return np.array(column.values)
 
 
