@@ -20,6 +20,7 @@ import socket
 import sys
 import traceback
 from contextlib import suppress
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO, NoReturn
@@ -124,14 +125,17 @@ def answer(request: dict) -> dict:
 def keep_ranks(place: str, kernels: BinaryIO) -> NoReturn:
     """Forks a child for each rank that comes to a socket, until the process that started this one ends.
 
-    `kernels`: which compiled functions are loaded first, as `loaded_kernels` writes them.
+    `kernels`: which compiled functions are loaded when the first rank comes, as `loaded_kernels` writes them.
     """
     parent = os.pidfd_open(os.getppid())
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(place)
         server.listen(64)
-        load_for_ranks(kernels)
-        gc.freeze()
+        with kernels:
+            modules = kernels.read()
+        if parent not in select.select([server, parent], [], [])[0]:
+            load_for_ranks(modules)
+            gc.freeze()
         while parent not in select.select([server, parent], [], [])[0]:
             rank, _ = server.accept()
             if not os.fork():
@@ -220,10 +224,23 @@ def load(solving: bool, configs: list[str]) -> None:
             Team()
             with suppress(EnvironmentIncomplete):
                 job.task.solver().warm_up()
+    find_provenance(solving)
     if solving:
         draw()
     else:
         sys.meta_path.insert(0, NoSolver())
+
+
+def find_provenance(solving: bool) -> None:
+    """Finds commit and BLAS of this process once: git, and a walk over all libraries, take longer than a run."""
+    from rodsweep.results.file.provenance import provenance
+
+    provenance()
+    if solving:
+        from rodsweep.solve.backend import blas_kernel
+
+        blas_kernel.blas = cache(blas_kernel.blas)
+        blas_kernel.blas()
 
 
 def draw() -> None:
@@ -255,13 +272,11 @@ def loaded_kernels() -> bytes:
     )
 
 
-def load_for_ranks(kernels: BinaryIO) -> None:
+def load_for_ranks(kernels: bytes) -> None:
     """Loads what the process that solves has loaded, but what starts MPI or PETSc."""
-    with kernels:
-        modules = pickle.load(kernels)
     refusal = NoSolver()
     sys.meta_path.insert(0, refusal)
-    for name, functions in modules.items():
+    for name, functions in pickle.loads(kernels).items():
         with suppress(AssertionError):
             module = import_module(name)
             for function, signatures in functions.items():
