@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from surveyed import only, survey_only
 
 from benchmarks import auto as auto_peer
 from benchmarks.auto import AUTO, SKIPPED, auto_program
@@ -79,7 +80,7 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
     assert tight.seconds > 0
 
 
-@pytest.mark.parametrize("name", ORDERS)
+@pytest.mark.parametrize("name", only([DEFAULT.name], ORDERS))
 def test_order_of_the_errors(name):
     order, *tolerances = ORDERS[name]
     family, at = next(f for f in FAMILIES if f.name == name), cycle()
@@ -186,6 +187,7 @@ def test_auto_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch,
     assert found.sections == ()
 
 
+@survey_only
 def test_the_section_of_auto_has_its_tables(tmp_path):
     found = peers(quick=True, place=tmp_path)
     if not found.sections:

@@ -178,7 +178,7 @@ def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
     assert not complaints, report(complaints)
 
 
-@pytest.mark.parametrize("name", ["spectrum", "limit_cycle"], indirect=True)
+@pytest.mark.parametrize("name", ["list", "limit_cycle"], indirect=True)
 def test_odd_things_among_the_journals_do_no_harm(results, tmp_path, name):
     complaints = []
     for oddity in OF_CHAINS if name == "limit_cycle" else JOURNALS:

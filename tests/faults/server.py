@@ -232,7 +232,7 @@ def load(solving: bool, configs: list[str]) -> None:
 
 
 def find_provenance(solving: bool) -> None:
-    """Finds commit and BLAS of this process once: git, and a walk over all libraries, take longer than a run."""
+    """Finds commit and BLAS of this process once: asking git and all libraries takes as long as a run."""
     from rodsweep.results.file.provenance import provenance
 
     provenance()

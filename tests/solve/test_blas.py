@@ -13,7 +13,7 @@ from rodsweep.solve.backend.blas_kernel import blas
 SPECTRA = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 41}
+  F: {start: 0, stop: 60, num: 11}
   k1: [100, 1.0e4, .inf]
   k2: 1.0e4
   gamma3: [0, 1.0e-4]
