@@ -155,8 +155,7 @@ def test_the_film_is_saved_as_a_gif(browser):
         5,
     ),
 )  # fmt: skip
-def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(opened, name, value):
-    browser = opened
+def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(browser, name, value):
     before = browser.model(f"{name}_field", "value")
     change(browser, f"{name}_field", value)
     browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_message').visible")

@@ -41,16 +41,13 @@ class NoSolver:
 
 def child(request: dict) -> NoReturn:
     """Runs the command in this process, which it ends."""
-    for stream, name in ((1, "stdout"), (2, "stderr")):
-        os.dup2(os.open(request[name], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), stream)
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    write_to(request["stdout"], request["stderr"])
     code = UNCAUGHT
     try:
         os.chdir(request["directory"])
         os.environ.update(request["environment"])
         limit_resources(request["seconds"], request["memory"])
-        request["words"] = [os.fsdecode(bytes.fromhex(word)) for word in request["words"]]
+        request["words"] = decoded(request["words"])
         if request["call"] == "content":
             print(json.dumps(content(Path(request["words"][0]))))
             code = 0
@@ -69,6 +66,67 @@ def child(request: dict) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
+
+
+def write_to(out: str, err: str) -> None:
+    """Lets this process write to two files, and read nothing."""
+    for stream, path in ((1, out), (2, err)):
+        file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        os.dup2(file, stream)
+        os.close(file)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+
+
+def decoded(words: list[str]) -> list[str]:
+    """Words of a command as they came."""
+    return [os.fsdecode(bytes.fromhex(word)) for word in words]
+
+
+def several(request: dict, first: int) -> NoReturn:
+    """Runs the command again and again in this process, from one of the runs on, until one run ends it.
+
+    Each has a directory, beside which it leaves its output and last its exit status: a run without is the one
+    that ended the process.
+    """
+    from rodsweep.cli import main
+
+    limit_resources(None, request["memory"])
+    for directory, words in request["runs"][first:]:
+        place = Path(directory).parent
+        write_to(f"{place}/stdout", f"{place}/stderr")
+        os.chdir(directory)
+        limit = int(sum(os.times()[:2]) + request["seconds"]) + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+        sys.argv = ["rodsweep", *decoded(words)]
+        code = UNCAUGHT
+        try:
+            main()
+            code = 0
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else 0
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        (place / "status").write_text(str(code))
+    os._exit(0)
+
+
+def answer_several(request: dict) -> dict:
+    """How each of several runs ended, in as few children as they leave alive."""
+    ended: list[dict] = []
+    places = [Path(directory).parent for directory, _ in request["runs"]]
+    while len(ended) < len(places):
+        one = answer(request | {"first": len(ended)})
+        for place in places[len(ended) :]:
+            if not (place / "status").exists():
+                ended.append(one)
+                break
+            ended.append({"status": int((place / "status").read_text()), "slow": False})
+    return {"runs": ended}
 
 
 def limit_resources(seconds: int | None, memory: int | None) -> None:
@@ -112,7 +170,7 @@ def answer(request: dict) -> dict:
     """How a child ended: its exit status, negative for a signal, and whether it took too long."""
     pid = os.fork()
     if not pid:
-        child(request)
+        several(request, request["first"]) if "first" in request else child(request)
     handle = os.pidfd_open(pid)
     waits = not select.select([handle], [], [], request["patience"])[0]
     if waits:
@@ -304,7 +362,9 @@ def main() -> None:
         os.dup2(2, 1)
         print("{}", file=answers, flush=True)
         for line in requests:
-            print(json.dumps(answer(json.loads(line))), file=answers, flush=True)
+            request = json.loads(line)
+            ended = answer_several(request) if "runs" in request else answer(request)
+            print(json.dumps(ended), file=answers, flush=True)
 
 
 if __name__ == "__main__":
