@@ -18,7 +18,7 @@ DOCS = ROOT / "docs"
 PAGES = [*sorted((DOCS / "tasks").glob("*.md")), *sorted((DOCS / "howto").glob("*.md"))]
 LONG_PAGES = (
     "branch", "limit_cycle", "phase_diagram", "criticality", "amplitude-map", "thresholds", "modes",
-    "configs", "reports",
+    "configs", "reports", "figures",
 )  # fmt: skip
 """Names of pages whose commands take longer than all others together."""
 CLUSTER = ROOT / "tests" / "cluster" / "test_slurm.py"

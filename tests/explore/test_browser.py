@@ -112,6 +112,7 @@ def mode(browser: Browser) -> str:
     return browser.model("arm_source", "tags")[0]
 
 
+@survey_only
 def test_an_arm_that_is_dragged_by_its_tip_and_let_go_moves_into_its_cycle(browser):
     assert mode(browser) == "beats"
     browser.drag("beating_figure", [(0.9, 0.1), (0.8, 0.3), (0.7, 0.4), (0.6, 0.45)])
@@ -148,11 +149,11 @@ def test_the_film_is_saved_as_a_gif(browser):
     ("name", "value"),
     few(
         [
-            ("F", "abc"), ("F", ""), ("k1", "40"), ("k2", "<b>x</b>"), ("taper", "1e9"),
-            ("F", "1e5"), ("F", "nan"), ("k1", "-1"), ("k1", "0"), ("k2", "1,5"), ("k2", "1e400"),
-            ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"),
+            ("F", "abc"), ("F", ""), ("k1", "40"), ("k2", "<b>x</b>"),
+            ("taper", "1e9"), ("F", "1e5"), ("F", "nan"), ("k1", "-1"), ("k1", "0"), ("k2", "1,5"),
+            ("k2", "1e400"), ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"),
         ],
-        5,
+        4,
     ),
 )  # fmt: skip
 def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(browser, name, value):

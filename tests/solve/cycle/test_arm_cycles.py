@@ -187,7 +187,7 @@ SEGMENTS = [
 
 @pytest.mark.parametrize(
     ("section", "values"),
-    [pytest.param(*SEGMENTS[0], marks=survey_only), SEGMENTS[1]],
+    [pytest.param(*segments, marks=survey_only) for segments in SEGMENTS],
     ids=["fixed", "swelling"],
 )
 def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(section, values):

@@ -447,16 +447,19 @@ def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
 @pytest.mark.kernel
 @pytest.mark.parametrize(
     "parameters",
-    [
-        FIG_2A,
-        (30.0, 1e4, 1e4, 1e-4),
-        (37.6559, 1e4, 1e4, 1e-4),
-        (20.008, 1e4, 1e4, 1e-4),
-        (30.0, INF, INF, 0.0),
-        (15.0, 1e4, 200.0, 0.0),
-        (7.0, 100.0, 5.0, 5.0),
-        (-10.0, 1e4, 1e4, 1e-4),
-    ],
+    few(
+        [
+            (20.008, 1e4, 1e4, 1e-4),
+            (30.0, INF, INF, 0.0),
+            (7.0, 100.0, 5.0, 5.0),
+            (-10.0, 1e4, 1e4, 1e-4),
+            FIG_2A,
+            (30.0, 1e4, 1e4, 1e-4),
+            (37.6559, 1e4, 1e4, 1e-4),
+            (15.0, 1e4, 200.0, 0.0),
+        ],
+        4,
+    ),
 )
 def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters):
     rod = rod_of(*parameters)
