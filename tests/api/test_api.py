@@ -15,6 +15,7 @@ import xarray as xr
 from conftest import BIN
 from faults import small
 from ruamel.yaml import YAML
+from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import options
@@ -126,7 +127,7 @@ def test_sweep_can_be_called_whatever_was_imported_first():
     assert run.stdout.startswith("task = 'nothing' is not allowed; it should be spectrum, ")
 
 
-@pytest.mark.parametrize("name", list(small.CONFIGS))
+@pytest.mark.parametrize("name", only(["list", "limit_cycle"], small.CONFIGS))
 def test_sweep_gives_the_dataset_of_the_file(name, command, monkeypatch):
     command.write("points.csv", small.POINTS)
     command.write("c.yaml", small.CONFIGS[name])
