@@ -27,7 +27,8 @@ EXCLUSIVE = (
     (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of exclusive sets of quantities: setting one set removes the other."""
+"""Pairs of exclusive sets of quantities: setting a quantity of either set removes the quantities of the
+opposite set."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
@@ -62,8 +63,8 @@ class Arm(SlenderArm):
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
-        """A copy with other quantities. A force replaces a pressure, width and height replace a radius, and
-        segments replace both, and the length.
+        """A copy with changed quantities. A force replaces a pressure; width and height replace a radius;
+        segments replace radius, width, height and length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE:

@@ -1,4 +1,4 @@
-"""Solves all points of a job one after another in this process, without files and without ranks."""
+"""Solves all points of a job in sequence in this process, without files and without MPI."""
 
 import socket
 from collections.abc import Iterator, Sequence

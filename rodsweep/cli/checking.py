@@ -1,4 +1,4 @@
-"""Output of `rodsweep check`: the points, what is modelled and what is neglected, and the cost."""
+"""Output of `rodsweep check`: the points, modelled and neglected effects, and the cost."""
 
 from dataclasses import replace
 
@@ -52,9 +52,7 @@ def describe_job(job: Job) -> None:
 
 
 def _arm_lines(job: Job) -> list[str]:
-    """Lines on an arm: its quantities, its parameters and unit of time, and the validity of the model at
-    rest.
-    """
+    """Lines on an arm: quantities, parameters, unit of time, and the validity of the model at rest."""
     arm = job.config.parameters.arm
     assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}

@@ -63,7 +63,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("output", type=FILE)
 @click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
-    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that make a larger one."""
+    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
     from .merging import merge_files
     from .run.running import CONTINUE
 
@@ -80,7 +80,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
 @click.argument("file", type=FILE)
 @click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
-    """Write the points of the result FILE that are done so far, without disturbing the run."""
+    """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.recent import take_snapshot
 
     output = result_file(output or beside(file, f"-snapshot{file.suffix}"))

@@ -1,4 +1,4 @@
-"""Commands that write a page or a picture to be sent: `report` and `portrait`."""
+"""Commands that write a page or a picture to share: `report` and `portrait`."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
     help="A .png, .pdf or .svg file, or a .html page with tables.",
 )  # fmt: skip
 def portrait(F_max: float, accuracy: float | None, output: Path, **parameters: float | None) -> None:
-    """Solve everything about one rod, and draw it: thresholds, branches, modes, three cycles."""
+    """Solve and draw all results for a rod: thresholds, branches, modes, three cycles."""
     from ..post.rod_portrait.paragraph import paragraph
     from ..post.rod_portrait.writing import require_portrait, write_portrait
     from ..tasks.rod_portrait import PortraitRequest, rod_results

@@ -14,7 +14,7 @@ from .values import Axis, Number, Strict
 
 
 class BautinAlong(LinearAxes):
-    """One parameter with values, over which generalised Hopf points are followed."""
+    """A parameter with values, over which generalised Hopf points are followed."""
 
 
 class PhaseDiagramOptions(Strict):

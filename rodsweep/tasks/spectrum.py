@@ -44,7 +44,7 @@ class SpectrumTask(ProvedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Stretches of neighbours along which eigenvalues are followed; None without stretches."""
+        """Stretches of neighbouring points, along which eigenvalues are followed; None without stretches."""
         return (
             stretches_along_longest_axis(self.points.shape, self.points.moved)
             if self.config.follows
@@ -67,7 +67,7 @@ class SpectrumTask(ProvedTask):
         return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change their stability; not searched for arms that are not uniform."""
+        """Forces at which the rods change stability; not searched for arms that are not uniform."""
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
@@ -148,7 +148,7 @@ class SpectrumTask(ProvedTask):
 
 
 def record(result: "Spectrum") -> dict[str, Any]:
-    """The spectrum of one point, or of several, as variables of the file."""
+    """The spectrum of a point, or of several points, as variables of the file."""
     values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):

@@ -59,7 +59,8 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from which `canonical` made `resolved`; ValueError if not accepted by this version."""
+    """The config from which `canonical` made `resolved`; ValueError if this version does not accept the
+    config."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
