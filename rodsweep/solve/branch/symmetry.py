@@ -41,7 +41,7 @@ class EndingSettings:
     """Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
     better."""
     lost_asymmetry: float = 0.1
-    """A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
+    """A step that reduces the asymmetry below this fraction has reached or passed a symmetric cycle."""
     asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Allowed range of the asymmetry found, in units of the predicted asymmetry."""
     place_share: float = 0.3

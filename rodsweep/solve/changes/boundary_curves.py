@@ -25,7 +25,8 @@ BOUNDARY_STEPS = StepControl(
 """Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
 curve."""
 BESIDE_AN_EDGE = 1e-9
-"""Largest distance beyond one edge of the plane for a point on another edge."""
+"""Largest distance beyond an edge of the plane at which a point on the neighbouring edge still counts as
+inside."""
 COINCIDENT_POINTS = 1e-9
 """Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
 FOLD_ACCURACY = 1e-13
@@ -107,7 +108,8 @@ class _Trace:
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """The point on the edge that a step crosses; None beyond another edge or for a crushed rod."""
+        """The point on the edge that a step crosses; None for a crushed rod, or if the point lies beyond a
+        second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)

@@ -21,13 +21,13 @@ from .path_problem import PathProblem
 from .unstable_modes import Crossing, Kind
 
 ANCHOR_MODES = 4
-"""Number of leading eigenvalues at an anchor: two that lead, and their rivals."""
+"""Number of leading eigenvalues at an anchor: the leading two, and further rivals."""
 ANCHOR_ACCURACY = 1e-6
 """Accuracy requested from the spectrum solver; Newton's method on D refines the eigenvalues."""
 SMALLEST_ANCHOR_INTERVAL = 2e-4
 """Distance of two anchors, in units of the path, below which no anchor is added between."""
 SMALLEST_HIDING_INTERVAL = 1e-9
-"""The same if two changes may hide between the anchors."""
+"""Smallest interval, as above, if two changes may hide between the anchors."""
 MAX_OVERTAKING_STEPS = 60
 """Maximum number of Newton steps to an overtaking."""
 CARRYING_STEPS = 8
@@ -44,7 +44,7 @@ class Meeting(NamedTuple):
 
 
 class Tracer:
-    """Follows the leading eigenvalue along one path; solved anchors are kept."""
+    """Follows the leading eigenvalue along a path; solved anchors are kept."""
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem, self.path, self.certify = problem, problem.path, certify
@@ -100,8 +100,8 @@ class Tracer:
         return found
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
-        """The single change between two anchors of different kind; None unless it is found and proved to
-        lead."""
+        """The only change between two anchors of different kind; None unless found and proved to be of the
+        leading eigenvalue."""
         pair, real = (left, right) if left.oscillates else (right, left)
         if right.oscillates != self.path.inverse:
             double, single = Kind.onset, Kind.pair_leads
@@ -120,8 +120,8 @@ class Tracer:
         return None
 
     def _double(self, pair: Anchor, real: Anchor) -> Meeting | None:
-        """The double eigenvalue between an anchor with a leading pair and one with two real eigenvalues; or
-        None."""
+        """The double eigenvalue between an anchor with a leading pair and an anchor with two real
+        eigenvalues; or None."""
         below, above = pair.partner(), real.partner()
         width = abs(pair.p - real.p)
         if below is None or above is None:

@@ -16,9 +16,9 @@ from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 ARM_EDGES = 12
 """Number of equal intervals into which a path of arms is first divided."""
 POINTS_BETWEEN = 4
-"""Steps in which eigenvalues are followed through each of these intervals."""
+"""Number of steps in which eigenvalues are followed through each of the `ARM_EDGES` intervals."""
 FOLLOWED_MODES = 4
-"""Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
+"""Number of leading eigenvalues proved complete at each step, together with all unstable eigenvalues."""
 
 
 class PathProblem(ABC):
@@ -82,9 +82,9 @@ class UniformPath(PathProblem):
 
 
 class ArmPath(PathProblem):
-    """Path of arms that vary along their length or have any law, with D from propagators.
+    """Path of arms that vary along the length or have a nonlinear law, with D from propagators.
 
-    The leading eigenvalues are followed along the path once, and from there to wherever they are asked for.
+    The leading eigenvalues are followed along the path once, and from the nearest step to every requested p.
     """
 
     def __init__(self, path: Path):

@@ -20,8 +20,8 @@ from .thresholds import Thresholds, ThresholdStatus, judged, nothing_found
 from .unstable_modes import CRUSHING_MARGIN
 
 MEETS_K1 = 1e-12
-"""Relative rounding error of F against the force that crushes the rod: two axes in steps may meet exactly
-there."""
+"""Relative rounding error of F against the crushing force: points of two axes may reach the crushing force
+exactly."""
 
 
 class Motion(IntEnum):

@@ -28,7 +28,7 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..point import Unsolvable
 
 PREDICTION_DISTANCE = 0.3
-"""Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""
+"""Largest relative distance of a cycle from its prediction: a farther cycle may lie on a different branch."""
 PARAMETER_STEPS = StepControl(
     first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
 )

@@ -23,7 +23,7 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeProblemSettings:
-    """Memory for the pencils of arms."""
+    """Number of pencils of arms kept in memory."""
 
     pencils_kept: int = 16
     """Number of sparsity patterns of arm pencils that are kept for later points on equal meshes."""

@@ -13,7 +13,7 @@ ARM_SOLVERS_KEPT = 8
 
 
 class ArmSolver(ShiftInvertSolver):
-    """Krylov-Schur for one mesh."""
+    """Krylov-Schur for the arms on one mesh."""
 
     matrices: Matrices
     """Matrices of the last solved arm."""

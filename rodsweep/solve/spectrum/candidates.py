@@ -1,7 +1,7 @@
 """One attempt at the leading eigenvalues of a rod, and its verdict.
 
-A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether one is
-missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
+A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether an
+eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
 """
 
 from dataclasses import dataclass
@@ -28,8 +28,8 @@ BEHIND = 0.05
 NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
 BELOW, CLOSE_BELOW = 3.0, 1e-9
-"""Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its error and
-of its modulus."""
+"""Distance of the last wanted eigenvalue from the line of a proof without a count, in units of the
+eigenvalue's error and of its modulus."""
 LINES_TRIED = 3
 """Number of lines tried before the count is given up."""
 
@@ -90,7 +90,8 @@ def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, 
 
 
 def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
-    """Counts the eigenvalues right of a line that lies left of the last wanted and of every unstable mode."""
+    """Counts the eigenvalues right of a line, and compares with those found. The line lies left of all wanted
+    and all unstable eigenvalues."""
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     last = w[modes - 1]

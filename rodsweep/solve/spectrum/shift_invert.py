@@ -25,12 +25,13 @@ START_TOLERANCE, START_SPARE = 1e-4, 5
 """Krylov tolerance, and number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are
 refined on D."""
 TIGHT_TOLERANCE, TIGHT_SPARE = 1e-14, 13
-"""The same for eigenvalues and vectors that are not refined: the mesh is then the only error."""
+"""Tolerance and spare eigenvalues for eigenvalues and vectors that are not refined on D, so that only the
+mesh error remains."""
 MAX_RESTARTS = 200
 """Maximum number of restarts of the Krylov space."""
 STEPS_OF_INFINITY = 2
-"""Number of steps of shift-and-invert that remove the components of infinite eigenvalues: one, or two for k2
-= inf. A larger Krylov space contains only rounding errors in addition, on which LAPACK may fail (trexc)."""
+"""Number of steps of shift-and-invert that remove the components of infinite eigenvalues: 1, or 2 for k2 =
+inf. A larger Krylov space adds only rounding errors, on which LAPACK may fail (trexc)."""
 START_WIDTH = 3.3
 """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
 every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""

@@ -100,7 +100,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
-    """The points from `start` on that can be followed and counted; None if even the first cannot."""
+    """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
     rod, varies = stretch.path.rod, stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
@@ -139,7 +139,7 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, pairs unsplit; number of leading ones that are proved complete), or None."""
+    """(eigenvalues to follow, pairs unsplit; number of leading eigenvalues proved complete), or None."""
     try:
         modes = request.modes + FURTHER_MODES
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)

@@ -19,8 +19,8 @@ class LocatingSettings:
     first_mesh_share: float = 0.1
     """Accuracy for which the first of the two meshes is planned, in units of `accuracy`."""
     cycle_tolerance: float = 1e-10
-    """Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
-    left."""
+    """Tolerance of the last Newton step for a cycle on the way. Convergence is quadratic, so the remaining
+    error is the tolerance squared."""
     max_secants: int = 12
     """Maximum number of secant steps."""
     stalled_secant: float = 1e-6
@@ -46,9 +46,11 @@ class LocatingSettings:
     rounding: float = 1e-13
     """Relative rounding error of the parameter, the period and the size."""
     near_one: float = 3e-3
-    """A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
+    """A multiplier this close to 1 may be rounded to either side of 1. Beside a fold, two multipliers are
+    close to 1."""
     max_halvings: int = 7
-    """Maximum number of halvings of a step with several special points, or with one that is not located."""
+    """Maximum number of halvings of a step with several special points, or with a point that is not
+    located."""
 
 
 LOCATING = LocatingSettings()
