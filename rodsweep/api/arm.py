@@ -126,13 +126,15 @@ class Arm(SlenderArm):
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
             if name in self._names:
-                raise InputError(f"{name} belongs to the arm: arm.replace({name}=...) is another one")
+                raise InputError(
+                    f"{name} is a quantity of the arm, no option; arm.replace({name}=...) makes another arm"
+                )
         options = dict(options)
         progress = options.pop("progress", None)
         takes_load = "F" in CONFIGS[task].taken_of_a_rod(options)
         if takes_load and self.load is None:
             raise InputError(
-                f"{task} needs a load; arm.replace(pressure='2 kPa') has one, or '1.2 of flutter'"
+                f"{task} needs a load; give one by arm.replace(pressure='2 kPa'), or '1.2 of flutter'"
             )
         data, messages = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
         return Answer(repr(self), data, "; ".join(filter(None, (messages[0], self._plane))))

@@ -99,7 +99,7 @@ def _loaded(path: Path, header: Header) -> xr.Dataset:
         found = json.loads(_sealed(data).attrs[SEAL])["variables"]
         for name, digest in sealed.items():
             if found.get(name) != digest:
-                raise ValueError(f"its variable {name} is not read as rodsweep wrote it")
+                raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
     return data
 
 

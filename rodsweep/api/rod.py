@@ -164,7 +164,9 @@ class SoftRod:
             raise InputError(f"{task} is a task of several rods; use rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
-                raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+                raise InputError(
+                    f"{name} is a parameter of the rod, no option; rod.replace({name}=...) makes another rod"
+                )
         section: Any = CONFIGS[task].model_fields[task].annotation
         known = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:

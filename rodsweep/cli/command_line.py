@@ -31,11 +31,20 @@ def commands(context: click.Context) -> None:
 
 @commands.command()
 @click.argument("config", type=FILE)
-@click.option("-o", "--output", type=FILE, help="Result file; by default CONFIG's name with .h5, here.")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    help="Result file; by default CONFIG's name with .h5, in the working directory.",
+)
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
-@click.option("--extend", is_flag=True, help="Add to a result file whose config this one contains.")
-@click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
+@click.option(
+    "--extend", is_flag=True, help="Extend a result file; CONFIG must contain all points of the file."
+)
+@click.option(
+    "--shard", metavar="I/N", default="1/1", help="Compute only part I of N; `merge` joins the parts."
+)
 @click.option("--strict", is_flag=True, help="End the run at the first exception that is a bug.")
 @click.option("-q", "--quiet", is_flag=True, help="Print problems only; show no progress.")
 def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: str, **options: bool) -> None:

@@ -94,7 +94,7 @@ def test_an_arm_alike_all_along_is_standard(tmp_path):
             f"{CAST}, length: [11 cm, 12 cm]",
             "",
             "",
-            "parameters.arm.length has several values, but the segments make one; leave it out",
+            "parameters.arm.length has several values, but the segments fix the length; leave it out",
         ),
         (f"{CAST}, radius: 6 mm", "", "", "parameters.arm.radius = 0.006 m and segments are both given"),
         (

@@ -166,8 +166,8 @@ class ArmSection(Strict):
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
         if "poisson" in self.several and "k2" in beside:
             raise ValueError(
-                "parameters.arm.poisson has several values, and parameters.k2, which replaces all that it "
-                "moves, is given too; give one of them"
+                "parameters.arm.poisson has several values but changes k2 only, and parameters.k2 is given "
+                "too; give one of them"
             )
         if self.load and not forced:
             raise ValueError(
@@ -223,7 +223,7 @@ class ArmSection(Strict):
         return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
-        """Quantities of all sections without load, in row-major order."""
+        """Yields length, material and cross-section of every arm, in SI units by name, in row-major order."""
         names = [name for name in SECTION if name in self.given]
         for values in product(*(self.given[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))

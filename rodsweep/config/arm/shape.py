@@ -60,8 +60,8 @@ def build_of(arm: "ArmSection") -> Build:
         return alike
     if arm.is_grid and len(set(_builds_of(arm))) > 1:
         raise ValueError(
-            f"parameters.arm.{arm.several[0]} has several values, with which the segments differ by other "
-            "factors; give one value"
+            f"parameters.arm.{arm.several[0]} has several values, and the ratios between the segments "
+            "would differ from value to value; give one value"
         )
     return next(_builds_of(arm), alike)
 
@@ -95,7 +95,9 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
     beside: parameters given beside the arm.
     """
     if arm.segments is not None and "length" in arm.several:
-        raise ValueError("parameters.arm.length has several values, but the segments make one; leave it out")
+        raise ValueError(
+            "parameters.arm.length has several values, but the segments fix the length; leave it out"
+        )
     for name in SHAPES:
         if getattr(arm, name) is not None and "taper" in beside:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")

@@ -34,7 +34,7 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
     """
     found = released_motion(_job(state, shapes=48), tip)
     if found is None:
-        raise InputError("the motion from there could not be integrated")
+        raise InputError("the motion after the release could not be integrated")
     own = {"tip": tip, "frames": FRAMES, "period": float(found.cycle["period"])}
     return vars(found) | _shapes(found) | own
 

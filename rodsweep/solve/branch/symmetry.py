@@ -190,7 +190,7 @@ def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], acc
     if which >= 0 or _relative_asymmetry(start) <= ENDINGS.min_asymmetry:
         return which
     if arc_between(start, end) / 2 < ARC_STEPS.shortest:
-        raise Unsolvable("the motion becomes its mirror image within the shortest step")
+        raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 
 

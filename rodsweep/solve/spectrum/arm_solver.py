@@ -27,7 +27,7 @@ class ArmSolver(ShiftInvertSolver):
     def load(self, rod: Rod, shift: float) -> Loaded:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
-            raise FloatingPointError("the parameters overflow the matrix entries")
+            raise FloatingPointError("matrix entries overflow with these parameters")
         self.B.setValuesCSR(self.line, self.line[:-1], found.B)
         self.B.assemble()
         values = found.A.copy()

@@ -46,7 +46,7 @@ class EigenSolver(ShiftInvertSolver):
         shift *= pace**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
-            raise FloatingPointError("the parameters overflow the matrix entries")
+            raise FloatingPointError("matrix entries overflow with these parameters")
         if rod.rotational_drag != self.gamma3:
             self.gamma3, self.inertia = rod.rotational_drag, self.pencil.inertia(rod)
             self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)

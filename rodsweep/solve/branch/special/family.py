@@ -183,7 +183,7 @@ class _SecantAcross:
         before = self.before
         if before is None or present.test == before.test:
             return None
-        if abs(present.at - before.at) < ACROSS_CURVE.min_span:
+        if abs(present.at - before.at) < ACROSS_CURVE.min_cycle_distance:
             return None
         name = self.family.scale.name
         span = present.at - before.at

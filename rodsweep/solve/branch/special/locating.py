@@ -63,7 +63,7 @@ class Segment:
     def rises(self) -> float:
         """Derivative of the parameter along the branch at the last cycle found."""
         if self._known is None:
-            raise ValueError("nothing is found yet")
+            raise ValueError("no special point is located yet")
         return float(self._known[2][-1]) / self.start.scale.coordinate
 
 

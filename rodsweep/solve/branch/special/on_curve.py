@@ -41,7 +41,7 @@ class CrossingSettings:
     min_cosine: float = 0.9
     """Smallest cosine of the angle between two directions across the curve for which derivatives are
     reused."""
-    min_span: float = 1e-6
+    min_cycle_distance: float = 1e-6
     """Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
     1e-8."""
     error_factor: float = 3.0
@@ -157,7 +157,7 @@ def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
     behind: CurveErrors | None = None
     for point in reversed(points):
         if point.errors is None:
-            raise ValueError("the point was located without error")
+            raise ValueError("the point has no error estimate")
         candidates = [point.errors]
         if point.errors.age == 0:
             behind = point.errors

@@ -220,7 +220,7 @@ def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | Non
 def same_motion(found: Converged, size: float) -> Converged:
     """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
     if not MIN_SIZE * size < found.orbit.size < MAX_SIZE * size:
-        raise Unsolvable("Newton's method converged to another motion than the one at its start")
+        raise Unsolvable("Newton's method converged to a motion far from its start")
     return found
 
 
