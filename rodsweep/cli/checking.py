@@ -81,6 +81,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     if arm.inner_radius is None:
         return []
     names = ("length", "radius", "inner_radius", "poisson")
+    # Only poisson may be missing; its default is that of rubber.
     values = [arm.given[name].array() if name in arm.given else np.array([0.5]) for name in names]
     length, radius, bore, poisson = np.meshgrid(*values)
     tubes = bore < radius

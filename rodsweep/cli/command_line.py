@@ -79,10 +79,10 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     output = result_file(output)
     merged = merge_files(output, tuple(map(followed, shards)))
     if merged.missing:
-        click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
+        click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(CONTINUE)
     if not merged.finished:
-        click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that all points together determine")
+        click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 
 @commands.command()

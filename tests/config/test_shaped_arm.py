@@ -122,6 +122,6 @@ def test_bad_shapes_are_refused(tmp_path, arm, more, beside, sentence):
 def test_profiles_that_differ_along_an_axis_of_one_parameter_are_refused(tmp_path):
     """Poisson's ratio is an axis of k2, and changes the shear of a tube and of solid segments otherwise."""
     tube = CAST.replace("radius 6 mm", "radius 6 mm, inner_radius 3 mm")
-    with pytest.raises(InputError, match=r"parameters\.arm\.poisson has several values, with which"):
+    with pytest.raises(InputError, match=r"parameters\.arm\.poisson has several values, and the ratios"):
         config(tmp_path, f"{tube}, poisson: [0.4, 0.5]")
     assert config(tmp_path, f"{CAST}, poisson: [0.4, 0.5]").build.profile

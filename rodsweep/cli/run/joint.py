@@ -29,7 +29,8 @@ start."""
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """Joint work of a run. due: whether the file lacks the variables. units: units of work, or None."""
+    """Joint work of a run. due: whether the file lacks variables that need all points. units: units of work,
+    or None."""
 
     due: bool
     units: Any = None

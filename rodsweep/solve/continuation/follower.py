@@ -168,6 +168,7 @@ def crossed(before: Array, after: Array) -> int:
     """Index of the margin, of (margins,), that is first to fall below 0 along a straight step; -1 for
     none."""
     falls = (after < 0) & (after < before)
+    # Linear interpolation gives the fraction of the step at which each falling margin is 0.
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
     first = int(np.argmin(share))
     return first if share[first] < inf else -1
@@ -189,6 +190,7 @@ def zero_along(
 
     def settled(at: float) -> float:
         here = known[at] if at in known else value(at)
+        # An exact 0 ends Brent's method, which would otherwise bisect rounding errors.
         return 0.0 if abs(here) <= enough else here
 
     return float(brentq(settled, 0.0, length, xtol=relative * length))

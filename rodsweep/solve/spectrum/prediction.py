@@ -101,6 +101,8 @@ def _two_ahead(
     True.
     """
     k, j = two
+    # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
+    # difference are smooth.
     middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
     before = square
     if i >= 2:
@@ -109,6 +111,7 @@ def _two_ahead(
         square = extrapolated((square_0, square), (s0, s1), steps)
     else:
         middle, square = middle + m1 * steps[1], square + s1 * steps[1]
+    # The extrapolation is too inaccurate to decide on which side of the meeting the next point lies.
     if square * before <= 0 or abs(square) < MEETING * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
