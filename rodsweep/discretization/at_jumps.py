@@ -28,7 +28,8 @@ BENDING = 2
 
 @compiled
 def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
-    """q1 and q3 before a jump, then behind it, of mean unknowns, (m,) each, into out, (4, m)."""
+    """Writes (q1, q3) before a jump and (q1, q3) behind into out, (4, m), for means q1, q3 over both sides,
+    (m,)."""
     for i in range(len(q1)):
         q = Unknowns(q1[i], q3[i])
         a = before_jump(law, sides, q)
@@ -40,7 +41,7 @@ def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
 
 
 def parted(rod: NodalRod, S: Array) -> Array:
-    """S1 and S3 on both sides of each jump, (k, 2, 2, ...): of each jump and side both.
+    """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
 
     S: (3, ..., nodes + 1).
     """

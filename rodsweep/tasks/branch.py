@@ -1,4 +1,4 @@
-"""The task branch: the branches of cycles of every rod, followed in one parameter from its Hopf points."""
+"""The task branch: branches of cycles of every rod, followed in a parameter from all Hopf points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -125,7 +125,7 @@ OTHERWISE = {
     "special_tip_y_max_error": "size_error",
     "special_amplitude_coefficient_error": "coefficient_error",
 }
-"""Fields of a special point whose names differ from their variables."""
+"""Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
 def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:

@@ -59,7 +59,8 @@ class LimitCycleTask(Task):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from its neighbour's cycle; None without chains."""
+        """Chains of points, in which each point starts from the cycle of the previous point; None without
+        chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -131,7 +132,7 @@ class LimitCycleTask(Task):
         ]
 
     def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> Part:
-        """Part on variables that are stored only on request, with their number and memory."""
+        """Text on variables that are stored only on request: number and memory."""
         options = self.config.limit_cycle
         each: int = getattr(options, option)
         if not each:
@@ -217,6 +218,6 @@ class _Stored(NamedTuple):
 
 
 def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
-    """Arrays by the names of their variables; NaN if the cycle has no such arrays."""
+    """Arrays by name of variable; NaN if the cycle has no arrays."""
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

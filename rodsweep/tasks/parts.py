@@ -34,7 +34,7 @@ class ProvedTask(Task):
 
     @abstractmethod
     def asked(self) -> list[Part]:
-        """Parts that the task's options ask for."""
+        """Parts requested by the task's options."""
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
@@ -57,7 +57,8 @@ class ProvedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Values, (n,), of the parameter at whose ends rods are searched, by its name; empty for points."""
+        """Values, (n,), of the searched parameter, by name of the parameter; empty for tasks that search no
+        parameter."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:
@@ -69,17 +70,17 @@ class ProvedTask(Task):
 
     @property
     def varies(self) -> bool:
-        """Whether any rod varies along its length, so that D has no closed form."""
+        """Whether D has no closed form, because a rod varies along the length."""
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def certificate_of_counts(self) -> tuple[bool, str]:
-        """`ProvedTask.certificate` of modes that are counted at every point."""
+        """`ProvedTask.certificate` for modes counted at every point."""
         asked, proof = ProvedTask.certificate(self)
         return asked, f"{proof}, estimated in part" if asked and self.varies else proof
 
     def certificate_of_lines(self) -> tuple[bool, str]:
-        """`ProvedTask.certificate` of modes that are counted along lines of rods."""
+        """`ProvedTask.certificate` for modes counted along lines of rods."""
         asked, proof = ProvedTask.certificate(self)
         if asked and not self.config.standard:
             return True, f"{proof} at some rods, estimated in part; between them slopes of the eigenvalues"
@@ -139,9 +140,9 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
 
 
 def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """What varies along the arm, and its law; empty for uniform arms of linear material.
+    """Quantities that vary along the arm, and the law; empty for uniform arms of linear material.
 
-    columns: values of the parameters of the rods, each of any shape.
+    columns: values of the rods' parameters, arrays of any shape.
     """
     if config.standard:
         return []
@@ -155,9 +156,9 @@ def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Pa
 def arms_line(
     config: Config, columns: Mapping[str, np.ndarray], first_mesh: Callable[[], Elements | None]
 ) -> str:
-    """What is modelled of arms that vary or are of rubber, and their first mesh; empty for other arms.
+    """Variation and law of an arm that is not uniform or of rubber, and the first mesh; empty for other arms.
 
-    columns: as in `material_parts`, each of any shape.
+    columns: as in `material_parts`, arrays of any shape.
     """
     if config.standard:
         return ""
@@ -172,7 +173,7 @@ def arms_line(
 
 
 def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """What varies along the arms, in words; empty for uniform arms."""
+    """Quantities that vary along the arms, in words; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     shapes = [] if (tapers == 1).all() else [f"{ratios} {_span(tapers)}"]
@@ -198,7 +199,7 @@ def _law(config: Config) -> str:
 
 
 def _span(values: np.ndarray) -> str:
-    """The range of some numbers in words."""
+    """The range of several numbers in words."""
     low, high = float(values.min()), float(values.max())
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
 
 EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Crossings whose first occurrence is a threshold, each with the variable stored beside its F."""
+"""Kinds of crossings; the first crossing of a kind is a threshold. Each kind has the variable stored beside
+F."""
 
 
 @dataclass(frozen=True, slots=True)

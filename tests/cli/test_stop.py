@@ -209,7 +209,7 @@ def test_run_is_stopped_within_a_point_that_is_then_solved_anew(command, content
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 75, err
     assert "Traceback" not in err
-    said = rf"stopped by {number.name}; 1 point kept, {max(ranks, 1)} left in the middle and solved again"
+    said = rf"stopped by {number.name}; 1 point kept, {max(ranks, 1)} interrupted, to be solved again"
     assert re.search(said, out), out
     for path in begun:
         assert re.match(

@@ -169,6 +169,8 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
     """The change of arg D between two nodes whose reaches overlap."""
     step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
+    # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
+    # the reaches overlap.
     expected = (here.L * step * share + there.L * step * (1 - share)).imag
     return expected + cmath.phase(there.direction / here.direction * cmath.exp(complex(0.0, -expected)))
 

@@ -23,9 +23,9 @@ UNDECIDED = next(value for value, word in CLASSES if word == "undecided")
 BOTH = next(value for value, word in STABLE_STATES if word == "both")
 """Number of the stable states where straight rod and cycle are both stable."""
 STATES_UNDECIDED = next(value for value, word in STABLE_STATES if word == "undecided")
-"""Number of the undecided stable states."""
+"""Stored value of the state `undecided`."""
 STATES_NAMED = {"straight rod and cycle both stable": BOTH, "stable states undecided": STATES_UNDECIDED}
-"""Stable states whose places `show` states, by their words."""
+"""Stored values of the stable states for which `show` lists places, by the words of `show`."""
 CHANGES_OF_CYCLES = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",

@@ -1,6 +1,7 @@
-"""Compiled code and libpetsc: C functions made by numba, C functions that it may call, memory by address.
+"""Compiled code and libpetsc: C functions made by numba, C functions of PETSc for compiled code, memory by
+address.
 
-Nothing here knows the rod.
+The module has no knowledge of the rod.
 """
 
 import ctypes
@@ -76,11 +77,12 @@ def integers(address: int, size: int) -> Any:
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
-    """The record with fields `dtype` at an address; assignments to its fields write to this memory."""
+    """The record with fields `dtype` at an address; an assignment to a field writes to the memory at this
+    address."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 
 def call(name: str, *arguments: int) -> None:
-    """Calls a function of libpetsc whose arguments are all pointers; raises RuntimeError if it fails."""
+    """Calls a function of libpetsc that takes only pointers; raises RuntimeError on failure."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"{name} failed")

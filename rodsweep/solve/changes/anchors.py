@@ -39,12 +39,12 @@ class Anchor:
 
     @cached_property
     def oscillates(self) -> bool:
-        """Whether a pair leads."""
+        """Whether the leading eigenvalues are a complex pair."""
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, its slope) of the two leading eigenvalues if both are real or a pair; else
-        None."""
+        """((w1 - w2)^2 time^2, slope of this value) of the two leading eigenvalues if both are real or a
+        pair; else None."""
         if self.oscillates:
             gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
             return -(gap**2), -2 * gap * slope
@@ -54,8 +54,8 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(lead of the real part over the first eigenvalue of the other kind, times time; its slope), or
-        None."""
+        """(lead in the real part over the first eigenvalue of the opposite kind, real or complex, times time;
+        slope of this lead), or None."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)

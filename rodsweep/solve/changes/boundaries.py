@@ -51,7 +51,7 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a change; None for an overtaking, which lies on no curve of either kind."""
+    """The seed of a change; None for an overtaking, because no curve is made of overtakings."""
     if kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (Kind.onset, Kind.real_again):

@@ -122,7 +122,8 @@ class _Trace:
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """The point on the edge that a step crosses; None beyond another edge or for a crushed rod."""
+        """The point on the edge that a step crosses; None for a crushed rod, or if the point lies beyond a
+        second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)

@@ -65,7 +65,7 @@ class Meeting(NamedTuple):
 
 
 class Tracer:
-    """Follows the leading eigenvalue along one path; solved anchors are kept."""
+    """Follows the leading eigenvalue along a path; solved anchors are kept."""
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem = problem
@@ -128,8 +128,8 @@ class Tracer:
         return found
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
-        """The single change between two anchors of different kind; None unless it is found and proved to
-        lead."""
+        """The only change between two anchors of different kind; None unless found and proved to be of the
+        leading eigenvalue."""
         pair, real = (left, right) if left.oscillates else (right, left)
         if right.oscillates != self.path.inverse:
             double = Kind.onset

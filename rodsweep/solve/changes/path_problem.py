@@ -92,9 +92,9 @@ class UniformPath(PathProblem):
 
 
 class ArmPath(PathProblem):
-    """Path of arms that vary along their length or have any law, with D from propagators.
+    """Path of arms that vary along the length or have a nonlinear law, with D from propagators.
 
-    The leading eigenvalues are followed along the path once, and from there to wherever they are asked for.
+    The leading eigenvalues are followed along the path once, and from the nearest step to every requested p.
     """
 
     def __init__(self, path: Path):

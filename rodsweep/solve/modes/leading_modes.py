@@ -118,7 +118,11 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     points = lobatto_points(request.nodes)
     vectors = converged_vectors(rod, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
-        return replace(outcome, status=SpectrumStatus.failed, message="no dense mesh resolves the modes")
+        return replace(
+            outcome,
+            status=SpectrumStatus.failed,
+            message="no mesh small enough for dense matrices resolves the modes",
+        )
     result = replace(outcome, vectors=vectors)
     errors = vectors.errors()
     if request.growth:

@@ -30,7 +30,7 @@ from .following import (
 from .prediction import Track, guess_at, mates_of, place_two
 
 Level = tuple[float, Array, Array]
-"""(W, propagators, their derivatives by p), the latter of the shape (elements, terms, 16)."""
+"""(W, propagators, derivatives of the propagators by p), arrays of shape (elements, terms, 16)."""
 
 
 @compiled
@@ -42,7 +42,7 @@ def corrected_of_arm(w: complex, level: Level) -> Corrected:
 
 @compiled
 def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tuple[Corrected, float]:
-    """(the last correction, error): Newton's method until what is left of it, crowding step^2, is small."""
+    """(the last correction, error): Newton's method until the remaining error, crowding step^2, is small."""
     here = first
     for _ in range(MAX_EIGENVALUE_CORRECTIONS):
         error = settled_error(here, crowding, exact)
@@ -54,7 +54,7 @@ def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tu
 
 @compiled
 def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
-    """The two roots near a real `middle` by the quadratic that D is about it."""
+    """The two roots near a real `middle`, from the quadratic Taylor polynomial of D."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
     h = SECOND_STEP * abs(middle)
     after = chain_value(middle + h, level[0], level[1])
@@ -65,7 +65,8 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 @compiled
 def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
-    """Makes roots of the guesses for point i, at p, into the track; whether all did, and pairs are pairs."""
+    """Refines the guesses for point i, at p, to roots in the track; whether all converged and pairs stayed
+    pairs."""
     w = track.w[i]
     error = track.error[i]
     order = track.order[i]
@@ -93,9 +94,10 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
 
 @compiled
 def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level) -> int:
-    """How many of the leading eigenvalues of point i are all right of a line <= 0; 0 where it is not proved.
+    """Number of leading eigenvalues of point i that are proved to be all eigenvalues right of a line <= 0; 0
+    without a proof.
 
-    They include the wanted `modes`, and with them all unstable ones.
+    The line lies left of the wanted `modes`, so that the proof includes all unstable eigenvalues.
     """
     w, error = track.w[i], track.error[i]
     k = track.order[i, modes - 1]
@@ -116,10 +118,10 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 
 @compiled
 def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
-    """How many points, from the first, the eigenvalues can be followed to; fills the track as far.
+    """Follows eigenvalues from the first point on and fills the track; returns the number of points reached.
 
-    track: with w and order of the first point; p: (points,), the points' path variables, inside the family.
-    hulls: of all arms of the family. known: (points,), filled with `all_right_of_line`.
+    track: w and order of the first point are set; p: (points,), path variable of each point, inside the
+    family. hulls: of all arms of the family. known: (points,), filled with `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)

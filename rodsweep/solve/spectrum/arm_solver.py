@@ -12,7 +12,7 @@ from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
-    """Krylov-Schur for one mesh."""
+    """Krylov-Schur for the arms on one mesh."""
 
     matrices: Matrices
     """Matrices of the last solved arm."""
@@ -26,7 +26,7 @@ class ArmSolver(ShiftInvertSolver):
     def load(self, rod: Rod, shift: float) -> Loaded:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
-            raise FloatingPointError("the parameters overflow the matrix entries")
+            raise FloatingPointError("matrix entries overflow with these parameters")
         self.B.setValuesCSR(self.line, self.line[:-1], found.B)
         self.B.assemble()
         values = found.A.copy()

@@ -1,7 +1,7 @@
 """One attempt at the leading eigenvalues of a rod, and its verdict.
 
-A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether one is
-missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
+A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether an
+eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
 """
 
 from dataclasses import dataclass
@@ -107,7 +107,8 @@ def attempt(problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: boo
 
 
 def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
-    """Counts the eigenvalues right of a line that lies left of the last wanted and of every unstable mode."""
+    """Counts the eigenvalues right of a line, and compares with those found. The line lies left of all wanted
+    and all unstable eigenvalues."""
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     last = w[modes - 1]

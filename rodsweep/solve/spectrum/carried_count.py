@@ -20,7 +20,7 @@ RECTANGLES_PER_POINT = 20
 """Number of rectangles after which a proof is given up: the first number plus the second per point; a count
 at a point costs as much as twenty rectangles."""
 WIDE_ENOUGH = 0.2
-"""Relative half width above which all gaps are equally good; the last of these is taken."""
+"""Relative half width above which all gaps are equally good; the last wide gap is taken."""
 NARROWEST_GAP = 1e-6
 """Relative half width below which a gap is not used."""
 

@@ -1,4 +1,4 @@
-"""The leading eigenvalue of a rod from that of a neighbouring rod, without a mesh.
+"""The leading eigenvalue of a rod from the leading eigenvalue of a neighbouring rod, without a mesh.
 
 Newton's method on D follows the eigenvalue; the winding number proves that it still leads.
 """

@@ -47,7 +47,7 @@ def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -
 
 @compiled
 def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, noise: float) -> Corrected:
-    """One Newton step from D, its derivatives by w and p, and its rounding error; real w stays real."""
+    """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
     size = abs(D_w)
     if not size > 0:
         return Corrected(w, 0j, math.inf, math.inf)

@@ -1,4 +1,4 @@
-"""Krylov-Schur for one uniform rod on equal elements; its matrices are affine in the coefficients."""
+"""Krylov-Schur for a uniform rod on equal elements, with matrices affine in the coefficients."""
 
 import math
 
@@ -42,7 +42,7 @@ class EigenSolver(ShiftInvertSolver):
         shift *= pace**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
-            raise FloatingPointError("the parameters overflow the matrix entries")
+            raise FloatingPointError("matrix entries overflow with these parameters")
         if rod.rotational_drag != self.gamma3:
             self.gamma3 = rod.rotational_drag
             self.inertia = self.pencil.inertia(rod)
@@ -62,8 +62,8 @@ class EigenSolver(ShiftInvertSolver):
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, pace): its eigenvalues are those of `rod` times pace^2, its y are those of `rod` over
-    pace.
+    """(equivalent rod, pace): the equivalent rod has the eigenvalues of `rod` times pace^2, and y of `rod`
+    over pace.
 
     A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
     nu^2. Near crushing the matrices of the beam itself are too badly scaled.

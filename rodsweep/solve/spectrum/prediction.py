@@ -99,7 +99,7 @@ def extrapolated(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of two eigenvalues, squared half of their difference, slopes of both)."""
+    """(half the sum of two eigenvalues, squared half of the difference, slopes of these two numbers)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle = (w[k] + w[j]).real / 2
@@ -113,9 +113,12 @@ def _two_ahead(
 ) -> tuple[complex, complex, bool]:
     """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first.
 
-    Where D has to decide what they are, both guesses are their middle and the last value is True.
+    If D has to decide between a real and a complex pair, both guesses are the middle and the last value is
+    True.
     """
     k, j = two
+    # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
+    # difference are smooth.
     middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
     before = square
     if i >= 2:
@@ -146,8 +149,8 @@ def place_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], 
 def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
     """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,).
 
-    decided: shape (m,), filled with the number of the other one where D has to decide what two are, whose
-    guess is their middle; -1 elsewhere.
+    decided: shape (m,), filled with -1; for two eigenvalues of which D has to decide whether they are real,
+    the index of the partner, and both guesses are the middle.
     """
     w = track.w[i - 1]
     slope = track.slope[i - 1]

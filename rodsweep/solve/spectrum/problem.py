@@ -1,7 +1,7 @@
 """The transverse eigenvalue problem of one rod for the search of leading eigenvalues.
 
-A uniform rod of linear material has D in closed form and a pencil that is affine in its coefficients. Every
-other arm has D from propagators and a pencil that is filled anew.
+For a uniform rod of linear material, D has a closed form and the pencil is affine in the coefficients. For
+every other arm, D comes from propagators and the pencil is assembled anew.
 """
 
 from abc import ABC, abstractmethod

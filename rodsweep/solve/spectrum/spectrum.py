@@ -26,7 +26,7 @@ class SpectrumRequest:
 
 
 EachRod = Any
-"""A number of one rod, or the numbers of n rods that were solved together, (n,)."""
+"""A number of a rod, or the numbers of n rods solved together, (n,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

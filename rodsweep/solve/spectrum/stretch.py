@@ -113,7 +113,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
-    """The points from `start` on that can be followed and counted; None if even the first cannot."""
+    """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
@@ -163,7 +163,7 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, pairs unsplit; number of leading ones that are proved complete), or None."""
+    """(eigenvalues to follow, pairs unsplit; number of leading eigenvalues proved complete), or None."""
     try:
         modes = request.modes + STRETCH.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Rods of a file along one parameter, between two values, with all other parameters fixed."""
+    """Rods of a file along a parameter, between two values, with all further parameters fixed."""
 
     name: str
     """The parameter that varies."""
@@ -68,10 +68,11 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 
 def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Lines over a parameter of points with at least two finite values of it; lines over F begin at 0.
+    """Lines over a parameter with at least two finite values; lines over F begin at 0.
 
-    Below the first force of the points the rod may already oscillate; such a Hopf point is stored too. Arms
-    whose parameters are equal and whose profiles differ have no line: a file could not tell them apart.
+    The rod may already oscillate below the smallest force of the points; the Hopf point below is stored too.
+    Arms with equal parameters and different profiles have no line, because a file cannot distinguish such
+    arms.
     """
     columns = {n: points.of_rods[n] for n in names}
     others = [n for n in names if n != name]

@@ -44,7 +44,7 @@ class Segment:
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """Continues on another mesh, without a cycle to start from."""
+        """Continues on a different mesh, without a cycle to start from."""
         self.mesh, self._known = mesh, None
 
     def at(self, length: float) -> Converged:
@@ -111,8 +111,8 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles; if it is not found, its error is the distance of the
-    two."""
+    """The special point of a kind between two cycles. The error of a point that is not found is the distance
+    of the two cycles."""
     aim = min(accuracy, LOCATING.accuracy)
     try:
         segment = Segment(start, end)

@@ -53,9 +53,11 @@ class LocatingSettings:
     rounding: float = 1e-13
     """Relative rounding error of the parameter, the period and the size."""
     near_one: float = 3e-3
-    """A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
+    """A multiplier this close to 1 may be rounded to either side of 1. Beside a fold, two multipliers are
+    close to 1."""
     max_halvings: int = 7
-    """Maximum number of halvings of a step with several special points, or with one that is not located."""
+    """Maximum number of halvings of a step with several special points, or with a point that is not
+    located."""
 
 
 LOCATING = LocatingSettings()

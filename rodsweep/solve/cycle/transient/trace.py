@@ -24,7 +24,7 @@ class TipTrace:
     """A path has any length."""
 
     def shows(self, z: Array) -> bool:
-        """Whether the path goes on at a state z, (unknowns,), of which the outcome is known: it does not."""
+        """Always False: the path ends at a state z, (unknowns,), whose outcome is known."""
         return False
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
