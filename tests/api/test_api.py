@@ -318,7 +318,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Rod(**ROD).spectrum(mods=3), "unknown key spectrum.mods; did you mean modes?"),
         (
             lambda: rs.Rod(**ROD).spectrum(F=3),
-            "rod.replace(F=...) makes another rod",
+            "F is a parameter of the rod, no option; rod.replace(F=...) makes another rod",
         ),
         (
             lambda: rs.Rod(**ROD).phase_diagram(),

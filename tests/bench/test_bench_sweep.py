@@ -98,11 +98,11 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
 
 
 def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
-    case = spectrum_case(tmp_path / "grid", "no solver", 10_000, "instant")
+    case = spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
     taken = run(case, 1)
-    assert case.points == 10_000
+    assert case.points == 20_000
     assert taken.file < MOST_BYTES * case.points
-    table = "\n".join(f"{F!r},200,{1e3 + F!r},1e-4" for F in np.linspace(0, 90, 10_000).tolist())
+    table = "\n".join(f"{F!r},200,{1e3 + F!r},1e-4" for F in np.linspace(0, 90, 20_000).tolist())
     (case.directories[0] / "p.csv").write_text(f"F,k1,k2,gamma3\n{table}\n")
     (case.directories[0] / "c.yaml").write_text(
         "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 2}\n"

@@ -11,7 +11,7 @@ from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
 from .arm.arm import loads_at
-from .diagram_curves import agreement_lines, criticality_lines, curve_lines
+from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import span
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
@@ -49,7 +49,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), saving_line(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
-        trust += agreement_lines(view, line)
+        trust += [*agreement_lines(view, line), *cut_lines(view, line, row)]
     if "curve_criticality" in v:
         details += criticality_lines(view)
     return SummaryLines(answer, trust, details, crossings_of_arms(view, done))

@@ -8,6 +8,7 @@ axis.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.parameter_plane import Plane
 from ...watch import report
-from ..continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
+from ..continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
 from ..point import Unsolvable
 
 BOUNDARY_STEPS = StepControl(
@@ -50,6 +51,17 @@ class ChangeCurveSettings:
 CHANGE_CURVES = ChangeCurveSettings()
 
 
+class BoundaryEnd(IntEnum):
+    """Reasons for the end of a boundary curve."""
+
+    none = 0
+    edge = 1
+    crushed = 2
+    closed = 3
+    not_followed = 4
+    list_full = 5
+
+
 @dataclass(frozen=True, slots=True)
 class Fold:
     """Extremum of coordinate `axis` (0 or 1) on a curve: both parameters with errors, eigenvalue in
@@ -67,6 +79,7 @@ class BoundaryCurve:
     """A curve of Hopf points (sign 0) or of double real eigenvalues with a sign (-1 or 1).
 
     values: of both parameters, (points, 2). frequency, growth_rate: of the eigenvalue, in 1/tau2, (points,).
+    ends: reasons for the ends at the first and the last point.
     """
 
     sign: float
@@ -74,6 +87,7 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
+    ends: tuple[BoundaryEnd, BoundaryEnd]
     scaled: Array
     """Scaled coordinates and h = log|eigenvalue| of each point, (points, 3)."""
 
@@ -147,6 +161,25 @@ class _Trace:
             len(behind) >= CHANGE_CURVES.min_loop_points and near and float(there.tangent @ first.tangent) > 0
         )
 
+    def end_of(self, followed: Curve[_CurvePoint]) -> BoundaryEnd:
+        """The reason for the end of a followed curve.
+
+        No solution is found beyond a point on an edge where a parameter cannot go further, as gamma3 below 0,
+        nor for a crushed rod, which may be closer than the shortest step.
+        """
+        if followed.end is CurveStop.closed:
+            return BoundaryEnd.closed
+        if followed.end is CurveStop.full:
+            return BoundaryEnd.list_full
+        if followed.end is CurveStop.margin:
+            return BoundaryEnd.crushed if followed.margin == CRUSHED_MARGIN else BoundaryEnd.edge
+        v, tangent = followed.solutions[-1]
+        if self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min() <= CHANGE_CURVES.beside_an_edge:
+            return BoundaryEnd.edge
+        beyond = _CurvePoint(v + 2 * BOUNDARY_STEPS.shortest * tangent, tangent)
+        is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
+        return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed
+
 
 CRUSHED_MARGIN = 4
 """Index of the margin that is negative for a crushed rod."""
@@ -165,17 +198,18 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
     except (ValueError, ArithmeticError, Unsolvable):
         return None
     ahead = follow(curve, first, BOUNDARY_STEPS, lambda _: report())
+    back = ahead
     passed = ahead.solutions
     if ahead.end is not CurveStop.closed:
         back = follow(curve, _CurvePoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > CHANGE_CURVES.coincident_points
-    return _curve(curve, points[np.append(apart, True)])
+    return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
-def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
-    """The curve through points, (points, 3), with the folds between them."""
+def _curve(curve: _Trace, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]) -> BoundaryCurve:
+    """The curve through points, (points, 3), with the folds between them and the reasons for its ends."""
     boundary = curve.boundary
     folds = []
     if len(points) > 1:
@@ -192,7 +226,7 @@ def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
-    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), points)
+    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
 def _fold(curve: _Trace, a: _CurvePoint, b: _CurvePoint, axis: int) -> Fold | None:

@@ -30,8 +30,8 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
     points, folds = [], []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
-        for numbers in zip(*each, strict=True):
-            named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True))
+        for *numbers, end in zip(*each, _ends(curve.ends, len(curve.values)), strict=True):
+            named = dict(zip(("frequency", "growth_rate", *plane, "end"), (*numbers, end), strict=True))
             points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
         folds += [_located(fold, plane, curve=number, kind=curve.hopf, of=fold.axis) for fold in curve.folds]
     declared = curve_variables(*plane)
