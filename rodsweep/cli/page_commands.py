@@ -1,4 +1,4 @@
-"""Commands that write a page or a picture to be sent: `report` and `portrait`."""
+"""Commands that write a page or a picture to share: `report` and `portrait`."""
 
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ FILE = click.Path(path_type=Path)
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
 @click.option("-o", "--output", type=FILE, help="A .html file; by default FILE's name with .html.")
 def report(files: tuple[Path, ...], output: Path | None) -> None:
-    """Write one HTML page about the result FILEs, to be sent: answer, figures, tables, config, provenance."""
+    """Write one HTML page about the result FILEs, to share: answer, figures, tables, config, provenance."""
     from ..post.report import require_page, write_report
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes

@@ -15,6 +15,7 @@ from ..model.balance import Material
 from ..model.material.build import Build, Sections
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import NO_JUMPS, NO_SIDE_CHANGE, Integers, Jumps
@@ -44,7 +45,8 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
-    points, weights = grid.points_inside.ravel()[inside], _places_of(grid)[1][inside]
+    points = grid.points_inside.ravel()[inside]
+    weights = _places_of(grid)[1][inside]
     sections = rod.sections(points.ravel())
     c1, _, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
@@ -84,7 +86,7 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     return mean(sections.compliance), mean(sections.drag), mean(rest)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _places_of(grid: Mesh) -> tuple[Integers, Array]:
     """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
     nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)

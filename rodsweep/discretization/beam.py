@@ -16,8 +16,17 @@ from ..model.balance import Values
 from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
-TINY = 1e-30
-"""Imaginary step of the complex-step derivative in `tip_velocity`, in tau2."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeamSettings:
+    """Derivatives of the tip."""
+
+    tip_step: float = 1e-30
+    """Imaginary step of the complex-step derivative in `tip_velocity`, in tau2; its square underflows, so it
+    has no error."""
+
+
+BEAM = BeamSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +80,7 @@ class Beam(RodOnMesh):
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3, ...)."""
-        velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
+        velocity: Array = np.divide(self.tip(z + 1j * BEAM.tip_step * direction).imag, BEAM.tip_step)
         return velocity
 
     def _along(self, field: Values) -> Array:

@@ -1,4 +1,4 @@
-"""One page, in one browser tab: state, questions being solved, and pictures."""
+"""A page in a browser tab: state, questions being solved, and pictures."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -35,9 +35,9 @@ IDLE = 900
 
 
 class Page:
-    """Connects controls, solvers and pictures of one session.
+    """Connects controls, solvers and pictures of a session.
 
-    session: name of the session. stored: what a result file answers, or None.
+    session: name of the session. stored: answers from a result file, or None.
     """
 
     def __init__(
@@ -106,17 +106,17 @@ class Page:
                     self.contents.say(kind, STOPPED)
 
     def bend(self, tip: Tip) -> None:
-        """Bends the arm so that its tip is at a place, in L."""
+        """Bends the arm until the tip is at a place, in L."""
         self._drop("motion")
         self._ask("bent", tip)
 
     def let_go(self, tip: Tip) -> None:
-        """Lets go the arm with its tip at a place, in L."""
+        """Releases the arm with the tip at a place, in L."""
         self._drop("bent")
         self._ask("motion", tip)
 
     def _drop(self, kind: str) -> None:
-        """Drops a question, and its answer if it comes nevertheless."""
+        """Drops a question; an answer that still arrives is ignored."""
         self.asked.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)

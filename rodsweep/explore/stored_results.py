@@ -1,4 +1,4 @@
-"""What a result file answers, so that nothing is solved again: its diagram, its cycles and its branches."""
+"""Answers from a result file, so that nothing is solved again: diagram, cycles and branches."""
 
 import json
 from collections.abc import Collection
@@ -26,13 +26,14 @@ EQUAL = 1e-12
 POINT = "number_of_point"
 """Dimension along which chosen points lie."""
 NEAR = 0.25
-"""Distance, as a fraction of that between stored loads, within which a click means the stored load."""
+"""Distance within which a click means a stored load, as a fraction of the distance between stored loads."""
 
 
 class StoredResults:
     """A result file of rods or of arms.
 
-    state: of the page that the file opens. diagram: answer to the question `diagram` there, or None.
+    state: state of the page opened by the file. diagram: answer to the question `diagram` in this state, or
+    None.
     """
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):

@@ -27,7 +27,7 @@ HEIGHT = 300
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """An empty figure that fills the width of its column."""
+    """An empty figure as wide as the column of the page."""
     made = figure(
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
