@@ -16,6 +16,8 @@ from rodsweep.tasks.rod_portrait import cycle_forces
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
 """Its branch of cycles passes a fold, beyond which straight rod and cycle are both stable."""
 ACCURACY = 1e-4
+UNDECIDED = ("unstable_multipliers", "special_unstable_after", "unstable_at_start")
+"""Variables of a branch that decide what is stable."""
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +59,15 @@ def test_ranges_with_two_states_are_those_of_the_branch(portrait):
     again = float(FOLDED.thresholds().F_restabilization)
     found = re.search(r"beside the stable straight rod at F = ([\d.]+) to ([\d.]+\d)", portrait.paragraph)
     assert [float(end) for end in found.groups()] == pytest.approx([again, fold], rel=1e-8)
+
+
+def test_what_is_not_decided_is_not_denied(portrait):
+    view = portrait.results.branch
+    unknown = {name: np.full_like(view.variables[name], -1) for name in UNDECIDED}
+    views = {**portrait.results.views, "branch": replace(view, variables={**view.variables, **unknown})}
+    text = paragraph(replace(portrait.results, views=views))
+    assert "Stable cycles: none is known." in text
+    assert "It is not known whether a stable cycle exists beside the stable straight rod." in text
 
 
 def test_cycles_are_those_of_the_limit_cycle_task(portrait):

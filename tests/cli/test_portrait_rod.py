@@ -8,6 +8,7 @@ import pytest
 import rodsweep as rs
 from rodsweep.cli.portrait_rod import rod_from, showing
 from rodsweep.errors import InputError
+from rodsweep.tasks.rod_portrait import PortraitRequest
 from rodsweep.watch import SolvePosition, report
 
 NO_MATERIAL = dict.fromkeys(("law", "section", "profile"))
@@ -24,6 +25,14 @@ def test_an_arm_is_the_rod_that_it_is_in_python():
     assert rs.Rod(**found.parameters, **found.material) == rod
     assert found.scales == {name: getattr(arm, name) for name in ("tau2", "force_scale", "pressure_scale")}
     assert rod_from({"gamma3": 0.5}, ARM, NO_MATERIAL).parameters["gamma3"] == 0.5
+
+
+def test_an_arm_in_segments_has_the_profile_of_its_config():
+    segments = ["5 cm: radius 6 mm, young 80 kPa", "5 cm: radius 4 mm, young 100 kPa"]
+    found = rod_from({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
+    build = PortraitRequest(rod=found).job("thresholds", {}).config.build
+    assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
+    assert found.words.endswith("a profile along its length")
 
 
 def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):

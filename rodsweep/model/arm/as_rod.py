@@ -24,6 +24,6 @@ def material_of(arm: SlenderArm) -> dict[str, Any]:
     words = {"law": (build.law, STANDARD.law), "section": (build.section, STANDARD.section)}
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}
     if build.profile is not None:
-        columns = dict(zip(FACTORS, zip(*build.profile.rows, strict=True), strict=True))
-        material["profile"] = {"u": build.profile.u, **columns}
+        columns = (build.profile.u, *zip(*build.profile.rows, strict=True))
+        material["profile"] = dict(zip(("u", *FACTORS), map(list, columns), strict=True))
     return material
