@@ -103,12 +103,12 @@ class LimitCycleTask(Task):
 
     def _first_mesh(self) -> Elements | None:
         """The largest first mesh of the motions, or of the branches from Hopf points."""
-        from ..solve.cycle.transient.motion_mesh import MOTION_ACCURACY, coarse_mesh, motion_mesh
+        from ..solve.cycle.transient.motion_mesh import MOTION_MESH, coarse_mesh, motion_mesh
 
         options = self.config.limit_cycle
         if options.start == "hopf":
             return largest_first_mesh(self.points, coarse_mesh)
-        accuracy = self.config.accuracy if options.method == "integration" else MOTION_ACCURACY
+        accuracy = self.config.accuracy if options.method == "integration" else MOTION_MESH.accuracy
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
     def parts(self) -> list[Part]:

@@ -1,8 +1,8 @@
 """Every number of a solver's settings, halved and doubled: answers stay within the errors that they state.
 
 An honest status in place of an answer counts too. Every field of every settings object is found by
-introspection, but for those of ANOTHER_START; an object without a case fails. The suite takes every fifteenth
-field, without the slow case; RODSWEEP_RODS=1 takes all (`make survey`).
+introspection, but for those of ANOTHER_START; an object without a case fails. The suite takes every
+nineteenth field, without the slow cases; RODSWEEP_RODS=1 takes all (`make survey`).
 """
 
 import importlib
@@ -30,6 +30,8 @@ from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.changes.boundary_curves import trace
+from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
@@ -41,10 +43,11 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
 
 ALL = "RODSWEEP_RODS" in os.environ
-EACH = 1 if ALL else 15
+EACH = 1 if ALL else 19
 ROUNDING = 1e-11
 """Relative; of numbers whose stated error is smaller."""
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
+BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {("INTEGRATOR", "relaxation_share"), ("INTEGRATOR", "relaxation_steps")}
 """Fields that define the state from which a motion starts: another value is another motion."""
@@ -185,6 +188,61 @@ def motion(accuracy: float) -> Answer:
     return {f"z{i}": (float(z), 30 * accuracy * size) for i, z in enumerate(run.states[-1])}
 
 
+def cycle_answer(cycle: Cycle) -> Answer:
+    """Period, extrema and largest multiplier of a cycle; of a torus the multiplier of the cycle inside."""
+    if not cycle.status.succeeded:
+        return None
+    errors = cycle.errors
+    if cycle.status is CycleStatus.torus:
+        return {"multiplier": (cycle.multiplier, errors.multiplier_error)}
+    size = abs(cycle.measures.tip_y_max)
+    return {
+        "period": (cycle.measures.period, errors.period_error * cycle.measures.period),
+        "tip y": (cycle.measures.tip_y_max, errors.amplitude_error * size),
+        "tip x": (cycle.measures.tip_x_min, errors.extrema_error * size),
+        "multiplier": (cycle.multiplier, errors.multiplier_error),
+    }
+
+
+def request(accuracy: float, amplitude: float = 0.1, start: str = "mode") -> CycleRequest:
+    return CycleRequest(accuracy, amplitude, 3, 16, 4, 5, 400, start)
+
+
+def single_cycle(accuracy: float) -> Answer:
+    return cycle_answer(solve_cycle(BEATING.changed(F=60.0), request(accuracy)))
+
+
+def cycles_of_a_chain(accuracy: float) -> Answer:
+    """The last of three cycles, of which each predicts the next."""
+    last = None
+    for F in (60.0, 64.0, 72.0):
+        cycle = solve_cycle(
+            BEATING.changed(F=F), request(accuracy, start="neighbour"), last.neighbour if last else None, "F"
+        )
+        last = cycle
+    return cycle_answer(last)
+
+
+def cycle_beside_the_hopf_point(accuracy: float) -> Answer:
+    """From the leading mode and from the Hopf point, of which the second answer is taken with its errors."""
+    rod = BEATING.changed(F=27.6)
+    slow = cycle_answer(solve_cycle(rod, request(accuracy, 0.01)))
+    found = cycle_answer(solve_cycle(rod, request(accuracy, start="hopf")))
+    if slow is None or found is None:
+        return None
+    return {f"slow {name}": value for name, value in slow.items()} | found
+
+
+def cycle_by_integration(accuracy: float) -> Answer:
+    cycle = solve_by_integration(BEATING.changed(F=60.0), request(accuracy))
+    found = cycle_answer(cycle)
+    return found and {name: value for name, value in found.items() if name != "multiplier"}
+
+
+def torus(accuracy: float) -> Answer:
+    return cycle_answer(solve_cycle(BEATING.changed(F=207.0), request(accuracy)))
+
+
 class Case(NamedTuple):
     """A problem and the accuracies of the answer and of the reference."""
 
@@ -202,6 +260,13 @@ BAUTIN_CURVE = Case(curve_of_generalised_hopf, 1e-10, 1e-12)
 BESIDE = Case(beside, 1e-3, 1e-3)
 MODES = Case(modes, 1e-8, 1e-10)
 MOTION = Case(motion, 1e-6, 1e-9)
+SINGLE = Case(single_cycle, 1e-6, 1e-9)
+CHAIN = Case(cycles_of_a_chain, 1e-6, 1e-9)
+BESIDE_HOPF = Case(cycle_beside_the_hopf_point, 1e-6, 1e-9)
+INTEGRATED = Case(cycle_by_integration, 1e-4, 1e-5)
+TORUS = Case(torus, 1e-6, 1e-7)
+SLOW = (LOPSIDED, TORUS)
+"""Cases that take seconds."""
 CASES = {
     "SETTLING": BRANCH,
     "BRANCH_ERRORS": BRANCH,
@@ -240,9 +305,31 @@ CASES = {
     "ABSCISSA": MODES,
     "PROPAGATOR": MODES,
     "INTEGRATOR": MOTION,
+    "CYCLE_ERRORS": SINGLE,
+    "COARSER_MESHES": SINGLE,
+    "MINIMAL_PERIOD": SINGLE,
+    "REFINEMENT": SINGLE,
+    "FROM_MOTION": SINGLE,
+    "MOTION_MESH": SINGLE,
+    "RETURNS": SINGLE,
+    "SHAPE_TRACE": SINGLE,
+    "TRANSIENT": SINGLE,
+    "CALIBRATION": CHAIN,
+    "COMPARISON": CHAIN,
+    "NEIGHBOUR": CHAIN,
+    "PREDICTION": CHAIN,
+    "PARAMETER_STEPS": CHAIN,
+    "HOPF_START": BESIDE_HOPF,
+    "SMALL_MOTION": BESIDE_HOPF,
+    "STRAIGHT_ROD": BESIDE_HOPF,
+    "AMPLITUDE_EQUATION": BESIDE_HOPF,
+    "SCHEMES": BESIDE_HOPF,
+    "MARCHING": INTEGRATED,
+    "TORUS_TEST": TORUS,
 }
 ROOMS = (
     "branch.",
+    "cycle.",
     "orbit.",
     "hopf.",
     "modes.",
@@ -288,7 +375,7 @@ FIELDS = [
     for field in fields(value)
     for factor in (0.5, 2.0)
     if scaled(getattr(value, field.name), factor) != getattr(value, field.name)
-    if ALL or CASES.get(name) is not LOPSIDED
+    if ALL or CASES.get(name) not in SLOW
     if (name, field.name) not in ANOTHER_START
 ]
 

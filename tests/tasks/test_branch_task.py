@@ -170,7 +170,9 @@ def test_figure_holds_the_amplitude_against_the_normal_form_from_both_hopf_point
     (curve,) = curves_of(read_view(command.directory / "c.h5"), 0)
     (first, y_first, stable), (last, y_last, unstable) = curve.near_hopf_points()
     assert first[:2] == pytest.approx(y_first[:2] ** 2, rel=0.02)
-    assert last[0] == pytest.approx(y_last[0] ** 2, rel=0.02)
+    # The error of F is below a hundredth of the accuracy; the nearest cycle may lie within it.
+    assert last[0] == pytest.approx(y_last[0] ** 2, rel=0.02, abs=1e-7)
+    assert last[1] == pytest.approx(y_last[1] ** 2, rel=0.1)
     assert (np.diff(first) > 0).all()
     assert (np.diff(last) > 0).all()
     assert y_last[-1] > 1.2 * last[-1] ** 0.5

@@ -17,7 +17,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
+from .bordered import BorderedMatrix, Condition, Scale, bordered, deflection_of, moved
 from .errors import BranchCalibration, Place
 
 ARC_STEPS = StepControl(
@@ -30,8 +30,8 @@ ARC_STEPS = StepControl(
     sharpest=0.45,
     growth=2.0,
 )
-"""Step lengths in units of the scale: a step of 0.1 changes the clamp's moment, the period or the parameter
-by at most a tenth."""
+"""Step lengths in units of the scale: a step of 0.1 changes the deflection, the period or the parameter by
+at most a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,9 +93,9 @@ class ArcPoint:
         return self.place.rate
 
     @property
-    def moment(self) -> float:
-        """Bending moment at the clamp at t = 0."""
-        return moment_of(self.orbit)
+    def deflection(self) -> float:
+        """Deflection at t = 0, as in `Scale.place`."""
+        return deflection_of(self.orbit)
 
     @cached_property
     def returns(self) -> Complex:

@@ -188,9 +188,9 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         if shorter < ARC_STEPS.shortest:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
-    # Near a Hopf point parameter and period are quadratic in the moment.
+    # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
-    share = start.moment / (2 * start.ahead[0] * start.scale.moment)
+    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(ENDINGS.min_place_tolerance, limits.accuracy)

@@ -3,7 +3,7 @@
 A symmetric cycle equals its own mirror image half a period later. Where a multiplier of the half-period map
 composed with the reflection is -1, a branch of asymmetric cycles crosses. Its two sides are mirror images of
 each other, shifted by half a period; one side is followed, over the whole period. Near the crossing the
-clamp's moment at t = 0 is linear in the asymmetry, parameter and period are quadratic. A branch that returns
+deflection at t = 0 is linear in the asymmetry, parameter and period are quadratic. A branch that returns
 to such a crossing continues on its mirror image, as a branch does at a Hopf point.
 """
 
@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
@@ -22,8 +23,8 @@ from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..orbit.symmetry import NONE
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_between
-from .beginning import MOMENT
-from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from .beginning import DEFLECTION
+from .bordered import BorderedMatrix, Condition, Scale, deflection_of, moved
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
@@ -132,30 +133,30 @@ def beginning_without_symmetry(
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
-            return _first_cycle(start, matrix, moment_of(start) - moment_of(whole), accuracy)
+            return _first_cycle(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the symmetry breaking: {why}") from why
 
 
 def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
-    """The cycle near a prediction; the branch goes on towards larger change of the moment. Raises Unsolvable.
+    """The cycle near a prediction; the branch goes on towards a larger deflection. Raises Unsolvable.
 
-    whole: matrix of the symmetric cycle. change: of the clamp's moment from that cycle.
+    whole: matrix of the symmetric cycle. change: of the deflection from that cycle.
     """
     scale = whole.scale
-    border = np.sign(change) * MOMENT
+    border = np.sign(change) * DEFLECTION
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEARBY_TOLERANCE, whole.workspace)
+    rough = condition.solved(start, REFINEMENT.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not ENDINGS.asymmetry_ratios[0] < found < ENDINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
-    aim = max(accuracy, FIRST_ACCURACY)
+    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    return first_point(first, scale, border, abs(change) / scale.moment, accuracy)
+    return first_point(first, scale, border, abs(change) / scale.deflection, accuracy)
 
 
 def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:

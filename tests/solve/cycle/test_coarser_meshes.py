@@ -8,7 +8,7 @@ import pytest
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.accuracy.calibration import ERROR_FACTOR
+from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.accuracy.refinement import refine
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -56,7 +56,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
         for which in (PERIOD, HEIGHT, APART):
-            assert true[which] <= ERROR_FACTOR * parts[which] + 1e-12
+            assert true[which] <= CALIBRATION.safety * parts[which] + 1e-12
 
 
 def test_coarser_meshes_serve_those_that_are_a_little_finer(near):

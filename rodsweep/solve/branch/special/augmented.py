@@ -19,7 +19,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON, relative_change
 from ...orbit.orbit import Orbit
 from ...point import Unsolvable
-from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from ..bordered import BorderedMatrix, Condition, Scale, deflection_of, moved
 from .point import LOCATING
 
 
@@ -138,7 +138,7 @@ class NearbyCycles:
 class FoldFunction:
     """Test function of folds: the derivative dp/dl of the parameter along the branch; the border measures l.
 
-    small: whether the function is divided by the moment, because it vanishes at a Hopf point too.
+    small: whether the function is divided by the deflection, because it vanishes at a Hopf point too.
     """
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
@@ -151,7 +151,7 @@ class FoldFunction:
     def value(self, orbit: Orbit) -> float:
         """The test function from the present tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
-        return rises * self.matrix.scale.moment / moment_of(orbit) if self.small else rises
+        return rises * self.matrix.scale.deflection / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
         """Sets the tangent, (N + 1,), that is corrected next."""
@@ -218,6 +218,23 @@ class TorusFunction:
         change = np.linalg.solve(self.bordered, right)
         self.multiplier += complex(change[-1])
         self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
+
+
+def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
+    """Corrects a test function at a cycle until its value is known to rounding; raises Unsolvable."""
+    value = function.value(orbit)
+    last = np.inf
+    for _ in range(AUGMENTED.max_corrections):
+        function.correct(orbit)
+        before = value
+        value = function.value(orbit)
+        change = abs(value - before)
+        if change <= LOCATING.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+            return
+        if change > last:
+            break
+        last = change
+    raise Unsolvable("the corrections of the test function do not converge")
 
 
 def _parts(vector: Array) -> Array:

@@ -41,7 +41,7 @@ class _CycleAcross(NamedTuple):
 class CycleFamily:
     """Cycles about a point of a curve. border: direction of its branch in the scale, (3,).
 
-    small: whether the fold function is divided by the moment, because the cycles are near a Hopf point.
+    small: whether the fold function is divided by the deflection, because the cycles are near a Hopf point.
     workspace: memory of the matrices.
     """
 

@@ -23,8 +23,8 @@ class CrossingSettings:
     max_unmeasured: int = 3
     """The error is measured at least at every third point."""
     small_fold_cycle: float = 0.05
-    """Largest tip y, in L, of cycles whose fold function is divided by the moment, since it vanishes at the
-    Hopf point too."""
+    """Largest tip y, in L, of cycles whose fold function is divided by the deflection, since it vanishes at
+    the Hopf point too."""
     first_secant: float = 1e-3
     """First step of the secant method across a curve if the derivatives are unknown."""
     longest_secant: float = 0.1

@@ -6,7 +6,7 @@ Zenger 1992), so that one elimination on the fine mesh gives the cycle and its m
 the three orbits measure the errors of the coarse meshes; slowest rates of decay bound the fine mesh's errors.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,15 +17,28 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
-from .calibration import MAX_FALL, MIN_FALL, Calibration, calibration_of
-from .finer_meshes import COMPARED_TOLERANCE, ComparedCycle
+from .calibration import Calibration, calibration_of
+from .calibration_settings import CALIBRATION
+from .finer_meshes import COMPARISON, ComparedCycle
 
-ORDER_DIFFERENCE, INTERVAL_RATIO = 2, 1.4
-"""Difference in orders, and ratio of intervals, of the fine mesh and the coarse mesh made to predict it."""
-SERVED_ORDERS, SERVED_INTERVALS = 4, 2.0
-"""Largest difference in orders, and largest ratio of intervals, of a predicted mesh and the coarse mesh."""
-SLOWEST_FALL = 1.2
-"""Slowest decay of errors in space per order, natural logarithm, in units of the coefficients' decay."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoarserMeshSettings:
+    """The coarser meshes that predict a cycle on a fine mesh."""
+
+    fewer_orders: int = 2
+    """Orders of the fine mesh minus those of the coarse mesh made to predict it."""
+    more_intervals: float = 0.4
+    """Intervals that the fine mesh has more, in units of those of the coarse mesh made to predict it."""
+    served_orders: int = 4
+    """Largest difference in orders of a predicted mesh and the coarse mesh."""
+    served_intervals: float = 2.0
+    """Largest ratio of intervals of a predicted mesh and the coarse mesh."""
+    slowest_fall: float = 1.2
+    """Slowest decay of errors in space per order, natural logarithm, in units of the coefficients' decay."""
+
+
+COARSER_MESHES = CoarserMeshSettings()
 
 
 class CoarserMeshes:
@@ -33,10 +46,10 @@ class CoarserMeshes:
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
-        order = mesh.order - ORDER_DIFFERENCE
-        intervals = round((mesh.intervals - 1) / INTERVAL_RATIO) + 1
+        order = mesh.order - COARSER_MESHES.fewer_orders
+        intervals = round((mesh.intervals - 1) / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = COMPARED_TOLERANCE * accuracy
+        self._tolerance = COMPARISON.newton_share * accuracy
         self._workspace = workspace
         self._both = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
@@ -44,7 +57,8 @@ class CoarserMeshes:
     def serve(self, mesh: OrbitMesh) -> bool:
         """Whether the coarse meshes can predict the cycle on a fine mesh."""
         few = (
-            mesh.order - self.mesh.order <= SERVED_ORDERS and self._refined_in_time(mesh) <= SERVED_INTERVALS
+            mesh.order - self.mesh.order <= COARSER_MESHES.served_orders
+            and self._refined_in_time(mesh) <= COARSER_MESHES.served_intervals
         )
         return few and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
@@ -54,7 +68,10 @@ class CoarserMeshes:
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
         fine, in_intervals, coarse = (mesh.carry(each.orbit) for each in (space, time, self._both))
         orbit = replace(fine, values=fine.values + in_intervals.values - coarse.values)
-        fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, MIN_FALL), MAX_FALL)
+        fall = min(
+            max(COARSER_MESHES.slowest_fall * tails_of(space.orbit).decay, CALIBRATION.min_fall),
+            CALIBRATION.max_fall,
+        )
         by_orders = np.exp(fall * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # Each of the two meshes has one of the errors. The fine mesh's multipliers may be as wrong as the two
