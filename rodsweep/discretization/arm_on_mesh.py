@@ -3,7 +3,8 @@
 At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
 contain the mean strain of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if
 elements end at the jumps. For a linear law the mean compliance gives the stress of the mean strain; with
-another law both sides are needed (`rodsweep.model.material.jump`).
+another law both sides are needed (`rodsweep.model.material.jump`). Shapes need both sides for every law
+(`element_strains`).
 """
 
 from functools import lru_cache
@@ -40,24 +41,27 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
 
 
 def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
-    """The nodes at which the material of a rod jumps, with both sides; none for a linear law."""
+    """The nodes at which the material of a rod jumps, with both sides."""
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
     points, weights = grid.points_inside.ravel()[inside], _places_of(grid)[1][inside]
     sections = rod.sections(points.ravel())
-    c1, _, c3 = sections.compliance.reshape(3, *points.shape)
+    c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
     shares = [values / values.sum(axis=1, keepdims=True) for values in (weights * soft[0], weights * soft[2])]
     mean = weights / weights.sum(axis=1, keepdims=True)
-    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *shares, mean], axis=-1)
+    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *shares, mean, c2], axis=-1)
     return Jumps(at, np.ascontiguousarray(sides))
 
 
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
-    """Derivatives of nu, c1 and c3 on both sides of the jumps by a parameter's coordinate, (k, 2, 3)."""
+    """Derivatives of nu, c1 and c3 on both sides of the jumps by a parameter's coordinate, (k, 2, 3).
+
+    None for a linear law, whose stresses at a jump depend on the mean strain alone.
+    """
     inside, at = _beside_jumps(rod.build, grid)
-    if not len(at):
+    if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_SIDE_CHANGE
     changes = rod.section_changes(name, grid.points_inside.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
@@ -65,8 +69,8 @@ def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
 
 
 def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
-    """(places in `points_inside` before and behind each jump, (k, 2); its node, (k,)); none if linear."""
-    jumps = () if build.constitutive_law is LINEAR else build.jumps
+    """(places in `points_inside` before and behind each jump, (k, 2); its node, (k,))."""
+    jumps = build.jumps
     ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
     return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
@@ -87,6 +91,5 @@ def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
 @lru_cache(maxsize=64)
 def _places_of(grid: Mesh) -> tuple[Integers, Array]:
     """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
-    nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
-    return nodes.ravel(), weights.ravel()
+    return grid.element_nodes.ravel(), weights.ravel()

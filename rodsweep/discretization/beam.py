@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
+from .elements.mesh import configuration
 from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
@@ -38,8 +39,15 @@ class Beam(RodOnMesh):
 
     @cached_property
     def crushed(self) -> Array:
-        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,)."""
-        return np.ascontiguousarray(-self.nodal.rest[0, :-1] / self.roots[0, :-1])
+        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,).
+
+        At a jump h1 vanishes on one side first if the law is linear, and on both sides at once otherwise.
+        """
+        crushed = -self.nodal.rest[0, :-1] / self.roots[0, :-1]
+        if self.smooth_stresses:
+            for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
+                crushed[node] = self.roots[0, node] * (-sides[:, 0] / sides[:, 1]).max()
+        return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
         scaled = self.layout.stresses(z)
@@ -70,8 +78,10 @@ class Beam(RodOnMesh):
         return out.swapaxes(-1, -2)
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3, ...)."""
-        velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
+        """d/dt of the tip's (x, y, theta) for dz/dt = direction, both (unknowns,), by complex step, (3,)."""
+        change = self.element_strain_changes(z, TINY * direction)
+        moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))
+        velocity: Array = np.divide(moved[:, -1].imag, TINY)
         return velocity
 
     def _along(self, field: Values) -> Array:

@@ -13,10 +13,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
+from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
 from .at_jumps import carried, parted
+from .element_strains import write_element_rates, write_element_strains
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
@@ -61,16 +63,36 @@ class RodOnMesh(ABC):
         law, jumps = rod.build.law_number, jumps_on(rod, mesh)
         return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
 
+    @property
+    def smooth_stresses(self) -> bool:
+        """Whether S is continuous along the rod: without jumps of the material, and for a linear law."""
+        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
+
     def strains(self, x: Values) -> Values:
-        """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1)."""
+        """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1); the mean strain at a jump."""
         S, c = self.stresses(x), self.nodal
         return _along(c.rest, S) + _along(c.compliance, S) * S
 
-    def shape(self, x: Values) -> Values:
-        """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
-        return configuration(self.mesh, self.strains(x), np.zeros(3))
+    def element_strains(self, x: Array) -> Array:
+        """(h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1))."""
+        S = self.stresses(x)
+        out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        write_element_strains(_listed(S), self.nodal, self.mesh.order, _listed(out))
+        return out
 
-    def tip(self, x: Values) -> Values:
+    def element_strain_changes(self, x: Array, change: Array) -> Array:
+        """Changes of `element_strains` with a change of the state; x, change: (unknowns,)."""
+        S, dS = _listed(self.stresses(x)), _listed(self.stresses(change))
+        out = np.empty((len(S), 1, self.mesh.element_nodes.size))
+        moved = _along(self.nodal.compliance, dS) * dS
+        write_element_rates(S, moved, self.nodal, self.mesh.order, out)
+        return out[:, 0]
+
+    def shape(self, x: Array) -> Array:
+        """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
+        return configuration(self.mesh, self.element_strains(x), np.zeros(3))
+
+    def tip(self, x: Array) -> Array:
         """(x, y, theta) of the tip, shape (3, ...)."""
         return self.shape(x)[..., -1]
 
@@ -103,8 +125,11 @@ class RodOnMesh(ABC):
         return carried(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
-        """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive."""
-        return float(self.strains(x)[0].min())
+        """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive.
+
+        At a jump both sides count.
+        """
+        return float(self.element_strains(x)[0].min())
 
     def is_convex(self, x: Array) -> bool:
         """Whether the energy of every section is convex in its strain, for one state x, (unknowns,).
@@ -119,6 +144,11 @@ class RodOnMesh(ABC):
             sections = np.vstack([sections, behind])
         tangents = (tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
+
+
+def _listed(field: Array) -> Array:
+    """A field (3, ..., n) as (3, m, n), with the same memory."""
+    return field.reshape(len(field), -1, field.shape[-1])
 
 
 def _along(constant: Array, field: Values) -> Array:

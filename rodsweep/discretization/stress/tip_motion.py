@@ -43,15 +43,16 @@ def tip_matrices(grid: Elements) -> TipMatrices:
 def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative into velocity.
 
-    strains: (h1, h2, Pi) at all nodes, (3, states, nodes + 1). rates: time derivatives of strains, same
-    shape. tip, velocity: (states, 3). The rod is clamped at the origin along e_x.
+    strains: (h1, h2, Pi) at the nodes of every element, (3, states, elements (p + 1)). rates: time
+    derivatives of strains, same shape. tip, velocity: (states, 3). The rod is clamped at the origin along
+    e_x.
     """
     size, points = len(m.ends), len(m.weights)
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
     for k in range(strains.shape[1]):
         x, y, theta, dx, dy, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for e in range(len(m.lengths)):
-            first, length = e * (size - 1), m.lengths[e]
+            first, length = e * size, m.lengths[e]
             here = slice(first, first + size)
             _to_points(strains[:, k, here], m, length, theta, fields[:3])
             _to_points(rates[:, k, here], m, length, turn, fields[3:])
