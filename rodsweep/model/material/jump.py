@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import LocalSection, Stress, Tangent, stress, stress_change, tangent
+from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
 COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
 """Numbers of each side: those of `LocalSection`, the shares of this side in the mean of both, and c2."""
@@ -65,6 +65,8 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 @compiled
 def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
     """a of the mean unknowns q, by Newton's method; sides: (2, 7)."""
+    if law == LINEAR_LAW:
+        return q
     one, other = _section(sides[0]), _section(sides[1])
     ratio1, ratio3 = sides[0, 3] / sides[1, 3], sides[0, 4] / sides[1, 4]
     a = q
