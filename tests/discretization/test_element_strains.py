@@ -6,7 +6,6 @@ from numpy.polynomial import Polynomial
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_on
-from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
@@ -52,17 +51,6 @@ def test_the_tip_of_an_arm_with_a_jump_is_exact_on_a_coarse_mesh():
     form = arm(8)
     x, y, _ = form.tip(smooth_state(form))
     assert (x, y) == pytest.approx(exact_tip(), abs=1e-12)
-
-
-def test_the_linear_deflection_of_the_tip_does_not_depend_on_the_mesh():
-    """The row of the normal forms, whose lever arm jumps with the compression at rest."""
-    heights = []
-    for order in (8, 16):
-        form = arm(order)
-        mixed = MixedForm(form.rod, form.mesh)
-        stresses = form.layout.stresses(smooth_state(form))
-        heights.append(mixed.tip_y @ mixed.unknown(stresses, np.zeros(stresses.shape)))
-    assert heights[0] == pytest.approx(heights[1], rel=1e-12)
 
 
 @pytest.mark.parametrize("names", LAWS)

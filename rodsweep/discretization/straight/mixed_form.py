@@ -27,7 +27,6 @@ from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
 from ..arm_on_mesh import jumps_on, material_on
-from ..element_strains import write_element_strains
 from ..elements.mesh import Mesh, reconstruction
 from ..nodal_rod import NodalRod, nodal_rod
 from ..state_layout import COMPONENTS, StateLayout, plane_layout
@@ -122,16 +121,8 @@ class MixedForm:
         W = self.mesh.quadrature[:-1]
         c = self.nodal.compliance[:, :-1]
         return self.layout.row(
-            {"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self._stretch_at_rest)[:-1] * W}
+            {"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self.nodal.rest[0])[:-1] * W}
         )
-
-    @property
-    def _stretch_at_rest(self) -> Array:
-        """nu at the nodes of every element, (elements (order + 1),)."""
-        zero = np.zeros((COMPONENTS, 1, self.mesh.nodes + 1))
-        out = np.empty((COMPONENTS, 1, self.mesh.element_nodes.size))
-        write_element_strains(zero, self.nodal, self.mesh.order, out)
-        return out[0, 0]
 
     def fields(self, X: Values) -> tuple[Values, Values]:
         """(S, V) at all nodes, tip included, each of shape (3, ..., nodes + 1)."""
@@ -210,11 +201,10 @@ def first_field(values: Array) -> Array:
 
 
 def remaining(grid: Mesh, values: Array) -> Array:
-    """Integrals to the tip from each node, (nodes + 1,), of values at the nodes of every element."""
+    """Integrals from each node to the tip of a field given at all nodes, both (nodes + 1,)."""
     ends = reconstruction(grid.order)[3]
     total = np.zeros(grid.nodes + 1)
     for e, length in enumerate(grid.lengths):
-        element = grid.element_nodes[e]
-        here = slice(e * len(element), (e + 1) * len(element))
-        total[element] = total[element[0]] + length * (values[here] @ ends)
+        element = slice(e * grid.order, (e + 1) * grid.order + 1)
+        total[element] = total[element.start] + length * (values[element] @ ends)
     return total[-1] - total
