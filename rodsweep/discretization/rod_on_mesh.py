@@ -106,7 +106,7 @@ class RodOnMesh(ABC):
         density = self._stored(nu, c1, c3, S[0], S[2])
         for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
             density[..., node] = 0.0
-            for (q1, q3), (nu, c1, c3, _, _, share) in zip(sides, numbers, strict=True):
+            for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
                 density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
         energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
         return energy
