@@ -40,6 +40,16 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
+def profile_compliance_on(build: Build, grid: Mesh) -> Array:
+    """Bending compliance of an arm without taper at all nodes, in units of the one at the base, (nodes + 1,).
+
+    At a jump it is the mean of both sides; times m3 it is the mean bending strain.
+    """
+    if build.profile is None:
+        return np.ones(grid.nodes + 1)
+    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside.ravel())[2:], grid)[0]
+
+
 def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
     """The nodes at which the material of a rod jumps, with both sides."""
     inside, at = _beside_jumps(rod.build, grid)
@@ -78,14 +88,19 @@ def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
 
 def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     """Compliance, drag and strain at rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
-    place, weights = _places_of(grid)
-
-    def mean(values: Array) -> Array:
-        return np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
-
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
-    return mean(sections.compliance), mean(sections.drag), mean(rest)
+    compliance, drag, rest = (
+        _mean_at_nodes(values, grid) for values in (sections.compliance, sections.drag, rest)
+    )
+    return compliance, drag, rest
+
+
+def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
+    """Means over both sides of each node, (m, nodes + 1), of values at the `points_inside`, (m, points)."""
+    place, weights = _places_of(grid)
+    mean: Array = np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
+    return mean
 
 
 @lru_cache(maxsize=64)
