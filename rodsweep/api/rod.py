@@ -137,10 +137,10 @@ class SoftRod:
     def portrait(
         self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
     ) -> "RodPortrait":
-        """Everything about the rod up to `F_max`, in one picture and one paragraph.
+        """All results for the rod up to `F_max`, in a picture and a paragraph.
 
         Thresholds, criticality, branches of cycles, ranges with two stable states, modes at the thresholds,
-        and three cycles. A result that cannot be solved has its reason in its place.
+        and three cycles. Instead of a result that cannot be solved, the portrait states the reason.
         """
         from ..tasks.rod_portrait import PortraitRequest
         from .answers.rod_portrait import portrait_of
@@ -153,9 +153,7 @@ class SoftRod:
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
-            """A method for every task of one rod without a method of its own; AttributeError for unknown
-            names.
-            """
+            """The method of a task that this class does not define; AttributeError for unknown names."""
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
@@ -166,7 +164,9 @@ class SoftRod:
             raise InputError(f"{task} is a task of several rods; use rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
-                raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+                raise InputError(
+                    f"{name} is a parameter of the rod, no option; rod.replace({name}=...) makes another rod"
+                )
         section: Any = CONFIGS[task].model_fields[task].annotation
         known = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:
@@ -224,7 +224,7 @@ def _of_arm(arm: object) -> dict[str, Any]:
 
 
 def _build_of(arm: SlenderArm) -> dict[str, Any]:
-    """Law, section and profile of an arm as keys of `material`, None where they are the default."""
+    """Law, section and profile of an arm as keys of `material`; None for a default."""
     build, profile = arm.build, arm.build.profile
     columns = None if profile is None else dict(zip(FACTORS, zip(*profile.rows, strict=True), strict=True))
     return {

@@ -1,4 +1,4 @@
-"""Solves all points of a job one after another in this process, without files and without ranks."""
+"""Solves all points of a job in sequence in this process, without files and without MPI."""
 
 import socket
 from collections.abc import Iterator, Sequence
@@ -89,7 +89,7 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
 
 
 def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
-    """Variables that all points together determine."""
+    """Variables that need all points, for example curves."""
     units, results = together.units(view), dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
         with reporting_to(listener(shown, units.where(wanted[0]))):

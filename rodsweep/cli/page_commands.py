@@ -1,4 +1,4 @@
-"""Commands that write a page or a picture to be sent: `report` and `portrait`."""
+"""Commands that write a page or a picture to share: `report` and `portrait`."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ FILE = click.Path(path_type=Path)
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
 @click.option("-o", "--output", type=FILE, help="A .html file; by default FILE's name with .html.")
 def report(files: tuple[Path, ...], output: Path | None) -> None:
-    """Write one HTML page about the result FILEs, to be sent: answer, figures, tables, config, provenance."""
+    """Write one HTML page about the result FILEs, to share: answer, figures, tables, config, provenance."""
     from ..post.report import require_page, write_report
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
@@ -33,7 +33,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
     help="A .png, .pdf or .svg file, or a .html page with tables.",
 )  # fmt: skip
 def portrait(F_max: float, accuracy: float | None, output: Path, **parameters: float | None) -> None:
-    """Solve everything about one rod, and draw it: thresholds, branches, modes, three cycles."""
+    """Solve and draw all results for a rod: thresholds, branches, modes, three cycles."""
     from ..post.rod_portrait.paragraph import paragraph
     from ..post.rod_portrait.writing import require_portrait, write_portrait
     from ..tasks.rod_portrait import PortraitRequest, rod_results

@@ -17,7 +17,7 @@ THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 
 
 class BautinAlong(LinearAxes):
-    """One parameter with values, over which generalised Hopf points are followed."""
+    """A parameter with values, over which generalised Hopf points are followed."""
 
 
 class PhaseDiagramOptions(Strict):

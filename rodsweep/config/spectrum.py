@@ -76,7 +76,7 @@ class SpectrumConfig(LinearConfig):
         self.parameters.require(self.names)
         if "gamma1" in self.parameters.numbers and not self.spectrum.longitudinal:
             raise ValueError(
-                "parameters.gamma1 is given but not used: the transverse spectrum does not contain it; "
+                "parameters.gamma1 is given but not used: the transverse spectrum does not depend on it; "
                 "remove it or set spectrum.longitudinal: true"
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:

@@ -16,6 +16,7 @@ from ..model.balance import Material
 from ..model.material.build import Build, Sections
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import NO_JUMPS, NO_SIDE_CHANGE, Integers, Jumps
@@ -55,7 +56,8 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
-    points, weights = grid.points_inside.ravel()[inside], _places_of(grid)[1][inside]
+    points = grid.points_inside.ravel()[inside]
+    weights = _places_of(grid)[1][inside]
     sections = rod.sections(points.ravel())
     c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
@@ -103,7 +105,7 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
     return mean
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _places_of(grid: Mesh) -> tuple[Integers, Array]:
     """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]

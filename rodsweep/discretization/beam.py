@@ -17,8 +17,17 @@ from .elements.mesh import configuration
 from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
-TINY = 1e-30
-"""Imaginary step of the complex-step derivative in `tip_velocity`, in tau2."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeamSettings:
+    """Derivatives of the tip."""
+
+    tip_step: float = 1e-30
+    """Imaginary step of the complex-step derivative in `tip_velocity`, in tau2; its square underflows, so it
+    has no error."""
+
+
+BEAM = BeamSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +88,9 @@ class Beam(RodOnMesh):
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """d/dt of the tip's (x, y, theta) for dz/dt = direction, both (unknowns,), by complex step, (3,)."""
-        change = self.element_strain_changes(z, TINY * direction)
+        change = self.element_strain_changes(z, BEAM.tip_step * direction)
         moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))
-        velocity: Array = np.divide(moved[:, -1].imag, TINY)
+        velocity: Array = np.divide(moved[:, -1].imag, BEAM.tip_step)
         return velocity
 
     def _along(self, field: Values) -> Array:

@@ -32,7 +32,8 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
                 node = i - i // (order + 1)
                 out[a, k, i] = rod.rest[a, node] + rod.compliance[a, node] * S[a, k, node]
     for j in range(len(rod.jumps)):
-        node, sides = rod.jumps[j], rod.sides[j]
+        node = rod.jumps[j]
+        sides = rod.sides[j]
         before = place_before(node, order)
         for k in range(S.shape[1]):
             q = Unknowns(S[0, k, node], S[2, k, node])
@@ -55,9 +56,12 @@ def write_element_rates(S: Array, rates: Array, rod: NodalRod, order: int, out: 
             for i in range(out.shape[2]):
                 out[a, k, i] = rates[a, k, i - i // (order + 1)]
     for j in range(len(rod.jumps)):
-        node, sides = rod.jumps[j], rod.sides[j]
+        node = rod.jumps[j]
+        sides = rod.sides[j]
         before = place_before(node, order)
-        c1, c2, c3 = rod.compliance[0, node], rod.compliance[1, node], rod.compliance[2, node]
+        c1 = rod.compliance[0, node]
+        c2 = rod.compliance[1, node]
+        c3 = rod.compliance[2, node]
         for k in range(rates.shape[1]):
             q = Unknowns(S[0, k, node], S[2, k, node])
             # A rigid component keeps its strain, whatever its stress does.

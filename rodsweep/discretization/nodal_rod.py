@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..model.balance import Material
 from ..model.material.jump import COLUMNS
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 
 Integers = NDArray[np.int64]
@@ -79,7 +80,7 @@ def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) ->
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Integers]:

@@ -59,8 +59,10 @@ class RodOnMesh(ABC):
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod as argument of compiled functions."""
-        rod, mesh = self.rod, self.mesh
-        law, jumps = rod.build.law_number, jumps_on(rod, mesh)
+        rod = self.rod
+        mesh = self.mesh
+        law = rod.build.law_number
+        jumps = jumps_on(rod, mesh)
         return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
 
     @property
@@ -70,7 +72,8 @@ class RodOnMesh(ABC):
 
     def strains(self, x: Values) -> Values:
         """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1); the mean strain at a jump."""
-        S, c = self.stresses(x), self.nodal
+        S = self.stresses(x)
+        c = self.nodal
         return _along(c.rest, S) + _along(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
@@ -82,7 +85,8 @@ class RodOnMesh(ABC):
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
         """Changes of `element_strains` with a change of the state; x, change: (unknowns,)."""
-        S, dS = _listed(self.stresses(x)), _listed(self.stresses(change))
+        S = _listed(self.stresses(x))
+        dS = _listed(self.stresses(change))
         out = np.empty((len(S), 1, self.mesh.element_nodes.size))
         moved = _along(self.nodal.compliance, dS) * dS
         write_element_rates(S, moved, self.nodal, self.mesh.order, out)
@@ -101,8 +105,10 @@ class RodOnMesh(ABC):
 
         For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
-        S, c = self.stresses(x), self.nodal
-        nu, (c1, c2, c3) = _along(c.rest, S)[0], _along(c.compliance, S)
+        S = self.stresses(x)
+        c = self.nodal
+        nu = _along(c.rest, S)[0]
+        (c1, c2, c3) = _along(c.compliance, S)
         density = self._stored(nu, c1, c3, S[0], S[2])
         for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
             density[..., node] = 0.0
@@ -113,8 +119,10 @@ class RodOnMesh(ABC):
 
     def _stored(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
         """Energy per length of stretching and bending of the unknowns q1, q3 of sections, without shear."""
-        F, law = self.rod.F, self.rod.build.constitutive_law
-        load, h1 = F * c1, nu + c1 * q1
+        F = self.rod.F
+        law = self.rod.build.constitutive_law
+        load = F * c1
+        h1 = nu + c1 * q1
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         push = q1 - F * ratio  # (h1 - 1)/c1
         stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2

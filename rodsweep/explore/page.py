@@ -1,4 +1,4 @@
-"""One page, in one browser tab: state, questions being solved, and pictures."""
+"""A page in a browser tab: state, questions being solved, and pictures."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -26,7 +26,7 @@ AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
 WHEN_IDLE = ("branch", "diagram")
 """Kinds of questions that take seconds, and are asked after a pause of `IDLE`."""
 ON_REQUEST = ("motion", "film", "cycles")
-"""Questions that only the user asks; a change of the rod drops them."""
+"""Questions asked only by the user; a change of the rod cancels these questions."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
 OF_TIP = ("bent", "motion")
@@ -36,9 +36,9 @@ NAMES = {"cycles": "folds and torus points", "growth": "growth rates", "branch":
 
 
 class Page:
-    """Connects controls, solvers and pictures of one session.
+    """Connects controls, solvers and pictures of a session.
 
-    session: name of the session. stored: what a result file answers, or None.
+    session: name of the session. stored: answers from a result file, or None.
     """
 
     def __init__(
@@ -93,17 +93,17 @@ class Page:
         self._ask(kind, is_solved_again=True)
 
     def bend(self, tip: Tip) -> None:
-        """Bends the arm so that its tip is at a place, in L."""
+        """Bends the arm until the tip is at a place, in L."""
         self._drop("motion")
         self._ask("bent", tip)
 
     def let_go(self, tip: Tip) -> None:
-        """Lets go the arm with its tip at a place, in L."""
+        """Releases the arm with the tip at a place, in L."""
         self._drop("bent")
         self._ask("motion", tip)
 
     def _drop(self, kind: str) -> None:
-        """Drops a question, and its answer if it comes nevertheless."""
+        """Drops a question; an answer that still arrives is ignored."""
         self.asked.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)

@@ -18,13 +18,13 @@ from .stored_results import StoredResults
 RESULTS = (".h5", ".hdf5", ".nc")
 """Suffixes of result files; all other files are configs."""
 NOT_SHOWN = ("density_difference", "fluid_density", "law", "section")
-"""Quantities of an arm that do not affect the page, or that have a control outside the arm's tab."""
+"""Quantities of an arm without effect on the page, or with a control outside the arm's tab."""
 
 
 def opened(path: Path) -> tuple[PageState, StoredResults | None]:
-    """(state of the first page, what the file answers; None for a config) of a result file or a config.
+    """(state of the first page, answers from the file; None for a config) of a result file or a config.
 
-    Raises InputError if it is neither, or holds arms that the page cannot show.
+    Raises InputError for any other file, and for arms that the page cannot show.
     """
     if path.suffix not in RESULTS:
         return state_of(load_config(path)[0], path), None

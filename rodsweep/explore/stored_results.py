@@ -1,4 +1,4 @@
-"""What a result file answers, so that nothing is solved again: its diagram, its cycles and its branches."""
+"""Answers from a result file, so that nothing is solved again: diagram, cycles and branches."""
 
 import json
 from collections.abc import Sequence
@@ -16,15 +16,16 @@ from .state import ROD, PageState, number
 
 Found = dict[str, Any]
 SAME = 1e-5
-"""Relative difference of a value of the page, which has five digits, from the same value of the file."""
+"""Relative difference below which a value of the page, with five digits, equals a value of the file."""
 NEAR = 0.25
-"""Distance, as a fraction of that between stored loads, within which a click means the stored load."""
+"""Distance within which a click means a stored load, as a fraction of the distance between stored loads."""
 
 
 class StoredResults:
-    """A result file of rods on a grid, or of arms, of which only a diagram is taken.
+    """A result file of rods on a grid, or of arms; a file of arms provides only the diagram.
 
-    state: of the page that the file opens. diagram: answer to the question `diagram` there, or None.
+    state: state of the page opened by the file. diagram: answer to the question `diagram` in this state, or
+    None.
     """
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
@@ -34,7 +35,7 @@ class StoredResults:
         """Whether each point has one cycle."""
 
     def answer(self, kind: str, state: PageState) -> Found | None:
-        """The stored answer to a question about a state; None if the file does not hold it."""
+        """The stored answer to a question about a state; None if the answer is not in the file."""
         if state.tab != "rod" or self.state.tab != "rod" or state.law != self.state.law:
             return None
         if kind == "cycle":
@@ -53,7 +54,8 @@ class StoredResults:
         return nearest if abs(nearest - F) < NEAR * spacing else F
 
     def _place(self, state: PageState, free: Sequence[str] = ()) -> dict[str, int] | None:
-        """Index of a state along each axis of the file but the free ones; None for a rod not in the file."""
+        """Index of a state along each axis of the file except the free axes; None for a rod not in the
+        file."""
         place = {}
         for name, default in ROD.items():
             if name in free:

@@ -11,7 +11,7 @@ from ..discretization.elements.resolution import expected_wave_number, resolutio
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import CRUSHING_MARGIN
+from ..solve.changes.unstable_modes import end_below_crushing
 from .cost_estimate import sampled
 from .points.points import Points
 
@@ -44,7 +44,7 @@ def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
         if "F" in named:
             force = named.pop("F")
             there = rod.changed(**named)
-            yield there.changed(F=min(force, there.crushing_force * (1 - CRUSHING_MARGIN)))
+            yield there.changed(F=end_below_crushing(there, force))
             continue
         try:
             yield rod.changed(**named)

@@ -1,4 +1,4 @@
-"""Everything about one rod, for its portrait: thresholds, criticality, branches, modes, three cycles."""
+"""All results of a portrait: thresholds, criticality, branches, modes, three cycles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ SHAPES = 12
 LARGE_START = 0.5
 """Tip deflection, in L, of a start from which the rod comes to a cycle beside a stable straight rod."""
 MODE_KINDS = ("onset", "hopf")
-"""Kinds of thresholds at whose first place the leading mode is solved."""
+"""Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
 """Default of the largest force, as of the task thresholds."""
 
@@ -46,7 +46,7 @@ class PortraitRequest:
     material: Mapping[str, Any] = field(default_factory=dict)
 
     def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
-        """Job of a task for this rod, at a force if the task takes one."""
+        """Job of a task for this rod, at a force if the task takes a force."""
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
         values = {name: self.parameters[name] for name in names if name in self.parameters and name != "F"}
         values |= {} if F is None else {"F": F}
@@ -57,10 +57,10 @@ class PortraitRequest:
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
-    """Solves everything about a rod; solve: how the only point of a job is solved.
+    """Solves all results of a portrait. solve: function that solves the only point of a job.
 
-    Raises InputError for parameters that are no rod. What cannot be solved of a rod has its reason in the
-    result.
+    Raises InputError if the parameters describe no rod. For a result that cannot be solved, the reason is
+    kept.
     """
     F_max = {"F_max": request.F_max}
     views = {"thresholds": solve(request.job("thresholds", F_max))}
@@ -99,7 +99,8 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
 
 
 def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at a force, from the Hopf point, or from a large start if that leads to none."""
+    """The limit cycle at a force, started from the Hopf point; if no cycle is found, from a large
+    deflection."""
     found = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_START}):
         view = solved("limit_cycle", {**start, "shapes": SHAPES}, F)

@@ -19,7 +19,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import CRUSHING_MARGIN, Kind
+from ..solve.changes.unstable_modes import Kind, end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 FARTHEST = 1000.0
@@ -92,7 +92,7 @@ def first_hopf_force(rod: Rod) -> float:
     first_up_to = _first_up_to if rod.standard else _first_of_varied
     try:
         for end in (NEAR, FARTHEST) if rod.standard else ENDS_OF_VARIED:
-            first = first_up_to(path, min(end, rod.crushing_force * (1 - CRUSHING_MARGIN)))
+            first = first_up_to(path, end_below_crushing(rod, end))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:

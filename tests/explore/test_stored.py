@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from explore.test_page import ImmediateSolvers, page_with, run_callbacks, shown
+from surveyed import few
 
 import rodsweep as rs
 from rodsweep.explore.page import Page
@@ -66,7 +67,7 @@ def test_a_stored_rod_at_rest_is_drawn_straight(command):
     assert page.contents.beating.shapes.data["x"][-1] == pytest.approx(1 - 20 / 1e4)
 
 
-@pytest.mark.parametrize("query", ["F=41", "k2=110", "gamma1=2", "law=fixed", "taper=0.9"])
+@pytest.mark.parametrize("query", few(["F=41", "law=fixed", "k2=110", "gamma1=2", "taper=0.9"], 2))
 def test_what_the_file_does_not_hold_is_solved(command, query):
     _, solvers = opened_page(command, CYCLES, query)
     assert "cycle" in asked(solvers)

@@ -565,7 +565,7 @@ def test_thresholds_of_several_files_are_lines_of_one_figure(command, monkeypatc
     command.solved("t.yaml")
     refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-    assert "one and the same axis" in refused.stderr
+    assert "grids over one parameter, the same in every file" in refused.stderr
 
 
 def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():

@@ -29,7 +29,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
-from ..certificate.winding_number import LEAST_HEIGHT, NOT_AN_INTEGER, WIDTH_ADDED, WIDTH_FACTOR, Count
+from ..certificate.winding_number import COUNT, Count
 from ..value import Value
 from .completeness import is_whole
 from .determinant import ArmDeterminant
@@ -112,7 +112,7 @@ def count_right_of(
     real, imag = hull.box(max(-line, 0.0))
     if line >= real:
         return Count(0, 0)
-    corner = complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
+    corner = complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
     top = complex(line, corner.imag)
     known = known[error < SHARP * np.abs(known.real - line)]
     known = known[is_whole(known)]
@@ -130,7 +130,7 @@ def count_right_of(
     except FloatingPointError as unresolved:
         return Count(None, nodes, str(unresolved))
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > NOT_AN_INTEGER:
+    if abs(total / math.pi - number) > COUNT.not_an_integer:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number + int((known.real > line).sum()), nodes)
 
@@ -169,6 +169,8 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
     """The change of arg D between two nodes whose reaches overlap."""
     step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
+    # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
+    # the reaches overlap.
     expected = (here.L * step * share + there.L * step * (1 - share)).imag
     return expected + cmath.phase(there.direction / here.direction * cmath.exp(complex(0.0, -expected)))
 

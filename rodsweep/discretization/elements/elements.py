@@ -11,8 +11,20 @@ from ...arrays import Array
 from .basis import interpolation
 from .quadrature import gauss_lobatto
 
-INSIDE = 1e-9
-"""Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElementSettings:
+    """Samples inside elements, and memory for meshes."""
+
+    inside: float = 1e-9
+    """Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
+    meshes_kept: int = 64
+    """Number of meshes, and of matrices of one mesh, that are kept; a sweep uses some ten."""
+    pairs_kept: int = 256
+    """Number of pairs of meshes whose transfer is kept, and of lists of edges."""
+
+
+ELEMENTS = ElementSettings()
 
 
 @dataclass(frozen=True)
@@ -57,7 +69,7 @@ class Elements:
 
         At a jump between two elements each element therefore samples the coefficient on its own side.
         """
-        inner: Array = np.clip((gauss_lobatto(self.order)[0] + 1) / 2, INSIDE, 1 - INSIDE)
+        inner: Array = np.clip((gauss_lobatto(self.order)[0] + 1) / 2, ELEMENTS.inside, 1 - ELEMENTS.inside)
         starts: Array = np.array(self.edges[:-1])
         points: Array = starts[:, None] + self.lengths[:, None] * inner
         return points
@@ -90,7 +102,7 @@ class Elements:
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=ELEMENTS.pairs_kept)
 def equal_edges(elements: int) -> tuple[float, ...]:
     """Edges of `elements` equal elements on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))

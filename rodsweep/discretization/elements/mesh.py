@@ -12,12 +12,20 @@ import numpy as np
 
 from ...arrays import Array
 from .basis import differentiation, interpolation
-from .elements import Elements, equal_edges
+from .elements import ELEMENTS, Elements, equal_edges
 from .quadrature import gauss, gauss_lobatto
 
-EXTRA_POINTS = 10
-"""Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two radians in
-an element."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReconstructionSettings:
+    """Quadrature of the shape of a rod."""
+
+    extra_points: int = 10
+    """Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two
+    radians in an element."""
+
+
+RECONSTRUCTION = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
@@ -56,7 +64,7 @@ def mesh(elements: int, order: int) -> Mesh:
     return mesh_on(equal_edges(elements), order)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     """The mesh of elements between `edges`, all of order `order`."""
     x, w = gauss_lobatto(order)
@@ -74,7 +82,7 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=ELEMENTS.pairs_kept)
 def transfer(source: Mesh, target: Mesh) -> Array:
     """Matrix from values at all nodes of `source` to values at all nodes of `target`.
 
@@ -108,7 +116,7 @@ def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
     return state
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
     """Matrices (values, angles, integrals, ends) on an element [0, 1] with p + 1 nodes and m Gauss points.
 
@@ -118,7 +126,7 @@ def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
     the nodes, (p + 1, p + 1).
     """
     x = gauss_lobatto(order)[0]
-    g = gauss(order + EXTRA_POINTS)[0]
+    g = gauss(order + RECONSTRUCTION.extra_points)[0]
     return interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T
 
 

@@ -65,7 +65,8 @@ class MixedForm:
     @cached_property
     def nodal(self) -> NodalRod:
         """Compliance, drag and strain at rest at all nodes, and the tip stress."""
-        kept, jumps = tuple(range(COMPONENTS)), jumps_on(self.rod, self.mesh)
+        kept = tuple(range(COMPONENTS))
+        jumps = jumps_on(self.rod, self.mesh)
         return nodal_rod(material_on(self.rod, self.mesh), self.mesh, kept, jumps=jumps)
 
     @cached_property

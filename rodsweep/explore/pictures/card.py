@@ -18,13 +18,13 @@ TICKS = 5
 PLAIN_DIGITS = 7
 """Largest power of ten that labels show without an exponent."""
 NO_TITLE = "\u00a0"
-"""A title without words: a picture that is drawn with an empty title shows no later one."""
+"""A title without words. Bokeh shows no later title of a picture drawn with an empty title."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """An empty figure that fills the width of its column."""
+    """An empty figure as wide as the column of the page."""
     made = figure(
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,

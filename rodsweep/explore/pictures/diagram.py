@@ -15,7 +15,7 @@ from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_sou
 NOT_KNOWN = -1
 """Stored in `unstable_count` where the number is not known."""
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
-"""Colours of boundaries; all others are those of stable states."""
+"""Colours of boundaries; areas have the colours of stable states."""
 OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
 """Words, colour and dash of curves of special points of cycles."""
 DEEPEST = 6

@@ -47,7 +47,7 @@ class NumbersTable:
         self.found: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
-        """Fills the rows of a kind of question; empties them for None."""
+        """Fills the rows of a kind of question; None empties the rows."""
         if kind not in ROWS:
             return
         if found is None:

@@ -1,4 +1,4 @@
-"""The arm bent by its tip, and its motion after it is let go."""
+"""The arm bent by the tip, and the motion after the release."""
 
 from typing import Any
 
@@ -27,14 +27,14 @@ def straight(state: PageState) -> dict[str, Any]:
 
 
 def motion(state: PageState, tip: Tip) -> dict[str, Any]:
-    """The motion from there, with the shapes of the cycle that it reaches: fields of `ReleasedMotion`.
+    """The motion after the release, with shapes of the cycle at its end: fields of `ReleasedMotion`.
 
-    frames: shapes per return of the tip. period: of the cycle, tau2; NaN without one.
-    shape_x, shape_y: (shapes, nodes) over a period; no shapes where the motion ends otherwise.
+    frames: shapes per return of the tip. period: period of the cycle, tau2; NaN without a cycle. shape_x,
+    shape_y: (shapes, nodes) over a period; no shapes where the motion ends otherwise.
     """
     found = released_motion(_job(state, shapes=48), tip)
     if found is None:
-        raise InputError("the motion from there could not be integrated")
+        raise InputError("the motion after the release could not be integrated")
     own = {"tip": tip, "frames": FRAMES, "period": float(found.cycle["period"])}
     return vars(found) | _shapes(found) | own
 

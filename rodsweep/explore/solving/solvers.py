@@ -1,4 +1,5 @@
-"""Solver processes: one for each group of questions. A new question of a kind replaces an older one."""
+"""Solver processes, each for a group of questions. A new question of a kind replaces an older question of the
+kind."""
 
 import os
 import signal
@@ -17,7 +18,7 @@ from ..state import PageState
 from .questions import Question, Reply
 
 Key = tuple[str, str]
-"""(session, kind): a new question replaces an older one of the same key."""
+"""(session, kind): a new question replaces an older question with an equal key."""
 Done = Callable[[Reply], None]
 """Callback that receives the reply to a question."""
 GROUPS = {
@@ -25,13 +26,13 @@ GROUPS = {
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
     "cycles": "diagram",
 }  # fmt: skip
-"""Process group of each kind of question, so that fast questions never wait for slow ones."""
+"""Process group of each kind of question, so that fast questions never wait for slow questions."""
 NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
 """Niceness of the process of each group: pictures that follow a slider have the highest priority."""
 INTERRUPT_RETRY = 0.1
-"""Seconds until a cancellation is repeated that came before the process was ready."""
+"""Seconds until a cancellation that came before the process was ready is repeated."""
 WARMED_UP = ("spectrum", "cycle", "thresholds")
-"""Kinds of questions solved once at the start, which starts their processes and loads compiled code."""
+"""Kinds of questions solved once at the start, to start the processes and load compiled code."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,8 +56,8 @@ class SolverProcess:
         self.waiting: dict[Key, tuple[Question, Done]] = {}
         self.asked: tuple[Key, Done] | None = None
         self.number = 0
-        """Number of questions sent so far. Timers compare it, to act only on the question they were set
-        for."""
+        """Number of questions sent so far. A timer compares this number, to act only on the question for
+        which the timer was set."""
         self.since = 0.0
         self.starts = 0
         self.is_ready = False
@@ -148,7 +149,7 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `number` if it is still being solved and a newer question of its key waits."""
+        """Cancels question `number` if still being solved while a newer question with an equal key waits."""
         if number == self.number and key in self.waiting:
             self._interrupt(number)
 
@@ -186,7 +187,7 @@ class Solvers:
         self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Starts the processes of `WARMED_UP` with one question each, which loads compiled code."""
+        """Starts the processes of `WARMED_UP` with a question each, to load compiled code."""
         for kind in WARMED_UP:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 

@@ -1,8 +1,7 @@
 """The process of one solver, which reads questions from a pipe and writes replies.
 
-SIGINT cancels the question that is being answered. The process ends when the pipe closes. A second pipe,
-whose other end only the page's process holds, ends the process even during a solve when the page's process
-ends.
+SIGINT cancels the question being answered. The process ends when the pipe closes. A second pipe, held open
+only by the page's process, ends the solver process when the page's process ends, even during a solve.
 """
 
 import os
@@ -18,7 +17,7 @@ from ...errors import Refusal
 from .questions import Question, Reply, answer_to
 
 IMPORT_RETRY = 0.05
-"""Seconds until a cancellation is repeated that came during an import."""
+"""Seconds until a cancellation that came during an import is repeated."""
 
 
 class Cancellation:
@@ -83,7 +82,7 @@ def reply_to(question: Question, cancellation: Cancellation) -> Reply:
 
 
 def end_with_parent(descriptor: int) -> None:
-    """Ends this process when the other end of a pipe closes; nobody writes to the pipe."""
+    """Ends this process when the opposite end of a pipe closes; nothing is ever written to the pipe."""
     os.read(descriptor, 1)
     os._exit(0)
 

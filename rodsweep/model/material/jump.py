@@ -51,7 +51,8 @@ def _solved(T: Tangent, N: float, M: float) -> Unknowns:
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
     """The share of a step of q1 that keeps h1 above its least ratio."""
-    h, change = at.nu + at.c1 * q1, at.c1 * step
+    h = at.nu + at.c1 * q1
+    change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:
         return 1.0
     return (LEAST_STRETCH_KEPT - 1) * h / change
@@ -67,13 +68,17 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
     """a of the mean unknowns q, by Newton's method; sides: (2, 7)."""
     if law == LINEAR_LAW:
         return q
-    one, other = _section(sides[0]), _section(sides[1])
-    ratio1, ratio3 = sides[0, 3] / sides[1, 3], sides[0, 4] / sides[1, 4]
+    one = _section(sides[0])
+    other = _section(sides[1])
+    ratio1 = sides[0, 3] / sides[1, 3]
+    ratio3 = sides[0, 4] / sides[1, 4]
     a = q
     for _ in range(MOST_ITERATIONS):
         b = behind_jump(sides, q, a)
-        s, t = stress(law, one, a.q1, a.q3), stress(law, other, b.q1, b.q3)
-        S, T = tangent(law, one, a.q1, a.q3), tangent(law, other, b.q1, b.q3)
+        s = stress(law, one, a.q1, a.q3)
+        t = stress(law, other, b.q1, b.q3)
+        S = tangent(law, one, a.q1, a.q3)
+        T = tangent(law, other, b.q1, b.q3)
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solved(J, t.N - s.N, t.M - s.M)
         share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
@@ -101,8 +106,10 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
     """Derivatives of the mean unknowns by the stresses, in the places of those of the stresses."""
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
-    s, t = S.N1 * S.M3 - S.N3 * S.M1, T.N1 * T.M3 - T.N3 * T.M1
-    (s1, s3), (t1, t3) = (sides[0, 3] / s, sides[0, 4] / s), (sides[1, 3] / t, sides[1, 4] / t)
+    s = S.N1 * S.M3 - S.N3 * S.M1
+    t = T.N1 * T.M3 - T.N3 * T.M1
+    (s1, s3) = (sides[0, 3] / s, sides[0, 4] / s)
+    (t1, t3) = (sides[1, 3] / t, sides[1, 4] / t)
     return Tangent(
         s1 * S.M3 + t1 * T.M3, -s1 * S.N3 - t1 * T.N3, -s3 * S.M1 - t3 * T.M1, s3 * S.N1 + t3 * T.N1
     )
@@ -138,9 +145,11 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     q = Unknowns(q1, q3)
     a = before_jump(law, sides, q)
     b = behind_jump(sides, q, a)
-    moved1, moved3 = 0.0, 0.0
+    moved1 = 0.0
+    moved3 = 0.0
     for i in range(2):
-        at, x = _section(sides[i]), a if i == 0 else b
+        at = _section(sides[i])
+        x = a if i == 0 else b
         own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
         back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1

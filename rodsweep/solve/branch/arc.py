@@ -158,7 +158,7 @@ def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
 
 
 def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
-    """The cycle at an arc length from `start`; its own next step has the same length.
+    """The cycle at an arc length from `start`, with an equal length for the next step.
 
     Raises Unsolvable.
     """

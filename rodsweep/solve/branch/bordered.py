@@ -200,7 +200,7 @@ class BorderedMatrix:
 def bordered(found: Converged) -> BorderedMatrix:
     """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
     if not isinstance(found.matrix, BorderedMatrix):
-        raise TypeError("the matrix does not know the parameter")
+        raise TypeError("the orbit was solved without the parameter as an unknown")
     return found.matrix
 
 

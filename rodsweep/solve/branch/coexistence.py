@@ -64,7 +64,7 @@ class Stable(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
-    """A row: its stable states at each value, (values,), and the special points of all its branches."""
+    """A row: stable states at each value, (values,), and the special points of all branches."""
 
     row: DiagramRow
     stable_states: NDArray[np.int8]

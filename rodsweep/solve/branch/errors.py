@@ -134,7 +134,7 @@ class BranchCalibration:
 
     @cached_property
     def _of_parameter(self) -> Calibration:
-        """Calibration in which every error is the parameter's."""
+        """A calibration with the parameter's error in place of every error."""
         numbers = [PERIOD, HEIGHT, OTHERS, APART]
         parts = [self.known.space.copy(), self.known.time.copy()]
         for part, own in zip(parts, self.parameter, strict=True):
@@ -142,8 +142,8 @@ class BranchCalibration:
         return replace(self.known, space=parts[0], time=parts[1])
 
     def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
-        """Errors of a cycle between two measured ones on one mesh. share: of the way to `other`; slope: at
-        the cycle.
+        """Errors of a cycle between two cycles with measured errors on one mesh. share: fraction of the way
+        to `other`; slope: slope at the cycle.
 
         Each error is interpolated geometrically and multiplied by BRANCH_ERRORS.interpolation_factor.
         """

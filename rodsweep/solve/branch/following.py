@@ -1,4 +1,4 @@
-"""One branch of cycles, followed from its Hopf point or symmetry breaking to its end."""
+"""A branch of cycles, followed from a Hopf point or symmetry breaking to the end."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -58,7 +58,8 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 
 def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:
-    """The branch of asymmetric cycles from symmetry breaking `which` of the list, along a parameter."""
+    """The branch of asymmetric cycles along the parameter `name`, from symmetry breaking
+    `limits.breakings[which]`."""
     breaking = limits.breakings[which]
     curve = BranchCurve(hopf=-1, breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))

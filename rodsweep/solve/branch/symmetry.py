@@ -42,7 +42,7 @@ class EndingSettings:
     """Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
     better."""
     lost_asymmetry: float = 0.1
-    """A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
+    """A step that reduces the asymmetry below this fraction has reached or passed a symmetric cycle."""
     asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Allowed range of the asymmetry found, in units of the predicted asymmetry."""
     place_share: float = 0.3
@@ -191,7 +191,7 @@ def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], acc
     if which >= 0 or _relative_asymmetry(start) <= ENDINGS.min_asymmetry:
         return which
     if arc_between(start, end) / 2 < ARC_STEPS.shortest:
-        raise Unsolvable("the motion becomes its mirror image within the shortest step")
+        raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 
 

@@ -23,7 +23,7 @@ from ..orbit.newton import at_orbit, newton
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
-from ..spectrum.candidates import BEHIND
+from ..spectrum.candidates import CANDIDATES
 from ..spectrum.problem import problem_of
 from ..spectrum.spectrum import SpectrumRequest
 from .along_parameter import in_steps, predictor_from
@@ -188,9 +188,9 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     if not normal.supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START.direct_distance * rate / -normal.c.real:
-        raise Unsolvable("the start is too large for the normal form")
-    if problem_of(form.rod).count(-BEHIND * abs(w)).number != 2:
-        raise Unsolvable("another mode may grow")
+        raise Unsolvable("the amplitude of the start is too large for the normal form")
+    if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
+        raise Unsolvable("a second mode may be unstable")
     return orbit_of(normal, replace(form, mesh=normal.form.mesh))
 
 

@@ -142,7 +142,7 @@ def _solve(
 def _after_motion(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome with the number of returns of the motion, its mesh, and what is stored of it."""
+    """The outcome with the number of returns of the motion, the mesh, and the stored part of the motion."""
     trace = transient.trace
     return replace(
         straight,

@@ -69,7 +69,7 @@ class StraightRod:
 def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest = SPECTRUM) -> StraightRod:
     """The leading eigenvalue of a rod with its error.
 
-    near: leading eigenvalue of a similar rod, followed to this rod where possible.
+    near: leading eigenvalue of a similar rod, followed to this rod if possible.
     """
     followed = None
     if near is not None and rod.standard:

@@ -25,16 +25,17 @@ FIRST_ANGLE = 0.8
 FIRST_STEP, LEAST_STEP = 0.1, 1e-3
 """Length of the first step as a share of the path, and the length at which the path is given up."""
 MOST_ITERATIONS, PLACED = 12, 1e-10
-"""Newton iterations of a step, and the distance of the tip from its place, in L, at which they end."""
+"""Maximum Newton iterations of a step, and the distance of the tip from its target, in L, at which iterations
+end."""
 MOST_TURNED = 1.0
-"""Change of the angle by one Newton step, rad, beyond which the step leads to another shape."""
+"""Change of the angle by a Newton step, in rad, beyond which the step may lead to a different shape."""
 
 
 def held_by_tip(beam: Beam, x: float, y: float) -> Array:
-    """The state z, (unknowns,), of the rod bent so that its tip is at (x, y) in L.
+    """The state z, (unknowns,), of the rod bent until the tip is at (x, y) in L.
 
-    A place beyond `REACH` is drawn towards the clamp. Where the path cannot be followed to its end, the state
-    is that of its last place.
+    A target beyond `REACH` is moved towards the clamp. If the tip cannot be moved to the target, the last
+    state on the way is returned.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
@@ -55,7 +56,8 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
 
 
 class _Bending:
-    """A rod that bends only: places of its tip and their derivatives. length: of the straight rod, in L."""
+    """A rod that only bends: place of the tip, and its derivatives. length: length of the straight rod, in
+    L."""
 
     def __init__(self, beam: Beam) -> None:
         self.mesh = beam.mesh

@@ -53,7 +53,8 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     size, order = len(p.matrices.weights), len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
     tip, velocity = np.empty((len(states), 3)), np.empty((len(states), 3))
-    S, rates = np.empty((3, len(states), size)), np.empty((3, len(states), size))
+    S = np.empty((3, len(states), size))
+    rates = np.empty((3, len(states), size))
     node_stresses(states, S)
     strain_rates(states, rates, p)
     rates *= period

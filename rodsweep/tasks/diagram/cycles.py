@@ -1,4 +1,4 @@
-"""Cycles of the rows of a phase diagram (`phase_diagram.cycles`), and their curves."""
+"""Cycles of the rows of a phase diagram (`phase_diagram.cycles`), and curves of special points."""
 
 from collections.abc import Sequence
 from dataclasses import replace

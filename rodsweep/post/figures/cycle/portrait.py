@@ -191,7 +191,7 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
     along = [np.concatenate(values) for values in (along_x, along_y)]
     (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in along)
     if not (left < right and low < high):
-        raise ValueError("shapes are too large")
+        raise ValueError("the shapes are too large for axes in floating-point numbers")
     return (left, right), (low, high)
 
 

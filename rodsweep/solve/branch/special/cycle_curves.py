@@ -16,7 +16,7 @@ from .point import SpecialKind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveIdentitySettings:
-    """Comparison of curves with special points of rows, with Hopf points, and with one another."""
+    """Comparison of curves with special points of rows, with Hopf points, and with further curves."""
 
     on_curve: float = 1e-6
     """A special point of a row this close to a curve lies on it; in units of the line's axis."""
@@ -94,7 +94,7 @@ class CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class HalfCurve:
-    """A curve from a special point of a row to one of its ends."""
+    """Half a curve: from a special point of a row to an end."""
 
     points: tuple[CurvePoint, ...]
     end: CurveEnd

@@ -136,7 +136,8 @@ class _SecantAcross:
         self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.place(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
-        """Longest last step along a line with derivatives that do not come from two cycles of this search."""
+        """Largest last step along a line for derivatives that were not computed from two cycles of this
+        search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycles(family, self.orbit, contraction)
 
@@ -182,7 +183,7 @@ class _SecantAcross:
         before = self.before
         if before is None or present.test == before.test:
             return None
-        if abs(present.at - before.at) < ACROSS_CURVE.min_span:
+        if abs(present.at - before.at) < ACROSS_CURVE.min_cycle_distance:
             return None
         name = self.family.scale.name
         span = present.at - before.at

@@ -6,7 +6,7 @@ a nearby matrix (`augmented`).
 """
 
 from dataclasses import replace
-from math import ceil, nan
+from math import ceil, log, nan
 
 import numpy as np
 
@@ -44,7 +44,7 @@ class Segment:
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """Continues on another mesh, without a cycle to start from."""
+        """Continues on a different mesh, without a cycle to start from."""
         self.mesh, self._known = mesh, None
 
     def at(self, length: float) -> Converged:
@@ -111,8 +111,8 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles; if it is not found, its error is the distance of the
-    two."""
+    """The special point of a kind between two cycles. The error of a point that is not found is the distance
+    of the two cycles."""
     aim = min(accuracy, LOCATING.accuracy)
     try:
         segment = Segment(start, end)
@@ -121,7 +121,7 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
         mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
-        for _ in range(LOCATING.max_mesh_pairs + 1):
+        for number in range(LOCATING.max_mesh_pairs + 1):
             segment.start_on(mesh)
             length, orbit, slope = _zero(kind, segment, length, slope)
             last = point
@@ -130,11 +130,8 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
                 point = _with_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
-            mesh = replace(
-                mesh,
-                order=mesh.order + LOCATING.more_orders,
-                intervals=ceil(LOCATING.more_intervals * mesh.intervals),
-            )
+            # The measured error chooses every other mesh; the mesh after it is close, for comparison.
+            mesh = _finer(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.allowed:
                 break
         if point is None or np.isnan(point.error):
@@ -142,6 +139,14 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
     except Unsolvable as why:
         return _between(kind, start, end, f"the {kind.name} is not located: {why}")
     return point
+
+
+def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
+    """The next finer mesh. excess: error of a point on this mesh in units of the accuracy."""
+    growth = excess ** (1 / (LOCATING.power_by_stages * mesh.stages))
+    growth = min(max(growth, LOCATING.more_intervals), LOCATING.max_interval_ratio)
+    more = min(max(ceil(log(excess) / LOCATING.fall), LOCATING.more_orders), LOCATING.max_more_orders)
+    return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:

@@ -35,14 +35,13 @@ class CrossingSettings:
     """The last secant step is taken without solving at its end if its length times the distance of the last
     two cycles is below this limit; the test function is known to about 1e-8."""
     max_linear_step: float = 1e-6
-    """The limit of the last step with derivatives from other cycles at the same point, which are known to
-    1e-3."""
+    """Limit of the last step with derivatives from earlier cycles at the same point, with errors of 1e-3."""
     max_carried_step: float = 1e-7
     """The limit of the last step with derivatives from the previous point, which are known to a tenth."""
     min_cosine: float = 0.9
     """Smallest cosine of the angle between two directions across the curve for which derivatives are
     reused."""
-    min_span: float = 1e-6
+    min_cycle_distance: float = 1e-6
     """Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
     1e-8."""
     error_factor: float = 3.0
@@ -152,12 +151,13 @@ class OnCurve:
 
 
 def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
-    """Points of a curve in order; the error of each is the larger of those measured before and behind it."""
+    """Points of a curve in order. The error of each point is the larger of the errors measured before and
+    behind."""
     found: list[OnCurve] = []
     behind: CurveErrors | None = None
     for point in reversed(points):
         if point.errors is None:
-            raise ValueError("the point was located without error")
+            raise ValueError("the point has no error estimate")
         candidates = [point.errors]
         if point.errors.age == 0:
             behind = point.errors

@@ -45,17 +45,27 @@ class LocatingSettings:
     max_mesh_pairs: int = 4
     """Maximum number of pairs of meshes that are compared."""
     more_orders: int = 2
-    """Increase of the order on the next finer mesh."""
+    """Smallest increase of the order on the next finer mesh."""
+    max_more_orders: int = 8
+    """Largest increase of the order on the next finer mesh."""
+    fall: float = 0.8
+    """Decay of the error in space per order, natural logarithm, as measured at a torus point."""
     more_intervals: float = 1.2
-    """Factor on the number of intervals on the next finer mesh."""
+    """Smallest factor on the number of intervals on the next finer mesh."""
+    max_interval_ratio: float = 2.0
+    """Largest factor on the number of intervals on the next finer mesh."""
+    power_by_stages: float = 1.5
+    """Order in time of the special point, in units of the stages; known orders are larger."""
     error_factor: float = 3.0
     """Safety factor on the difference of two meshes."""
     rounding: float = 1e-13
     """Relative rounding error of the parameter, the period and the size."""
     near_one: float = 3e-3
-    """A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
+    """A multiplier this close to 1 may be rounded to either side of 1. Beside a fold, two multipliers are
+    close to 1."""
     max_halvings: int = 7
-    """Maximum number of halvings of a step with several special points, or with one that is not located."""
+    """Maximum number of halvings of a step with several special points, or with a point that is not
+    located."""
 
 
 LOCATING = LocatingSettings()

@@ -16,7 +16,7 @@ from .locating import located, through_minus_one
 from .point import LOCATING, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
-"""Gives the cycle at a length from another cycle; raises Unsolvable."""
+"""Returns the cycle at an arc length from a given cycle; raises Unsolvable."""
 
 
 def unstable_returns(point: ArcPoint) -> int:

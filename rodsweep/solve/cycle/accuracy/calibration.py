@@ -12,7 +12,7 @@ from math import ceil, inf
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.elements.resolution import LARGEST_ORDER
+from ....discretization.elements.resolution import RESOLUTION
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
 from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
@@ -110,7 +110,9 @@ class Calibration:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
-        orders = np.arange(lowest, min(LARGEST_ORDER, present.order + CALIBRATION.max_more_orders) + 1)
+        orders = np.arange(
+            lowest, min(RESOLUTION.largest_order, present.order + CALIBRATION.max_more_orders) + 1
+        )
         fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
         most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
