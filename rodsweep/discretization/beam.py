@@ -23,7 +23,7 @@ class BeamSettings:
     """Derivatives of the tip."""
 
     tip_step: float = 1e-30
-    """Imaginary step of the complex-step derivative in `tip_velocity`, in tau2; its square underflows, so it
+    """Imaginary step of the complex-step derivative in `tip_motion`, in tau2; its square underflows, so it
     has no error."""
 
 
@@ -86,12 +86,18 @@ class Beam(RodOnMesh):
         rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
-    def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """d/dt of the tip's (x, y, theta) for dz/dt = direction, both (unknowns,), by complex step, (3,)."""
+    def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
+        """The tip's (x, y, theta) and their d/dt for dz/dt = direction, (3, ...) each.
+
+        z, direction: (..., unknowns). A small imaginary step gives the velocity without cancellation.
+        """
         change = self.element_strain_changes(z, BEAM.tip_step * direction)
-        moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))
-        velocity: Array = np.divide(moved[:, -1].imag, BEAM.tip_step)
-        return velocity
+        moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
+        return moved.real, moved.imag / BEAM.tip_step
+
+    def tip_velocity(self, z: Array, direction: Array) -> Array:
+        """d/dt of the tip's (x, y, theta) for dz/dt = direction, shape (3, ...)."""
+        return self.tip_motion(z, direction)[1]
 
     def _along(self, field: Values) -> Array:
         """`roots` reshaped to broadcast against a field (3, ..., nodes + 1)."""

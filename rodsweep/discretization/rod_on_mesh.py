@@ -84,13 +84,13 @@ class RodOnMesh(ABC):
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
-        """Changes of `element_strains` with a change of the state; x, change: (unknowns,)."""
-        S = _listed(self.stresses(x))
-        dS = _listed(self.stresses(change))
-        out = np.empty((len(S), 1, self.mesh.element_nodes.size))
+        """Changes of `element_strains` with changes of states; x, change: (..., unknowns)."""
+        S = self.stresses(x)
+        dS = self.stresses(change)
         moved = _along(self.nodal.compliance, dS) * dS
-        write_element_rates(S, moved, self.nodal, self.mesh.order, out)
-        return out[:, 0]
+        out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        write_element_rates(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
+        return out
 
     def shape(self, x: Array) -> Array:
         """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
