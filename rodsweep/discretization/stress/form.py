@@ -56,7 +56,7 @@ class StressForm(RodOnMesh):
     def states_on(self, grid: Mesh, x: Array) -> Array:
         """States x on another mesh, (..., unknowns there)."""
         E = transfer(self.mesh, grid)
-        if not len(self.nodal.jumps):
+        if self.smooth_stresses:
             return self.layout.carried(x, E)
         layout = plane_layout(grid.nodes, self.kept)
         V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))
