@@ -247,7 +247,7 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 
 
 @commands.command()
-@arm_options
+@arm_options()
 @click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
 def arm(poisson: float, segment: tuple[str, ...], **quantities: str | None) -> None:
     """Print when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""

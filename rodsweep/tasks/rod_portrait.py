@@ -1,7 +1,7 @@
 """All results of a portrait: thresholds, criticality, branches, modes, three cycles."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 from ..post.branch_curves import Range, curves_of, union
-from ..post.rod_portrait.results import RodResults
+from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
@@ -36,22 +36,21 @@ Solve = Callable[[Job], View]
 class PortraitRequest:
     """A rod and the choices of its portrait.
 
-    parameters: values by name. F_max: largest force. accuracy: relative error, or None for the default of
-    each task. material: section `material` of a config, empty for a uniform rod of linear material.
+    F_max: largest force. accuracy: relative error, or None for the default of each task.
     """
 
-    parameters: Mapping[str, float]
+    rod: DescribedRod
     F_max: float = F_MAX
     accuracy: float | None = None
-    material: Mapping[str, Any] = field(default_factory=dict)
 
     def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
         """Job of a task for this rod, at a force if the task takes a force."""
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
-        values = {name: self.parameters[name] for name in names if name in self.parameters and name != "F"}
+        own = self.rod.parameters
+        values = {name: own[name] for name in names if name in own and name != "F"}
         values |= {} if F is None else {"F": F}
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
-        tree |= {"material": dict(self.material)} if self.material else {}
+        tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
         tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
         return job_of(Path(task), validated(tree), yaml_of(tree))
 
@@ -89,7 +88,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
         reason = missing.get("branch", "no stable cycle lies on a branch from a Hopf point")
         missing.setdefault("limit_cycle", reason)
     return RodResults(
-        parameters=request.parameters,
+        rod=request.rod,
         F_max=request.F_max,
         views=views,
         modes=modes,

@@ -191,3 +191,16 @@ def _seconds_used(solver: SolverProcess) -> float:
     with open(f"/proc/{solver.pid}/stat") as stat:
         used = sum(map(int, stat.read().rpartition(")")[2].split()[11:13]))
     return used / os.sysconf("SC_CLK_TCK")
+
+
+def test_a_long_solve_sends_its_progress_until_it_is_dropped(solver):
+    replies: list[Reply] = []
+    places: list[Reply] = []
+    solver.ask(("page", "branch"), SLOW, replies.append, places.append)
+    wait_until(lambda: places)
+    assert places[0].outcome == "progress"
+    assert places[0].content["words"]
+    solver.drop(("page", "branch"))
+    solver.ask(("page", "thresholds"), QUICK, replies.append)
+    wait_until(lambda: replies)
+    assert ([reply.outcome for reply in replies], solver.starts) == (["answer"], 1)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from html import escape
+from textwrap import fill
 from typing import Any
 
 from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Span
@@ -18,7 +19,9 @@ TICKS = 5
 PLAIN_DIGITS = 7
 """Largest power of ten that labels show without an exponent."""
 NO_TITLE = "\u00a0"
-"""A title without words. Bokeh shows no later title of a picture drawn with an empty title."""
+"""A title without words: a picture that is drawn with an empty title shows no later one."""
+TITLE_WIDTH = 46
+"""Largest number of characters in a line of a title: the narrowest figure would cut a longer line."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
@@ -82,8 +85,8 @@ class Card:
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def entitle(self, text: str) -> None:
-        """Writes a title, which may be empty."""
-        self.figure.title.text = text or NO_TITLE
+        """Writes a title, which may be empty, in lines that fit above the figure."""
+        self.figure.title.text = fill(text, TITLE_WIDTH) or NO_TITLE
 
     def say(self, sentence: str) -> None:
         """Shows a sentence instead of the figure."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
+from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
@@ -48,4 +49,5 @@ def _shapes(found: ReleasedMotion) -> dict[str, Any]:
 
 def _job(state: PageState, **options: int) -> Job:
     rod = dict(rod_of(state.subject()))
-    return PortraitRequest(parameters=rod, material=LAWS[state.law]).job("limit_cycle", options, rod.pop("F"))
+    request = PortraitRequest(rod=DescribedRod(parameters=rod, material=LAWS[state.law]))
+    return request.job("limit_cycle", options, rod["F"])

@@ -20,7 +20,13 @@ from .questions import Question, Reply
 Key = tuple[str, str]
 """(session, kind): a new question replaces an older question with an equal key."""
 Done = Callable[[Reply], None]
-"""Callback that receives the reply to a question."""
+"""Callback that receives the reply to a question, or its progress."""
+
+
+def not_shown(reply: Reply) -> None:
+    """Receives progress that nobody shows."""
+
+
 GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
@@ -53,8 +59,8 @@ class SolverProcess:
     def __init__(self, patience: Patience | None = None, niceness: int = 0):
         self.patience = patience or Patience()
         self.niceness = niceness
-        self.waiting: dict[Key, tuple[Question, Done]] = {}
-        self.asked: tuple[Key, Done] | None = None
+        self.waiting: dict[Key, tuple[Question, Done, Done]] = {}
+        self.asked: tuple[Key, Done, Done] | None = None
         self.number = 0
         """Number of questions sent so far. A timer compares this number, to act only on the question for
         which the timer was set."""
@@ -71,10 +77,10 @@ class SolverProcess:
         """Process id; None if no process runs."""
         return None if self._process is None else self._process.pid
 
-    def ask(self, key: Key, question: Question, done: Done) -> None:
+    def ask(self, key: Key, question: Question, done: Done, progress: Done = not_shown) -> None:
         """Queues a question; an older question of the same key is dropped or, if being solved, cancelled."""
         self.waiting.pop(key, None)
-        self.waiting[key] = question, done
+        self.waiting[key] = question, done, progress
         if self.asked is None:
             self._send_next()
         elif self.asked[0] == key:
@@ -123,10 +129,10 @@ class SolverProcess:
         if not self.waiting:
             return
         key = next(iter(self.waiting))
-        question, done = self.waiting.pop(key)
+        question, done, progress = self.waiting.pop(key)
         self.start()
         assert self._connection is not None
-        self.asked = (key, done)
+        self.asked = (key, done, progress)
         self.since = time.monotonic()
         self.number += 1
         self._connection.send(question)
@@ -142,6 +148,10 @@ class SolverProcess:
             self.is_ready = True
             return
         asked = self.asked
+        if reply.outcome == "progress":
+            if asked is not None:
+                asked[2](reply)
+            return
         self.asked = None
         if asked is not None and reply.outcome != "cancelled":
             asked[1](reply)
@@ -191,9 +201,9 @@ class Solvers:
         for kind in WARMED_UP:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
-    def ask(self, session: str, question: Question, done: Done) -> None:
-        """Queues a question of a session; `done` receives the reply."""
-        self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done)
+    def ask(self, session: str, question: Question, done: Done, progress: Done = not_shown) -> None:
+        """Queues a question of a session; `done` receives the reply, `progress` that of a long solve."""
+        self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
     def drop(self, session: str, kind: str) -> None:
         """Cancels a session's question of a kind."""

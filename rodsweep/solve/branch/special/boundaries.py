@@ -18,8 +18,8 @@ from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCur
 from .on_curve import OnCurve
 from .point import SpecialKind, SpecialPoint
 
-FOLLOWED_KINDS = (SpecialKind.fold, SpecialKind.torus)
-"""Kinds of special points that are followed as curves."""
+FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
+"""Kinds of special points that are followed as curves, with the words for their points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,7 +93,7 @@ class SpecialBoundaries:
         """Description of a unit: curve, starting row and direction."""
         place, behind = divmod(unit, 2)
         one, way = self.special[place], "down" if behind else "up"
-        return f"curve of {one.kind.name}s from {self.rows.name} = {one.row:.5g} {way}"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
 
 
 @dataclass(frozen=True, slots=True)
