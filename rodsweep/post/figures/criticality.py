@@ -108,7 +108,9 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
 
 
 def _classes(side: Array) -> Array:
-    """Place in CLASSES of every rod from the criticality of its Hopf points, (ny, nx, crossings)."""
+    """Index in CLASSES of every rod, (ny, nx). side: -1 for a supercritical Hopf point, 1 for a subcritical
+    one, (ny, nx, crossings).
+    """
     first = side[..., 0]
     later = (side[..., 1:] == 1).any(axis=-1)
     classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)

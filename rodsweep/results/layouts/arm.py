@@ -71,7 +71,8 @@ EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in 
 BRANCH_FORCES = ("special_at", "special_error")
 """Forces along the branches of an arm; its branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Extra dimensions of variables stored in SI units as well; longer tables are not stored twice."""
+"""Variables with these extra dimensions are stored in SI units as well; longer tables are not stored
+twice."""
 
 EFFECTS = (
     "inertia_of_the_arm",

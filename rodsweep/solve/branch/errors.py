@@ -28,7 +28,7 @@ from .bordered import Condition, Scale, moved
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchErrorSettings:
-    """Error estimates of the cycles of a branch."""
+    """Settings of the error estimates of the cycles of a branch."""
 
     steep_slope: float = 120.0
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may

@@ -36,7 +36,7 @@ from .along_parameter import CyclePredictor, in_steps, near_prediction, predicto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NeighbourSettings:
-    """Meshes of the cycles of a chain."""
+    """Settings for the meshes of the cycles of a chain."""
 
     kept_mesh_error: float = 0.9
     """Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""

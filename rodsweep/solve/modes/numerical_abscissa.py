@@ -16,13 +16,14 @@ from .propagator import shifted_inverse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbscissaSettings:
-    """Shifts above the numerical abscissa."""
+    """Settings for the shifts above the numerical abscissa."""
 
     max_shifts: int = 60
     """Maximum number of shifts tried to exceed the numerical abscissa if no bound is known; each doubles the
     last."""
     close_shift: float = 0.05
-    """Relative distance of a shift above the abscissa that costs no digits."""
+    """Relative distance of the last shift above the abscissa. A shift this close loses no digits to
+    cancellation."""
     positive: float = 1e-9
     """Relative size above which an eigenvalue of the shifted inverse is positive, not rounding."""
 

@@ -22,7 +22,7 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings:
-    """Eigenvalues of a mesh, and lines for their count."""
+    """Settings for the eigenvalues of a mesh, and for the lines used to count them."""
 
     max_waves_per_node: float = 2.0
     """Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
@@ -54,7 +54,8 @@ of its modulus."""
 class Candidates:
     """Result of one attempt: k roots of D, sorted as defined in `rodsweep.model`.
 
-    vectors: of the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty.
+    vectors: eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or
+    empty.
     """
 
     mesh: AnyMesh

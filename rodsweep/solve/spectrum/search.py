@@ -23,7 +23,7 @@ __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchSettings:
-    """The attempts at one spectrum."""
+    """Settings of the search for one spectrum: meshes, attempts and accepted errors."""
 
     spare_modes: int = 1
     """Number of eigenvalues requested beyond the count of the winding number."""

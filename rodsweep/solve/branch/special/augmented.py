@@ -25,7 +25,9 @@ from .point import LOCATING
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AugmentedSettings:
-    """Iterations with the factors of a nearby cycle's matrix: cycle, test function, null vectors."""
+    """Settings for iterating cycle, test function and null vectors with the factors of a nearby cycle's
+    matrix.
+    """
 
     tolerance: float = 1e-9
     """Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""

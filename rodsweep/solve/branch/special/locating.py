@@ -171,7 +171,7 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
 
 
 def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point at a cycle, without error. name: of the parameter."""
+    """The special point at a cycle, without error. name: name of the parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
         kind=kind,

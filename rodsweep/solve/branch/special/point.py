@@ -9,7 +9,7 @@ from ...orbit.orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LocatingSettings:
-    """Location of a special point on a branch."""
+    """Settings for the location of a special point on a branch."""
 
     real_multiplier: float = 1e-7
     """Largest imaginary part of a real multiplier, relative to its modulus."""

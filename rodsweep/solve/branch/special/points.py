@@ -63,8 +63,8 @@ def special_points(
 ) -> tuple[list[SpecialPoint], bool]:
     """(special points between two cycles, in order, whether they account for the change of the multipliers).
 
-    accuracy: of the branch. The step is halved if several changes lie within it, or if a special point is not
-    located: near crushing a prediction over the whole step may leave the model.
+    accuracy: accuracy of the branch. The step is halved if several changes lie within it, or if a special
+    point is not located: near crushing a prediction over the whole step may leave the model.
     """
     kinds, explained = changes_between(start, end)
     points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []

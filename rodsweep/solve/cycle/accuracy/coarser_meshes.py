@@ -24,7 +24,7 @@ from .finer_meshes import COMPARISON, ComparedCycle
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoarserMeshSettings:
-    """The coarser meshes that predict a cycle on a fine mesh."""
+    """Settings for the coarser meshes that predict a cycle on a fine mesh."""
 
     fewer_orders: int = 2
     """Orders of the fine mesh minus those of the coarse mesh made to predict it."""

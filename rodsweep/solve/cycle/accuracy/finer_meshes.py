@@ -20,7 +20,7 @@ from .calibration import Calibration, calibration_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparisonSettings:
-    """The two finer meshes whose cycles measure the errors of a mesh."""
+    """Settings for the two finer meshes whose cycles measure the errors of a mesh."""
 
     more_orders: int = 2
     """Additional orders of the mesh finer in space: errors fall by a tenth or more."""

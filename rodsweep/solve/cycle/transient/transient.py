@@ -36,7 +36,7 @@ from .trace import TipTrace
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransientSettings:
-    """Integration of a motion until Newton's method finds its cycle."""
+    """Settings for the integration of a motion until Newton's method finds its cycle."""
 
     returns_per_run: int = 5
     """Returns per run, before the motion is classified."""
