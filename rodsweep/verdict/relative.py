@@ -41,7 +41,7 @@ class FlutterUnknown(InputError):
 
 
 def turned(arm: A) -> A:
-    """The same arm, turned by 90 degrees: width and height of the rectangle exchanged."""
+    """The arm turned by 90 degrees: width and height of the rectangle exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 

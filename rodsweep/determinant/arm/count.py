@@ -224,7 +224,7 @@ def _reach_inside(
 ) -> tuple[float, float]:
     """(reach of a node inside the hull, best radius), from the largest |f| on circles.
 
-    tangent: (w, L). The other arguments are as in `_node`.
+    tangent: (w, L). For the other arguments see `_node`.
     """
     w, L = tangent
     unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))

@@ -216,7 +216,9 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Quantities by name; along a grid over quantities each has its value at every point, (points,)."""
+    """Quantities by name. If the file is a grid over quantities, each is expanded to its value at every
+    point, (points,).
+    """
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

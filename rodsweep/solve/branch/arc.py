@@ -98,10 +98,10 @@ class ArcPoint:
         return deflection_of(self.orbit)
 
     @cached_property
-    def returns(self) -> Complex:
+    def partial_multipliers(self) -> Complex:
         """Nontrivial multipliers of the half-period map composed with the reflection, (rank - 1,); of the
         whole period for a cycle without symmetry."""
-        values = bordered(self.cycle.fine).returns
+        values = bordered(self.cycle.fine).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> Condition:

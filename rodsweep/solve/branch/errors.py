@@ -22,7 +22,7 @@ from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
 from .bordered import Condition, Scale, moved
 
 
@@ -129,13 +129,13 @@ class BranchCalibration:
         steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
         parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
-            part[PERIOD] = max(part[PERIOD], own)
+            part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
         return replace(self.known, space=parts[0], time=parts[1])
 
     @cached_property
     def _of_parameter(self) -> Calibration:
         """A calibration with the parameter's error in place of every error."""
-        numbers = [PERIOD, HEIGHT, OTHERS, APART]
+        numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.known.space.copy(), self.known.time.copy()]
         for part, own in zip(parts, self.parameter, strict=True):
             part[numbers] = own

@@ -43,7 +43,7 @@ class NeighbourSettings:
     new_mesh_cost: float = 0.8
     """Largest cost of a mesh that replaces the present mesh, in units of the present cost."""
     calibrated_mesh_cost: float = 0.5
-    """The same where the change loses a valid calibration, which costs as much as three cycles."""
+    """`new_mesh_cost` if the new mesh loses a valid calibration, which costs as much as three cycles."""
 
 
 NEIGHBOUR = NeighbourSettings()

@@ -30,7 +30,8 @@ class CandidateSettings:
     """Relative gap between two real parts of a stable rod that is wide enough for the line of a count; a
     count in a wider gap is cheaper."""
     wide_gap_of_flutter: float = 0.05
-    """The same for an unstable rod, where eigenvalues far to the left converge last and need a finer mesh."""
+    """`wide_gap` of an unstable rod: smaller, because eigenvalues far to the left converge last and need a
+    finer mesh."""
     behind: float = 0.05
     """Distance of the last line behind the last eigenvalue found, in units of its modulus."""
     far_behind: float = 0.5

@@ -16,7 +16,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
-from rodsweep.solve.orbit.path_differences import APART, HEIGHT, PERIOD, path_differences
+from rodsweep.solve.orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, path_differences
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
@@ -55,7 +55,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
     for field, parts in (("order", known.space), ("intervals", known.time)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
-        for which in (PERIOD, HEIGHT, APART):
+        for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
             assert true[which] <= CALIBRATION.safety * parts[which] + 1e-12
 
 
