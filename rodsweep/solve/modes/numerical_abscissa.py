@@ -38,7 +38,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above it, which is possible only for a rod without rotational drag and with g < 0.
     """
     form = dense_form(rod, pencil)
-    A = form.averaged(*hermitian_tip(rod.F, slaving_of(rod)))
+    A = form.with_tip_terms(*hermitian_tip(rod.F, slaving_of(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     shift = bound + 1 if bound < inf else rod.F**2 + 1

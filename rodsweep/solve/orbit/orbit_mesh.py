@@ -75,6 +75,11 @@ class OrbitMesh:
         return len(self.edges) - 1
 
     @property
+    def full_intervals(self) -> int:
+        """The period in units of a full interval: the last two intervals have half its length."""
+        return self.intervals - 1
+
+    @property
     def grid(self) -> Mesh:
         return mesh_on(self.edges, self.order)
 

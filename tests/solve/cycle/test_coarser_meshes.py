@@ -59,11 +59,13 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
             assert true[which] <= CALIBRATION.safety * parts[which] + 1e-12
 
 
-def test_coarser_meshes_serve_those_that_are_a_little_finer(near):
+def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
     coarser = CoarserMeshes(FINE, near, ACCURACY, MEMORY)
-    assert coarser.serve(FINE) and coarser.serve(replace(FINE, order=FINE.order + 2, intervals=20))
+    assert coarser.can_predict(FINE) and coarser.can_predict(
+        replace(FINE, order=FINE.order + 2, intervals=20)
+    )
     for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"edges": (0.0, 0.5, 1.0)}, {"stages": 5}):
-        assert not coarser.serve(replace(FINE, **other))
+        assert not coarser.can_predict(replace(FINE, **other))
 
 
 @pytest.mark.parametrize("why", ["no coarse cycle", "far off"])

@@ -122,7 +122,7 @@ class Calibration:
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
-        time = self.time[:, None] * ((present.intervals - 1) / (intervals - 1)) ** power
+        time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
         enough = largest_error(*errors[:3]) <= CALIBRATION.planned_error * accuracy
         meshes = [
@@ -206,7 +206,7 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
 def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
     least = mesh.stages + 1
-    steps = np.log((mesh.intervals - 1) / (previous.intervals - 1))
+    steps = np.log(mesh.full_intervals / previous.full_intervals)
     power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_power_ratio * least)
     return power
 

@@ -39,7 +39,7 @@ COMPARISON = ComparisonSettings()
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
     longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
-    share = 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
+    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
 
