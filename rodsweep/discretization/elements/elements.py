@@ -14,7 +14,7 @@ from .quadrature import gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementSettings:
-    """Samples inside elements, and memory for meshes."""
+    """Settings of the elements: samples inside an element, and numbers of meshes kept in memory."""
 
     inside: float = 1e-9
     """Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""

@@ -18,7 +18,7 @@ from .quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReconstructionSettings:
-    """Quadrature of the shape of a rod."""
+    """Settings for the quadrature of the shape of a rod."""
 
     extra_points: int = 10
     """Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two

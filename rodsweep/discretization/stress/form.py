@@ -18,7 +18,7 @@ from ..state_layout import COMPONENTS, plane_layout
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StressFormSettings:
-    """Choice of the unknowns."""
+    """Settings for the choice of the unknowns."""
 
     least_eliminated_drag: float = 1e-5
     """Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers

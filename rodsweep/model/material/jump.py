@@ -50,7 +50,7 @@ def _solved(T: Tangent, N: float, M: float) -> Unknowns:
 
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """The share of a step of q1 that keeps h1 above its least ratio."""
+    """Largest fraction, up to 1, of a step of q1 that keeps h1 above LEAST_STRETCH_KEPT times its value."""
     h = at.nu + at.c1 * q1
     change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:

@@ -28,9 +28,9 @@ from ..orbit.matrix.linearisation import (
     change_along,
     jump_of,
     over_period,
+    partial_multipliers,
     reduced_residuals,
     reduced_variations,
-    returns_of,
 )
 from ..orbit.matrix.phase import phase, phase_change, phase_row
 from ..orbit.matrix.right_sides import right_sides
@@ -154,13 +154,13 @@ class BorderedMatrix:
         return self._memory.propagator
 
     @cached_property
-    def returns(self) -> Complex:
+    def partial_multipliers(self) -> Complex:
         """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
-        return returns_of(self.propagator, self.orbit)
+        return partial_multipliers(self.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
-        return over_period(self.returns, self.orbit)
+        return over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Singular vector of the least singular value at a fixed parameter, (N + 1,), of any length and sign.

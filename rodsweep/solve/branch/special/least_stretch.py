@@ -15,7 +15,7 @@ from ..arc import ArcPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeastStretchSettings:
-    """Search for the least stretch of a cycle."""
+    """Settings for the search for the least stretch of a cycle."""
 
     places_per_node: int = 8
     """Number of places per node at which the least stretch is sampled."""
