@@ -61,7 +61,8 @@ class LimitCycleConfig(Config):
         """Parameter along which each point starts from the previous point's cycle: by default the first
         parameter with most values.
         """
-        sizes, given = self.parameters.alone, self.limit_cycle.along
+        sizes = self.parameters.alone
+        given = self.limit_cycle.along
         if given == LONGEST:
             return max(sizes, key=lambda name: sizes[name], default=given)
         return AXIS_OF.get(given, given)
@@ -74,10 +75,11 @@ class LimitCycleConfig(Config):
             found |= dict.fromkeys(("along", "direction"), "start: neighbour")
         if options.method == "integration":
             found |= dict.fromkeys(("start", "along", "direction", "transient"), "method: collocation")
-            return found if options.shapes else found | {"nodes": "shapes"}
-        if options.start == "hopf":
+        elif options.start == "hopf":
             found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
-        return found if options.shapes else found | {"nodes": "shapes"}
+        if not options.shapes:
+            found["nodes"] = "shapes"
+        return found
 
     @property
     def meaning(self) -> dict[str, Any]:
@@ -89,7 +91,8 @@ class LimitCycleConfig(Config):
     def _only_what_is_used(self) -> "LimitCycleConfig":
         self.parameters.require(self.names)
         self.refuse_unused()
-        arm, along = self.parameters.arm, self.limit_cycle.along
+        arm = self.parameters.arm
+        along = self.limit_cycle.along
         if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.given}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or one of "

@@ -26,7 +26,7 @@ class SpectrumOptions(Strict):
     follow: bool = True
     """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
     longitudinal: bool = False
-    """Add the longitudinal modes: of a uniform rod of linear material -(k1/gamma1) (pi (n - 1/2))^2."""
+    """Add the longitudinal modes: -(k1/gamma1) (pi (n - 1/2))^2 for a uniform rod of linear material."""
 
 
 class SpectrumConfig(LinearConfig):

@@ -18,7 +18,7 @@ from .parameter_plane import PLANE, STENCIL, Plane
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundarySettings:
-    """Newton's method for a point of a boundary curve."""
+    """Settings of Newton's method for a point of a boundary curve."""
 
     max_steps: int = 12
     """Maximum Newton steps of a correction; beyond, the correction has failed."""

@@ -13,13 +13,14 @@ from ..arrays import Array
 from ..model.balance import Values
 from ..model.compiled.compilation import compiled
 from ..model.material.jump import Unknowns, before_jump, behind_jump
+from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
 from .elements.basis import interpolation
 from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh, transfer
 from .elements.quadrature import gauss_lobatto
-from .nodal_rod import Integers, NodalRod
+from .nodal_rod import NO_JUMPS, Integers, NodalRod
 
 STRETCHING = 0
 BENDING = 2
@@ -56,8 +57,7 @@ def parted(rod: NodalRod, S: Array) -> Array:
 
 def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     """S at the nodes of each element, (3, ..., elements, order + 1), with its own side of each jump."""
-    places = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
-    fields: Array = S[..., places]
+    fields: Array = S[..., grid.element_nodes]
     for node, sides in zip(rod.jumps, parted(rod, S), strict=True):
         e = node // grid.order
         for component, before, behind in zip((STRETCHING, BENDING), sides[0], sides[1], strict=True):
@@ -74,7 +74,7 @@ def carried(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
     """
     E = transfer(source, target)
     out = S @ E.T
-    there = jumps_on(rod, target)
+    there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on(rod, target)
     if len(there.nodes):
         here = jumps_on(rod, source).nodes
         for column, component in ((3, STRETCHING), (4, BENDING)):

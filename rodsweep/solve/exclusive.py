@@ -1,8 +1,9 @@
 """Lets one thread of this process solve at a time, and runs signal handlers only at safe places of a solve.
 
-PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time. If a
-signal handler raises, as for Ctrl-C, while compiled code calls Python to make a NamedTuple of results, the
-process ends with a segmentation fault; pydantic replaces the exception by a different exception.
+PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time.
+Elsewhere a handler that raises, as that of Ctrl-C, does harm: while compiled code calls Python to make a
+NamedTuple of results, the process ends with a segmentation fault, and pydantic replaces the exception by a
+different one.
 """
 
 import inspect

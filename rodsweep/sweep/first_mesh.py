@@ -28,7 +28,8 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """The first mesh with most nodes of some rods: of a sample, and of the corners of a grid; None for none.
+    """The finest of the first meshes of a sample of rods and of the rods at the corners of a grid; None
+    without a mesh.
 
     ends: values, (n,), of parameters along which every rod is searched.
     """

@@ -30,7 +30,7 @@ forces."""
 ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
 """Largest forces of the search for an arm that is not uniform or not of linear material, in k3/L^2 at its
 base, tried in turn: a search far beyond the first flutter, where many modes are unstable, takes up to half a
-minute a drag."""
+minute for each drag."""
 REFERENCE_DIGITS = 10
 """Digits of the reference threshold: more than the data of an arm, and few enough for equal results on all
 machines. A run resumed on another machine therefore has the same points."""
@@ -41,7 +41,7 @@ class FlutterUnknown(InputError):
 
 
 def turned(arm: A) -> A:
-    """The same arm, turned by 90 degrees: width and height of the rectangle exchanged."""
+    """The arm turned by 90 degrees: width and height of the rectangle exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 

@@ -89,7 +89,7 @@ def test_resolution_grows_with_waves_and_digits():
 @pytest.mark.parametrize(("elements", "order"), [(1, 15), (3, 6)])
 def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, order):
     grid, rng = mesh(elements, order), np.random.default_rng(5)
-    strains, rates = rng.standard_normal((2, 3, 4, grid.nodes + 1))
+    strains, rates = rng.standard_normal((2, 3, 4, grid.element_nodes.size))
     tip, velocity = np.empty((2, 4, 3))
     tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
     tiny = 1e-30

@@ -745,8 +745,10 @@ def diagram_sentences(view, page, keywords, fine):
             found += ranges(
                 page, rf"^{kind}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", first, rows[having]
             )
-            found += ranges(page, rf"^{kind}: .*; again on \d+, F = RANGE", again)
-            found += counts(page, rf"^{kind}: .*; again on NUMBER", sum(len(each) > 1 for each in of_kind))
+            found += ranges(page, rf"^{kind}: .*; again on \d+ of these rows, F = RANGE", again)
+            found += counts(
+                page, rf"^{kind}: .*; again on NUMBER of these rows", sum(len(each) > 1 for each in of_kind)
+            )
     found += _curve_sentences(view, page, row)
     if "stable_states" in v:
         found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)

@@ -68,8 +68,8 @@ class PhaseNode(NamedTuple):
     """A point w with the direction of D, L = D'/D, both without known eigenvalues, and the validity of the
     tangent.
 
-    reach: distance within which the tangent is valid. radius: of the best circle, in units of the length over
-    which D changes, or 0.
+    reach: distance within which the tangent is valid. radius: radius of the best circle, in units of the
+    length over which D changes, or 0.
     """
 
     w: complex
@@ -178,7 +178,7 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
 def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIUS) -> PhaseNode:
     """The node at w; its reach is 0 if rounding errors hide D.
 
-    radius: of the largest circle to try, in units of the length over which D changes.
+    radius: radius of the largest circle to try, in units of the length over which D changes.
     """
     determinant, hull, known = divided
     length = determinant.length(w)
@@ -224,7 +224,7 @@ def _reach_inside(
 ) -> tuple[float, float]:
     """(reach of a node inside the hull, best radius), from the largest |f| on circles.
 
-    tangent: (w, L). The other arguments are as in `_node`.
+    tangent: (w, L). For the other arguments see `_node`.
     """
     w, L = tangent
     unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))

@@ -33,7 +33,7 @@ BOX_MARGIN = 1.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuietSettings:
-    """The disc about w = 0 without a zero of D."""
+    """Settings for the disc about w = 0 without a zero of D."""
 
     departure: float = 0.5
     """Bound of |D - 1| near w = 0, where D therefore has no zero; any bound below 1 would do."""

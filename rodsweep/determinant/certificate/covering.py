@@ -36,7 +36,7 @@ from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, cent
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoveringSettings:
-    """The first boxes of a covering."""
+    """Settings for the first boxes of a covering."""
 
     slabs: int = 8
     """Minimum number of initial intervals of p."""

@@ -38,7 +38,7 @@ STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CountSettings:
-    """The contour of a count."""
+    """Settings for the contour of a count."""
 
     width_factor: float = 4.0
     """Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is

@@ -14,7 +14,7 @@ from .quadrature import gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementSettings:
-    """Samples inside elements, and memory for meshes."""
+    """Settings of the elements: samples inside an element, and numbers of meshes kept in memory."""
 
     inside: float = 1e-9
     """Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
@@ -59,6 +59,11 @@ class Elements:
         return positions
 
     @cached_property
+    def element_nodes(self) -> NDArray[np.int64]:
+        """Indices of the nodes of every element, (elements, order + 1)."""
+        return np.arange(self.elements)[:, None] * self.order + np.arange(self.order + 1)
+
+    @cached_property
     def points_inside(self) -> Array:
         """u of the nodes of every element, with the outer nodes moved just inside, (elements, order + 1).
 
@@ -75,6 +80,15 @@ class Elements:
         matrix = np.zeros((len(points), self.nodes + 1))
         for first, inside, local in self.by_element(points):
             matrix[inside, first : first + self.order + 1] = interpolation(nodes, local)
+        return matrix
+
+    def evaluation_by_element(self, points: Array) -> Array:
+        """Matrix from values at `element_nodes` to values at `points` in [0, 1], (points, element nodes)."""
+        nodes = gauss_lobatto(self.order)[0]
+        matrix = np.zeros((len(points), self.element_nodes.size))
+        for first, inside, local in self.by_element(points):
+            start = first + first // self.order
+            matrix[inside, start : start + self.order + 1] = interpolation(nodes, local)
         return matrix
 
     def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:

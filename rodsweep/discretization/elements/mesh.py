@@ -18,7 +18,7 @@ from .quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReconstructionSettings:
-    """Quadrature of the shape of a rod."""
+    """Settings for the quadrature of the shape of a rod."""
 
     extra_points: int = 10
     """Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two
@@ -92,17 +92,18 @@ def transfer(source: Mesh, target: Mesh) -> Array:
 
 
 def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
-    """(x, y, theta) at all nodes from strains (h1, h2, Pi), both (3, ..., nodes + 1).
+    """(x, y, theta) at all nodes, (3, ..., nodes + 1), from strains (h1, h2, Pi).
 
-    clamp: (x, y, theta) at u = 0, (3,).
+    strains: at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta) at u = 0,
+    (3,).
     """
     values, angles, integrals, ends = reconstruction(grid.order)
     p = grid.order
-    state = np.empty_like(strains)
+    state = np.empty((*strains.shape[:-1], grid.nodes + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, length in enumerate(grid.lengths):
         element = slice(e * p, (e + 1) * p + 1)
-        h1, h2, Pi = (strain[..., element] for strain in strains)
+        h1, h2, Pi = (strain[..., e * (p + 1) : (e + 1) * (p + 1)] for strain in strains)
         theta = start[2] + length * (Pi @ angles)
         cos = np.cos(theta)
         sin = np.sin(theta)

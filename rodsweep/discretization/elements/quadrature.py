@@ -11,7 +11,7 @@ from ...arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LobattoSettings:
-    """Newton's method for the Lobatto nodes."""
+    """Settings of Newton's method for the Lobatto nodes."""
 
     max_steps: int = 50
     """Maximum Newton steps to the Lobatto nodes, for the rare case that rounding errors keep the steps above

@@ -15,7 +15,7 @@ from .arm_pencil import ArmMesh
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmResolutionSettings:
-    """Elements of an arm that varies along its length."""
+    """Settings for the elements of an arm that varies along its length."""
 
     largest_ratio: float = 2.2
     """Largest ratio of the radii at the ends of an element, for which order 12 gives eigenvalues to 1e-4."""

@@ -45,7 +45,7 @@ class DenseForm:
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, slope(self.mesh, self.fields(vectors)[1], points).T])
 
-    def averaged(self, pair: float, tip: float) -> Array:
+    def with_tip_terms(self, pair: float, tip: float) -> Array:
         """A plus the tip term pair (a theta - b y) - tip a y, with test functions (a, b), at u = 1."""
         A = self.A.copy()
         n = self.mesh.nodes

@@ -85,7 +85,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
         M113=bending_curvature * c1**2,
         M333=0 * ones,
     )
-    if len(nodal.jumps):
+    if found.nonlinear and len(nodal.jumps):
         _fill_jumps(found, law, nodal)
     return found
 
@@ -124,7 +124,7 @@ on; the first index after the leading ones is the function's."""
 
 
 def stress_at_rest(law: Law, sides: Array) -> Derivatives:
-    """Derivatives of N and M at rest by the mean unknowns, at jumps; sides: (k, 2, 6).
+    """Derivatives of N and M at rest by the mean unknowns, at jumps; sides: (k, 2, 7).
 
     The unknowns of each side are functions of the stresses, and their mean is one: its inverse is the law.
     """

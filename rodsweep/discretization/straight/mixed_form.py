@@ -105,9 +105,9 @@ class MixedForm:
         S, V = self.fields(X)
         W = self.mesh.quadrature
         change = self.law.change
-        E = first_field(change.nu)
+        E = axial_field(change.nu)
         moved = self._along(change.tangent, S) * S
-        Sigma = first_field(-np.ones(len(W)))
+        Sigma = axial_field(-np.ones(len(W)))
         at_rest = self._along(self.nodal.rest, S)
         forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
@@ -194,7 +194,7 @@ class MixedForm:
         return matrix
 
 
-def first_field(values: Array) -> Array:
+def axial_field(values: Array) -> Array:
     """The field (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
     field = np.zeros((COMPONENTS, len(values)))
     field[0] = values

@@ -33,7 +33,7 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PencilNormSettings:
-    """Weights of the unknowns in the norm, and normalisation at the tip."""
+    """Settings of the norm of a pencil: weights of the unknowns, and normalisation at the tip."""
 
     shear_weight: float = 1e-9
     """Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""

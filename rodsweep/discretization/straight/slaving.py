@@ -19,7 +19,7 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlavingSettings:
-    """Elements of the tip layer."""
+    """Settings for the elements of the tip layer."""
 
     longest: float = 4.0
     """Longest element in units of the layer's thickness; elements away from the tip may be longer."""

@@ -18,7 +18,7 @@ from ..state_layout import COMPONENTS, plane_layout
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StressFormSettings:
-    """Choice of the unknowns."""
+    """Settings for the choice of the unknowns."""
 
     least_eliminated_drag: float = 1e-5
     """Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers
@@ -56,7 +56,7 @@ class StressForm(RodOnMesh):
     def states_on(self, grid: Mesh, x: Array) -> Array:
         """States x on another mesh, (..., unknowns there)."""
         E = transfer(self.mesh, grid)
-        if not len(self.nodal.jumps):
+        if self.smooth_stresses:
             return self.layout.carried(x, E)
         layout = plane_layout(grid.nodes, self.kept)
         V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))

@@ -43,8 +43,9 @@ def tip_matrices(grid: Elements) -> TipMatrices:
 def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative into velocity.
 
-    strains: (h1, h2, Pi) at all nodes, (3, states, nodes + 1). rates: time derivatives of strains, same
-    shape. tip, velocity: (states, 3). The rod is clamped at the origin along e_x.
+    strains: (h1, h2, Pi) at the nodes of every element, (3, states, elements (p + 1)). rates: time
+    derivatives of strains, same shape. tip, velocity: (states, 3). The rod is clamped at the origin along
+    e_x.
     """
     size = len(m.ends)
     points = len(m.weights)
@@ -57,7 +58,7 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
         dy = 0.0
         turn = 0.0
         for e in range(len(m.lengths)):
-            first = e * (size - 1)
+            first = e * size
             length = m.lengths[e]
             here = slice(first, first + size)
             _to_points(strains[:, k, here], m, length, theta, fields[:3])

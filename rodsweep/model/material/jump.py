@@ -9,17 +9,19 @@ where q has the mean strain: it is what a linear rod with the mean compliances w
 a = b = q. The shares are those of a compliance times the weights of the quadrature; they stay what they are
 in the limit of no compliance.
 
-The sides of a jump are an array, (2, 6), with the `COLUMNS`.
+The sides of a jump are an array, (2, 7), with the `COLUMNS`. Strains beside the jump follow from a and b with
+the compliances of each side; shear has one stress q2 on both sides.
 """
 
 from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import LocalSection, Stress, Tangent, stress, stress_change, tangent
+from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
-COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature")
-"""Numbers of each side: those of `LocalSection`, and the shares of this side in the mean of both."""
+COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
+"""Numbers of each side: those of `LocalSection`, the shares of this side in the mean of both, and c2."""
+SHEAR = COLUMNS.index("c2")
 MOST_ITERATIONS = 40
 CONVERGED = 1e-9
 """Relative step of Newton's method after which the next one would be below rounding."""
@@ -48,7 +50,7 @@ def _solved(T: Tangent, N: float, M: float) -> Unknowns:
 
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """The share of a step of q1 that keeps h1 above its least ratio."""
+    """Largest fraction, up to 1, of a step of q1 that keeps h1 above LEAST_STRETCH_KEPT times its value."""
     h = at.nu + at.c1 * q1
     change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:
@@ -63,7 +65,9 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """a of the mean unknowns q, by Newton's method; sides: (2, 6)."""
+    """a of the mean unknowns q, by Newton's method; sides: (2, 7)."""
+    if law == LINEAR_LAW:
+        return q
     one = _section(sides[0])
     other = _section(sides[1])
     ratio1 = sides[0, 3] / sides[1, 3]
@@ -86,13 +90,13 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """b of the mean unknowns q and of a; sides: (2, 6)."""
+    """b of the mean unknowns q and of a; sides: (2, 7)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
-    """The stresses beyond those at rest; sides: (2, 6)."""
+    """The stresses beyond those at rest; sides: (2, 7)."""
     a = before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
@@ -112,8 +116,19 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 
 @compiled
+def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
+    """Changes of a and b with a change of the mean unknowns q; sides: (2, 7)."""
+    a = before_jump(law, sides, q)
+    b = behind_jump(sides, q, a)
+    stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
+    S = tangent(law, _section(sides[0]), a.q1, a.q3)
+    T = tangent(law, _section(sides[1]), b.q1, b.q3)
+    return _solved(S, stresses.q1, stresses.q3), _solved(T, stresses.q1, stresses.q3)
+
+
+@compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses by the mean unknowns; sides: (2, 6)."""
+    """Derivatives of the stresses by the mean unknowns; sides: (2, 7)."""
     q = Unknowns(q1, q3)
     a = before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, behind_jump(sides, q, a))

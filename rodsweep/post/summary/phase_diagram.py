@@ -139,7 +139,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
             text += f", {row} = {span(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
-                text += f"; again on {least}{int(again.any(axis=-1).sum())}, {line} = {later}"
+                text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
             lines.append(text)
     undecided = (v["class"] == UNDECIDED) & done[..., np.newaxis]
     if undecided.any():

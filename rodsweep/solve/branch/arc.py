@@ -46,9 +46,9 @@ class PreviousCycle:
 class ArcPoint:
     """A cycle of a branch.
 
-    length: of the next step. before: the previous cycle. calibration: errors of the last measured cycle.
-    unmeasured: number of steps since the last measured cycle, 0 for a measured one. way: arc length since
-    then.
+    length: length of the next step. before: the previous cycle. calibration: errors of the last measured
+    cycle. unmeasured: number of steps since that measured cycle, 0 if this cycle is measured. way: arc length
+    since the measured cycle.
     """
 
     cycle: RefinedCycle
@@ -98,10 +98,10 @@ class ArcPoint:
         return deflection_of(self.orbit)
 
     @cached_property
-    def returns(self) -> Complex:
+    def partial_multipliers(self) -> Complex:
         """Nontrivial multipliers of the half-period map composed with the reflection, (rank - 1,); of the
         whole period for a cycle without symmetry."""
-        values = bordered(self.cycle.fine).returns
+        values = bordered(self.cycle.fine).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> Condition:
@@ -184,7 +184,7 @@ def cycle_ahead(
 ) -> ArcPoint:
     """A cycle at a length from `start`, its errors not measured.
 
-    tangent: of the branch at the new cycle, (N + 1,). ahead: length of the next step.
+    tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
     cycle = judged_by(start.calibration.known, found, accuracy)
     place = placed(found, start.scale, tangent)

@@ -31,7 +31,7 @@ from .special.point import SpecialKind, SpecialPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeginningSettings:
-    """The first cycle of a branch, beside its Hopf point."""
+    """Settings for the first cycle of a branch, beside its Hopf point."""
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Largest tip y, in L, of the first cycle; tried in this order."""
@@ -48,15 +48,16 @@ BEGINNING = BeginningSettings()
 
 
 DEFLECTION = np.array([1.0, 0.0, 0.0])
-"""Direction of `Scale.place` along the deflection."""
+"""Unit vector along the deflection, in the coordinates of `Scale.place`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBirth:
     """A Hopf point along a parameter, with the normal form of the cycles born there.
 
-    coordinate: of the parameter. slope: dw/d(coordinate). normal: normal form on a mesh fine enough to start
-    a branch. coefficients: from a finer mesh, with errors.
+    coordinate: coordinate of the parameter at the Hopf point. slope: dw/d(coordinate). normal: normal form on
+    a mesh fine enough to start a branch. coefficients: coefficients of the normal form from a finer mesh,
+    with errors.
     """
 
     crossing: Crossing

@@ -5,9 +5,11 @@ three numbers that mean the same on every mesh: the deflection at t = 0, in unit
 over the cycle; the logarithm of the period; the parameter's scaled coordinate. Arc length is measured in
 these numbers too; at a Hopf point the deflection passes through 0 and keeps it regular.
 
-The deflection is the integral of (1 - s) m3 over the rod, which is linear in the state. For small cycles of a
-uniform rod it is the tip's y. A moment at one place of the rod may vanish on large cycles, as the clamp's
-does, and steps along a branch would become short there.
+The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; c is the bending
+compliance of the arm's profile. For small cycles of a rod without taper it is the tip's y. Without c it would
+depend on the mesh: at a jump of rubber m3, the moment of a linear rod with the same strain, differs between
+both sides, and a mesh has only the mean strain. A moment at one place of the rod may vanish on large cycles,
+as the clamp's does, and steps along a branch would become short there.
 """
 
 from dataclasses import dataclass, replace
@@ -16,17 +18,19 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...discretization.arm_on_mesh import profile_compliance_on
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import StateLayout
+from ...model.material.build import Build
 from ...watch import report
 from ..orbit.matrix.elimination import eliminate
 from ..orbit.matrix.linearisation import (
     change_along,
     jump_of,
     over_period,
+    partial_multipliers,
     reduced_residuals,
     reduced_variations,
-    returns_of,
 )
 from ..orbit.matrix.phase import phase, phase_change, phase_row
 from ..orbit.matrix.right_sides import right_sides
@@ -72,13 +76,15 @@ def deflection_of(orbit: Orbit) -> float:
 
 def deflection_row(orbit: Orbit) -> Array:
     """Row that gives the deflection of a state, (n,)."""
-    return _deflection_row(orbit.form.layout, orbit.form.mesh)
+    form = orbit.form
+    return _deflection_row(form.layout, form.mesh, form.rod.build)
 
 
 @lru_cache(maxsize=64)
-def _deflection_row(layout: StateLayout, mesh: Mesh) -> Array:
+def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """`deflection_row`, (n,), shared by all callers and not to be changed."""
-    return layout.row({"m3": mesh.quadrature[:-1] * (1 - mesh.positions[:-1])})
+    weights = mesh.quadrature * profile_compliance_on(build, mesh)
+    return layout.row({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
 
 
 class BorderedMatrix:
@@ -148,13 +154,13 @@ class BorderedMatrix:
         return self._memory.propagator
 
     @cached_property
-    def returns(self) -> Complex:
+    def partial_multipliers(self) -> Complex:
         """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
-        return returns_of(self.propagator, self.orbit)
+        return partial_multipliers(self.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
-        return over_period(self.returns, self.orbit)
+        return over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Singular vector of the least singular value at a fixed parameter, (N + 1,), of any length and sign.

@@ -22,13 +22,13 @@ from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
 from .bordered import Condition, Scale, moved
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchErrorSettings:
-    """Error estimates of the cycles of a branch."""
+    """Settings of the error estimates of the cycles of a branch."""
 
     steep_slope: float = 120.0
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may
@@ -129,13 +129,13 @@ class BranchCalibration:
         steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
         parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
-            part[PERIOD] = max(part[PERIOD], own)
+            part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
         return replace(self.known, space=parts[0], time=parts[1])
 
     @cached_property
     def _of_parameter(self) -> Calibration:
         """A calibration with the parameter's error in place of every error."""
-        numbers = [PERIOD, HEIGHT, OTHERS, APART]
+        numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.known.space.copy(), self.known.time.copy()]
         for part, own in zip(parts, self.parameter, strict=True):
             part[numbers] = own

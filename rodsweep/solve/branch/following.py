@@ -36,8 +36,9 @@ ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 class BranchLimits:
     """Limits within which branches are followed, and known points where they may end.
 
-    hopfs: of the rod. ends: coordinates of the parameter; reasons: why branches end there. max_cycles: number
-    of stored cycles. workspace: memory of all matrices. breakings: known symmetry breakings of the rod.
+    hopfs: Hopf points of the rod. ends: coordinates of the parameter at which branches end. reasons: why they
+    end there. max_cycles: number of stored cycles. workspace: memory of all matrices. breakings: known
+    symmetry breakings of the rod.
     """
 
     hopfs: Sequence[HopfBirth]

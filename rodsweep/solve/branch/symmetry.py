@@ -31,7 +31,9 @@ from .special.point import SpecialKind, SpecialPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndingSettings:
-    """Ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter's range."""
+    """Settings for the ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the
+    parameter's range.
+    """
 
     small_cycle: float = 0.06
     """Largest tip y, in L, of a cycle from which the branch may step across a Hopf point where it ends."""
@@ -65,7 +67,7 @@ ENDINGS = EndingSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AsymmetricStartSettings:
-    """The first asymmetric cycle beside a symmetry breaking."""
+    """Settings for the first asymmetric cycle beside a symmetry breaking."""
 
     first_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
     """Relative change from the symmetric cycle to the first asymmetric cycle; tried in this order."""
@@ -142,7 +144,7 @@ def beginning_without_symmetry(
 def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
     """The cycle near a prediction; the branch goes on towards a larger deflection. Raises Unsolvable.
 
-    whole: matrix of the symmetric cycle. change: of the deflection from that cycle.
+    whole: matrix of the symmetric cycle. change: change of the deflection from that cycle.
     """
     scale = whole.scale
     border = np.sign(change) * DEFLECTION

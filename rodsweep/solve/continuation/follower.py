@@ -25,7 +25,7 @@ Solution = TypeVar("Solution")
 class Stepped(NamedTuple, Generic[Solution]):
     """A solution at one step ahead.
 
-    off: relative distance from the prediction. cosine: of the angle by which the curve has turned.
+    off: relative distance from the prediction. cosine: cosine of the angle by which the curve has turned.
     """
 
     solution: Solution
@@ -55,11 +55,11 @@ class StepControl:
 
     first, longest, shortest: lengths; the curve ends if a step fails whose half is below `shortest`. aim:
     prediction error for which the next step is chosen. far: prediction error beyond which the solution may
-    belong to another curve. order: of the prediction, whose error grows as length**order; limited by the
-    number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest: largest
-    angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most: maximum number
-    of solutions; no curve has more. min_measured: smallest prediction error, or angle, distinguished from 0.
-    Raises ValueError unless steps may grow.
+    belong to another curve. order: order of the prediction, whose error grows as length**order; limited by
+    the number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest:
+    largest angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most:
+    maximum number of solutions; no curve has more. min_measured: smallest prediction error, or angle,
+    distinguished from 0. Raises ValueError unless steps may grow.
     """
 
     first: float

@@ -30,7 +30,7 @@ from ..point import Unsolvable
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PredictionSettings:
-    """Prediction of cycles along one parameter."""
+    """Settings for the prediction of cycles along one parameter."""
 
     max_distance: float = 0.3
     """Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""

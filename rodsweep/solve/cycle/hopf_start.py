@@ -36,7 +36,7 @@ LEADING = SpectrumRequest(1, 1e-9, False)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfStartSettings:
-    """Search for the Hopf point below a force, and the start of Newton's method beside it."""
+    """Settings for finding the Hopf point below a force and starting Newton's method beside it."""
 
     scan_step: float = 0.07
     """Relative decrease of successive forces at which the scan evaluates the leading growth rate."""

@@ -48,7 +48,9 @@ from .transient.returns import (
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """A settled motion: its state z, (unknowns,), returns of the tip per period, and the last time step."""
+    """A settled motion. z: its state, (unknowns,). turns: returns of the tip per period. step: last time
+    step.
+    """
 
     z: Array
     turns: int

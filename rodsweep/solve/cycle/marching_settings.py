@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MarchingSettings:
-    """A cycle by integration alone."""
+    """Settings for a cycle by integration alone."""
 
     local_tolerance: float = 0.01
     """Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as

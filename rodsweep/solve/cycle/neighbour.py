@@ -36,14 +36,14 @@ from .along_parameter import CyclePredictor, in_steps, near_prediction, predicto
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NeighbourSettings:
-    """Meshes of the cycles of a chain."""
+    """Settings for the meshes of the cycles of a chain."""
 
     kept_mesh_error: float = 0.9
     """Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
     new_mesh_cost: float = 0.8
     """Largest cost of a mesh that replaces the present mesh, in units of the present cost."""
     calibrated_mesh_cost: float = 0.5
-    """The same where the change loses a valid calibration, which costs as much as three cycles."""
+    """`new_mesh_cost` if the new mesh loses a valid calibration, which costs as much as three cycles."""
 
 
 NEIGHBOUR = NeighbourSettings()

@@ -21,7 +21,7 @@ from .transient.transient import TRANSIENT
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallMotionSettings:
-    """Motions beside a Hopf point."""
+    """Settings for motions beside a Hopf point."""
 
     weak_bending: float = 0.02
     """Cubic part of the growth rate, in units of the linear part, below which the linear part decides."""

@@ -18,7 +18,7 @@ SPECTRUM = SpectrumRequest(1, 1e-9, True)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StraightRodSettings:
-    """Stability of the straight rod."""
+    """Settings for the stability of the straight rod."""
 
     errors_from_axis: float = 4.0
     """Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of

@@ -18,7 +18,7 @@ from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
 
 
 class CriticalityStatus(PointStatus):
-    """Outcome for one rod: of the search for Hopf points and of the coefficients."""
+    """Outcome of the search for Hopf points of one rod and of their coefficients."""
 
     ok = 0, "every Hopf point is found, with coefficients to the requested accuracy", True
     not_certified = (

@@ -16,7 +16,7 @@ from .coefficient_errors import hopf_coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfBesideSettings:
-    """Search for the subcritical Hopf point beside a cycle."""
+    """Settings for the search for the subcritical Hopf point beside a cycle."""
 
     farthest_force: float = 1.5
     """Hopf points are sought at forces from F / this ratio to F * this ratio."""

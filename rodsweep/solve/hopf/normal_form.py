@@ -35,7 +35,7 @@ from ..point import Unsolvable
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NormalFormSettings:
-    """The normal form of a Hopf point: mesh and inverse iteration."""
+    """Settings for the normal form of a Hopf point: mesh and inverse iteration."""
 
     shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""

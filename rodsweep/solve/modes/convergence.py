@@ -23,7 +23,7 @@ from .inverse_iteration import Vectors, mode_vectors
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeMeshSettings:
-    """Meshes of the modes and their condition numbers."""
+    """Settings for the meshes of the modes and their condition numbers."""
 
     more_orders: int = 4
     """Increase of the order on the second mesh; it gains two orders of magnitude in the vectors."""

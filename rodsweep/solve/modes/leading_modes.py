@@ -30,7 +30,7 @@ from .transient_growth import Growth, growth_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeadingModeSettings:
-    """Choice of the modes that are computed."""
+    """Settings for the choice of the modes that are computed."""
 
     growth_wave_number: float = 24.0
     """Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
@@ -57,7 +57,7 @@ class ModesRequest:
 class Modes:
     """Leading modes of one rod, in the order defined in `rodsweep.model`.
 
-    status: of the spectrum, unless a vector or the growth failed or missed the requested accuracy.
+    status: status of the spectrum, unless a vector or the growth failed or missed the requested accuracy.
     """
 
     status: SpectrumStatus

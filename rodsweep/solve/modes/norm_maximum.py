@@ -20,7 +20,7 @@ from .propagator import Propagator
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NormMaximumSettings:
-    """Search for the largest norm over all times."""
+    """Settings for the search for the largest norm over all times."""
 
     start_ratio: float = 2**0.25
     """Ratio of neighbouring times of the first grid."""

@@ -24,7 +24,7 @@ from .propagator import Propagator, shifted_inverse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GrowthSettings:
-    """Modes and meshes of the largest transient growth."""
+    """Settings for the modes and meshes of the largest transient growth."""
 
     min_modes: int = 8
     """Number of modes that first represent exp(L t)."""

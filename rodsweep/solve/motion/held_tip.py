@@ -52,7 +52,7 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
             step /= 2
         else:
             reached, (Pi, force) = share, found
-    return beam.unknown(np.stack([*beam.strains(np.zeros(beam.unknowns))[:2], Pi]))
+    return bending.state(Pi)
 
 
 class _Bending:
@@ -61,18 +61,23 @@ class _Bending:
 
     def __init__(self, beam: Beam) -> None:
         self.mesh = beam.mesh
+        self._beam = beam
         self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
         size = beam.mesh.nodes + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
-        unit = np.zeros((3, size, size))
-        unit[2] = np.eye(size)
+        unit = np.zeros((3, size, self.mesh.element_nodes.size))
+        unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
         self.angles = configuration(beam.mesh, unit, np.zeros(3))[2].T
-        """Matrix from Pi to theta, both at all nodes."""
+        """Matrix from Pi to theta, both at all nodes; at a jump of the material from the mean Pi."""
 
     def tip(self, Pi: Array) -> Array:
         """(x, y) of the tip, (2,), for curvatures at all nodes, (nodes + 1,)."""
-        end: Array = configuration(self.mesh, np.stack([self.h1, self.h2, Pi]), np.zeros(3))[:2, -1]
+        end: Array = self._beam.tip(self.state(Pi))[:2]
         return end
+
+    def state(self, Pi: Array) -> Array:
+        """The state z, (unknowns,), for curvatures at all nodes, (nodes + 1,)."""
+        return self._beam.unknown(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
         """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""

@@ -15,7 +15,7 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitNewtonSettings:
-    """Newton's method for a periodic orbit, with or without a parameter."""
+    """Settings of Newton's method for a periodic orbit, with or without a parameter."""
 
     new_matrix_ratio: float = 0.1
     """Ratio of successive Newton steps above which a new matrix is made."""

@@ -19,7 +19,7 @@ from .tails import tails_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitMeshSettings:
-    """Choice of the mesh of an orbit in space and time."""
+    """Settings for the choice of the mesh of an orbit in space and time."""
 
     space_factor: float = 5.0
     """Largest stated error of period and extrema in units of the squared tail in space, as predicted from a
@@ -73,6 +73,11 @@ class OrbitMesh:
     def elements(self) -> int:
         """Number of elements."""
         return len(self.edges) - 1
+
+    @property
+    def full_intervals(self) -> int:
+        """The period in units of a full interval: the last two intervals have half its length."""
+        return self.intervals - 1
 
     @property
     def grid(self) -> Mesh:

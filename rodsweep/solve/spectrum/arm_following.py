@@ -65,8 +65,9 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 @compiled
 def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
-    """Refines the guesses for point i, at p, to roots in the track; whether all converged and pairs stayed
-    pairs."""
+    """Refines the guesses for point i, at p, and writes the roots to the track. True if all converged and
+    every pair stayed a pair.
+    """
     w = track.w[i]
     error = track.error[i]
     order = track.order[i]
@@ -121,7 +122,7 @@ def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: 
     """Follows eigenvalues from the first point on and fills the track; returns the number of points reached.
 
     track: w and order of the first point are set; p: (points,), path variable of each point, inside the
-    family. hulls: of all arms of the family. known: (points,), filled with `all_right_of_line`.
+    family. hulls: regions of all arms of the family. known: (points,), filled with `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)

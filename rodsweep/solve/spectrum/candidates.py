@@ -22,7 +22,7 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings:
-    """Eigenvalues of a mesh, and lines for their count."""
+    """Settings for the eigenvalues of a mesh, and for the lines used to count them."""
 
     max_waves_per_node: float = 2.0
     """Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
@@ -30,7 +30,8 @@ class CandidateSettings:
     """Relative gap between two real parts of a stable rod that is wide enough for the line of a count; a
     count in a wider gap is cheaper."""
     wide_gap_of_flutter: float = 0.05
-    """The same for an unstable rod, where eigenvalues far to the left converge last and need a finer mesh."""
+    """`wide_gap` of an unstable rod: smaller, because eigenvalues far to the left converge last and need a
+    finer mesh."""
     behind: float = 0.05
     """Distance of the last line behind the last eigenvalue found, in units of its modulus."""
     far_behind: float = 0.5
@@ -54,7 +55,8 @@ of its modulus."""
 class Candidates:
     """Result of one attempt: k roots of D, sorted as defined in `rodsweep.model`.
 
-    vectors: of the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty.
+    vectors: eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or
+    empty.
     """
 
     mesh: AnyMesh

@@ -129,7 +129,9 @@ def distinct_roots(w: Complex, error: Array) -> bool:
 def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Corrects the guesses for point i into the track; whether all converged and every pair stayed a pair."""
+    """Corrects the guesses for point i and writes the roots to the track. True if all converged and every
+    pair stayed a pair.
+    """
     w = track.w[i]
     error = track.error[i]
     order = track.order[i]

@@ -49,8 +49,8 @@ class TransverseProblem(ABC):
         return finer_mesh(self.rod, mesh)
 
     @abstractmethod
-    def informed(self, mesh: Any, waves: Array, accuracy: float) -> Any:
-        """The next mesh, from the wave numbers of the leading modes found, (modes,)."""
+    def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
+        """The next mesh, chosen for the wave numbers of the leading modes found, (modes,)."""
 
     def solver(self, mesh: AnyMesh) -> EigenSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
@@ -85,7 +85,7 @@ class UniformProblem(TransverseProblem):
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
-    def informed(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
+    def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the wave numbers, (modes,), but at least the next finer mesh."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer(mesh), key=lambda each: each.unknowns)
@@ -114,7 +114,7 @@ class ArmProblem(TransverseProblem):
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
 
-    def informed(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
+    def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
         """The next finer mesh; the wave numbers, (modes,), are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 

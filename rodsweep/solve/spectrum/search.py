@@ -23,7 +23,7 @@ __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchSettings:
-    """The attempts at one spectrum."""
+    """Settings of the search for one spectrum: meshes, attempts and accepted errors."""
 
     spare_modes: int = 1
     """Number of eigenvalues requested beyond the count of the winding number."""
@@ -40,12 +40,12 @@ class SearchSettings:
     error_share: float = 0.5
     """Largest error estimate in units of the accuracy: it is an estimate only."""
     stalled_error_share: float = 0.8
-    """The same if rounding limits the error."""
+    """`error_share` if rounding limits the error."""
     largest_displacement: float = 1e-3
     """Relative distance of the mesh's eigenvalues from the roots of D, above which the mesh may have missed
     an eigenvalue."""
     unbounded_displacement: float = 1e-6
-    """The same without an a-priori bound, if convergence is the only evidence."""
+    """`largest_displacement` without an a-priori bound, if convergence is the only evidence."""
 
 
 SEARCH = SearchSettings()
@@ -126,7 +126,7 @@ class Search:
             self.keep(judged)
             if judged.short <= SEARCH.error_share or self.stalled >= SEARCH.no_progress:
                 break
-            self.mesh = self.problem.informed(found.mesh, found.roots.wave[: self.modes], self.aim)
+            self.mesh = self.problem.next_mesh_for(found.mesh, found.roots.wave[: self.modes], self.aim)
         return self.concluded()
 
     def judged(self, found: Candidates) -> JudgedCandidates | None:

@@ -22,7 +22,7 @@ from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KrylovSettings:
-    """Krylov-Schur by shift-and-invert, and solvers kept from point to point."""
+    """Settings of Krylov-Schur by shift-and-invert, and of the solvers kept from point to point."""
 
     shift_above_growth: float = 1.05
     """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
@@ -99,7 +99,7 @@ class Loaded(NamedTuple):
 class ShiftInvertSolver(ABC):
     """Krylov-Schur for pencils of one pattern; `solve` may be called any number of times.
 
-    mass: of the nodes without the clamp, (nodes,), for the first Krylov vector.
+    mass: mass of the nodes without the clamp, (nodes,), for the first Krylov vector.
     """
 
     def __init__(self, pattern: Pattern, mass: Array):

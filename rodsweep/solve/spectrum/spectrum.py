@@ -37,8 +37,8 @@ class Spectrum:
     |D/D'|, (modes,): at least a tenth of the error, and at most ten times the error or the effect of rounding
     of the force or of w. unstable_count: number of eigenvalues with Re w > 0, -1 if unknown; proved if
     requested. certified: whether the winding number proves that no eigenvalue right of the last mode is
-    missing. elements, order: of the mesh, 0 without a mesh. seconds: for several rods the mean. vectors: (Y,
-    Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
+    missing. elements, order: numbers of the mesh, 0 without a mesh. seconds: time of the solve, for several
+    rods the mean. vectors: (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
 
     status: EachRod

@@ -31,7 +31,7 @@ from .status import SpectrumStatus
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchSettings:
-    """Eigenvalues followed along a stretch."""
+    """Settings for eigenvalues followed along a stretch."""
 
     further_modes: int = 2
     """Number of modes followed beyond the requested modes; the count uses the gaps between them."""

@@ -24,7 +24,7 @@ from .status import SpectrumStatus
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwoMeshSettings:
-    """Comparison of two meshes."""
+    """Settings for the comparison of two meshes."""
 
     max_finer_meshes: int = 8
     """Maximum number of meshes after the first, each with a third more unknowns."""

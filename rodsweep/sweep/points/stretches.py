@@ -84,7 +84,7 @@ class Stretches:
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
 
     def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
-        """Ranges of the stretches with missing points."""
+        """Stretches with missing points, as ranges of stretch numbers."""
         if total(missing) == math.prod(self.shape):
             return [(0, self.count)]
         missing_points = IndexSet(missing)

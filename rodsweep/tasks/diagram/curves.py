@@ -84,7 +84,9 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
+        """All curves as variables of the file. results: results of all wanted units, shapes as in
+        `TracedHalf`.
+        """
         plane = self.plane
         if plane is None:
             return []

@@ -350,7 +350,7 @@ def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     states = np.concatenate((half.regular_states, REFLECTION.of(half.regular_states, form.layout)))
     tip = form.tip(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
-    strains = form.strains(states)
+    strains = form.element_strains(states)
     series = path.strain_coefficients
     waves = np.exp(2j * np.pi * np.outer(np.arange(22) / 22, np.arange(23)))
     assert np.tensordot(waves, series, 1).real.swapaxes(0, 1) == pytest.approx(strains, abs=1e-12)

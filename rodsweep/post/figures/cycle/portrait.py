@@ -47,7 +47,7 @@ PADDING = 0.1
 TEXT_HEIGHT = 1.4
 """Height of labels and headings above and below the panels, in inches."""
 NARROW_TEXT_HEIGHT = 2.0
-"""The same height on a narrow page, where the colour bar lies below the panels."""
+"""`TEXT_HEIGHT` on a narrow page, where the colour bar lies below the panels."""
 LIGHTEST_ARM = 0.14
 """Fraction of the colour map left out: yellow, which is invisible on white."""
 

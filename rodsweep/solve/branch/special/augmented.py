@@ -25,7 +25,9 @@ from .point import LOCATING
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AugmentedSettings:
-    """Iterations with the factors of a nearby cycle's matrix: cycle, test function, null vectors."""
+    """Settings for iterating cycle, test function and null vectors with the factors of a nearby cycle's
+    matrix.
+    """
 
     tolerance: float = 1e-9
     """Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""
@@ -33,8 +35,8 @@ class AugmentedSettings:
     """Tolerance in units of the distance from the curve that the test function indicates; the larger
     tolerance counts."""
     min_contraction: float = 10.0
-    """Smallest contraction rate that is assumed: ratio of successive corrections over the distance from the
-    matrix's cycle. Large cycles have 2 or 3."""
+    """Lower limit of the assumed contraction rate: ratio of successive corrections over the distance from the
+    matrix's cycle. The true rate is 2 or 3 for large cycles; a larger one is on the safe side."""
     contraction_safety: float = 3.0
     """Safety factor on a measured contraction rate, for the next cycle."""
     slow: float = 0.3
@@ -245,6 +247,6 @@ def _parts(vector: Array) -> Array:
 def crossing_pair(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over half a period and the reflection; None if all are
     real."""
-    h = matrix.returns
+    h = matrix.partial_multipliers
     pairs = h[np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

@@ -19,7 +19,7 @@ from .point import SpecialPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveStartSettings:
-    """First mesh of a curve of special points."""
+    """Settings for the first mesh of a curve of special points."""
 
     order_share: float = 0.62
     """Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""

@@ -85,10 +85,10 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         correct_fully(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return of_returns(kind, matrix.returns)
+    return of_multipliers(kind, matrix.partial_multipliers)
 
 
-def of_returns(kind: SpecialKind, h: Complex) -> float:
+def of_multipliers(kind: SpecialKind, h: Complex) -> float:
     """The test function of a kind from multipliers over the solved interval, (rank,); raises Unsolvable."""
     real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
@@ -107,7 +107,7 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
         return float(point.tangent[-1]) / scale.coordinate / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return of_returns(kind, point.returns)
+    return of_multipliers(kind, point.partial_multipliers)
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
@@ -171,7 +171,7 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
 
 
 def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point at a cycle, without error. name: of the parameter."""
+    """The special point at a cycle, without error. name: name of the parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
         kind=kind,

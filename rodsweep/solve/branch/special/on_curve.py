@@ -16,7 +16,7 @@ from ..bordered import Scale
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrossingSettings:
-    """Corrections across a curve of special points, and the errors of its points."""
+    """Settings of the corrections across a curve of special points, and of the errors of its points."""
 
     accuracy: float = 1e-7
     """Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
@@ -61,11 +61,10 @@ ACROSS_CURVE = CrossingSettings()
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Derivatives of a family's cycles across its curve, by the length across.
-
-    way: unit direction across, (along the branch, along the rows), (2,). test: of the test function. orbit:
-    of the orbit's values and the line's coordinate, (N + 1,). mesh: of that orbit. span: length between the
-    two cycles of the difference quotient. contraction: of corrections, as in `NearbyCycles`.
+    """Derivatives of a family's cycles by the length across its curve. way: unit direction across, (along the
+    branch, along the rows), (2,). test: derivative of the test function. orbit: derivative of the orbit's
+    values and the line's coordinate, (N + 1,). mesh: mesh of the orbit. span: length between the two cycles
+    of the difference quotient. contraction: contraction of corrections, as in `NearbyCycles`.
     """
 
     way: Array
@@ -89,8 +88,8 @@ class CurveErrors:
     """Relative error of the line's parameter at a point of a curve; it scales with the squared coefficient
     tails.
 
-    tails: of the orbit where it was measured, in space and time, (2,). mesh: of that orbit. age: number of
-    points since.
+    tails: tails of the orbit whose error was measured, in space and time, (2,). mesh: mesh of that orbit.
+    age: number of points since that orbit.
     """
 
     measured: float

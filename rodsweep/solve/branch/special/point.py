@@ -9,7 +9,7 @@ from ...orbit.orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LocatingSettings:
-    """Location of a special point on a branch."""
+    """Settings for the location of a special point on a branch."""
 
     real_multiplier: float = 1e-7
     """Largest imaginary part of a real multiplier, relative to its modulus."""
@@ -31,11 +31,11 @@ class LocatingSettings:
     """Longest last secant step, in units of the step of the branch: the cycle is moved along its tangent, and
     the slope, known to a thousandth, leaves an error of `secant_end`."""
     linear_step_at_fold: float = 1e-5
-    """The same at a fold, where the parameter is quadratic in arc length."""
+    """`linear_step` at a fold, where the parameter is quadratic in arc length."""
     secant_end: float = 1e-9
     """Error of the place that the last secant step leaves, in units of the step of the branch."""
     secant_end_at_fold: float = 1e-5
-    """The same at a fold: its slope may come from a coarser mesh and is known to a tenth."""
+    """`secant_end` at a fold, whose slope may come from a coarser mesh and is known to a tenth."""
     matrix_distance: float = 1e-3
     """Largest relative distance of a matrix from the cycle whose test function is corrected with its factors:
     each correction then gains two digits or more."""

@@ -15,7 +15,7 @@ from ....arrays import Array
 from ....discretization.elements.resolution import RESOLUTION
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
-from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
+from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
 from ...orbit.tails import lasting_tails, tails_of
 from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
@@ -118,11 +118,11 @@ class Calibration:
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
         # distance, and in time with the smallest order.
-        least = np.minimum(self.fall, self.fall[APART])
+        least = np.minimum(self.fall, self.fall[WHOLE_PATH])
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
-        time = self.time[:, None] * ((present.intervals - 1) / (intervals - 1)) ** power
+        time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
         enough = largest_error(*errors[:3]) <= CALIBRATION.planned_error * accuracy
         meshes = [
@@ -135,13 +135,16 @@ class Calibration:
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
     """Errors of `CycleErrors`, (4, ...), from the parts of the error in space and in time, (5, ...) each."""
     whole = CALIBRATION.safety * (space + time)
-    apart = space[APART] + time[APART]
-    in_time = CALIBRATION.share_in_time * time[APART]
-    either = CALIBRATION.mutual_bound * sum(np.maximum(part[PERIOD], part[HEIGHT]) for part in (space, time))
+    apart = space[WHOLE_PATH] + time[WHOLE_PATH]
+    in_time = CALIBRATION.share_in_time * time[WHOLE_PATH]
+    parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
+    either = CALIBRATION.mutual_bound * (parts[0] + parts[1])
+    of_period = CALIBRATION.period_share * space[WHOLE_PATH] + in_time
+    of_height = CALIBRATION.height_share * space[WHOLE_PATH] + in_time
     stated = [
-        np.maximum(np.maximum(whole[PERIOD], CALIBRATION.period_share * space[APART] + in_time), either),
-        np.maximum(np.maximum(whole[HEIGHT], CALIBRATION.height_share * space[APART] + in_time), either),
-        np.maximum(whole[OTHERS], CALIBRATION.others_share * apart),
+        np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
+        np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
+        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.others_share * apart),
         whole[MULTIPLIER],
     ]
     least: Array = np.maximum(np.array(stated), max(CYCLE_ERRORS.min_claim * accuracy, CYCLE_ERRORS.rounding))
@@ -203,7 +206,7 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
 def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
     least = mesh.stages + 1
-    steps = np.log((mesh.intervals - 1) / (previous.intervals - 1))
+    steps = np.log(mesh.full_intervals / previous.full_intervals)
     power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_power_ratio * least)
     return power
 

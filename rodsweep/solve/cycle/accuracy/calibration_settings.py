@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationSettings:
-    """Measured errors of a mesh: safety factors, rates, bounds of planned meshes, and reuse."""
+    """Settings for measured errors of a mesh: safety factors, rates, reuse, and bounds of planned meshes."""
 
     safety: float = 3.0
     """Safety factor on measured errors of period, extrema and multiplier."""

@@ -10,7 +10,7 @@ from ....arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleErrorSettings:
-    """Smallest errors that are stated, and the error that is compared with the accuracy."""
+    """Settings for the smallest stated errors, and for the error that is compared with the accuracy."""
 
     rounding: float = 2e-14
     """Smallest stated relative error of period and extrema: rounding errors on any mesh."""

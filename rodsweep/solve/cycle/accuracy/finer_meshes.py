@@ -20,7 +20,7 @@ from .calibration import Calibration, calibration_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparisonSettings:
-    """The two finer meshes whose cycles measure the errors of a mesh."""
+    """Settings for the two finer meshes whose cycles measure the errors of a mesh."""
 
     more_orders: int = 2
     """Additional orders of the mesh finer in space: errors fall by a tenth or more."""
@@ -39,7 +39,7 @@ COMPARISON = ComparisonSettings()
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
     longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
-    share = 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
+    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
 

@@ -19,7 +19,7 @@ from ...orbit.orbit import Orbit, node_times
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MinimalPeriodSettings:
-    """Harmonics that prove the period minimal."""
+    """Settings for the harmonics that prove the period minimal."""
 
     present: float = 1e-3
     """Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not

@@ -160,7 +160,7 @@ def _predicted_cycle(
         last = REFINEMENT.allowed_increase * error
         if not mesh.allowed:
             break
-        if not coarser.serve(mesh):
+        if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefinementSettings:
-    """Meshes and Newton tolerances for a cycle of a requested accuracy."""
+    """Settings for the meshes and Newton tolerances for a cycle of a requested accuracy."""
 
     matrix_distance_share: float = 3.0
     """Relative distance of Newton's matrix for accurate multipliers, in units of the accuracy."""

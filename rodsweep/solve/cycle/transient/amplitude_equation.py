@@ -18,7 +18,7 @@ from ....arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AmplitudeEquationSettings:
-    """Prediction of the amplitude of a slowly growing motion."""
+    """Settings for the prediction of the amplitude of a slowly growing motion."""
 
     slow_growth: float = 0.2
     """Linear growth per period below which the amplitude is predicted instead of integrated."""
@@ -42,8 +42,8 @@ AMPLITUDE_EQUATION = AmplitudeEquationSettings()
 class AmplitudeEquation:
     """g = g0 - c |z|^2 of one rod, from the returns of its motion: times, (k,), and states, (k, unknowns).
 
-    period: of the leading mode. linear_rate: g0 per time, 1/tau2. excess: linear growth rate of the rod minus
-    that of the integrated beam, 1/tau2. noise: growth per period that the integrator may add.
+    period: period of the leading mode. linear_rate: g0 per time, 1/tau2. excess: linear growth rate of the
+    rod minus that of the integrated beam, 1/tau2. noise: growth per period that the integrator may add.
     """
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:

@@ -15,7 +15,7 @@ from ...orbit.symmetry import NONE, REFLECTION
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FromMotionSettings:
-    """The start of Newton's method from an integrated motion."""
+    """Settings for starting Newton's method from an integrated motion."""
 
     stages: int = 3
     """Collocation stages of the start."""

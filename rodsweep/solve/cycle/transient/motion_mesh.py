@@ -11,7 +11,7 @@ from ....model.rod import Rod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionMeshSettings:
-    """The mesh of an integrated motion."""
+    """Settings for the mesh of an integrated motion."""
 
     accuracy: float = 1e-5
     """Accuracy of the mesh of the integrated motion. The motion decides only the basin of attraction;

@@ -19,7 +19,7 @@ from ...motion.integrator import Ending, RunLimit, Trajectory
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReturnSettings:
-    """Returns of the tip, by which a motion is classified."""
+    """Settings for the returns of the tip, by which a motion is classified."""
 
     straight_size: float = 1e-6
     """Norm of z below which a rod with a stable straight state is called straight, and norm of the bending

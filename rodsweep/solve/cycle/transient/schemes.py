@@ -16,7 +16,7 @@ CAREFUL_SCHEME = TimeScheme("arkimex", "5", tolerance=1e-9)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchemeSettings:
-    """Choice of the scheme of a motion by its growth."""
+    """Settings for the choice of the scheme of a motion by its growth."""
 
     weak_growth: float = 0.01
     """Linear growth per period below which the scheme is CAREFUL_SCHEME."""

@@ -14,7 +14,7 @@ from ..cycle import MotionShapes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShapeTraceSettings:
-    """Shapes of a motion that are kept for a moving picture."""
+    """Settings for the shapes of a motion that are kept for a moving picture."""
 
     max_steps: int = 4000
     """Time steps after which no more are kept: some 50 to 100 returns of the tip, or 4 MB."""
@@ -66,7 +66,8 @@ class ShapeTrace:
     def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
         """Shapes on `nodes` Lobatto nodes, `frames` per return of the tip, until the arm is at rest.
 
-        returns: times of the tip's last returns. period: of the leading mode, in place of few returns.
+        returns: times of the tip's last returns. period: period of the leading mode, used if there are too
+        few returns.
         """
         from scipy.interpolate import CubicSpline  # a tenth of a second of every start
 

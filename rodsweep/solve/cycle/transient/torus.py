@@ -24,7 +24,7 @@ from .transient import Transient, TransientOutcome
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TorusTestSettings:
-    """Test whether a motion lies on a torus."""
+    """Settings of the test whether a motion lies on a torus."""
 
     harmonics: int = 6
     """Harmonics of the second frequency in the returns. Each harmonic of the studied tori was a fifth of the

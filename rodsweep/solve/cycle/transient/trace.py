@@ -7,7 +7,7 @@ replace a state of several hundred.
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import BEAM, Beam
+from ....discretization.beam import Beam
 from ...motion.integrator import Trajectory
 
 
@@ -42,11 +42,8 @@ class TipTrace:
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)
         states = run.states[finite]
-        # A small imaginary step along the rates gives the tip's velocity without cancellation.
-        moved = states + 1j * BEAM.tip_step * self.beam.rate(states)
-        tips = self.beam.tip(moved)
         self.times.append(clock + run.times[finite])
-        self.tips.append(np.concatenate([tips.real, tips.imag / BEAM.tip_step]))
+        self.tips.append(np.concatenate(self.beam.tip_motion(states, self.beam.rate(states))))
 
     def at_equal_times(self, count: int) -> Array:
         """Time in tau2 and x, y, theta of the tip, (4, count), from the start to the end of the last run."""

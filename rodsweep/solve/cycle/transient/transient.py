@@ -36,7 +36,7 @@ from .trace import TipTrace
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransientSettings:
-    """Integration of a motion until Newton's method finds its cycle."""
+    """Settings for the integration of a motion until Newton's method finds its cycle."""
 
     returns_per_run: int = 5
     """Returns per run, before the motion is classified."""
@@ -46,7 +46,8 @@ class TransientSettings:
     newton_distance: float = 0.1
     """Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
     stored_path_distance: float = 1e-3
-    """The same for a stored path, in the first half of the allowed periods, to show the settling."""
+    """`newton_distance` for a stored path in the first half of the allowed periods: smaller, to show the
+    settling."""
     max_newton_failures: int = 5
     """Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
     max_jumps: int = 60
