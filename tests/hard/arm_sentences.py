@@ -605,7 +605,7 @@ class ArmTruth:
         told(rf"^Flutter, at {value}{name}, is within", loads)
         told(rf"would flutter at {value}{name}[,.]", loads)
         told(rf"begins? to beat at {value}", own["hertz"])
-        told(rf"straight arm returns at {value}", self._loads(own["restabilization"]))
+        told(rf"straight arm is stable again above {value}", self._loads(own["restabilization"]))
         told(rf"^From {value} on a disturbance", self._loads(own["onset"]))
         told(rf"(?:crushed at|up to) {value}", [self._loads(own["end"])])
         if self.other:
@@ -650,7 +650,7 @@ class ArmTruth:
             return f"F = {F} is outside of {low} to {high}"
         if ": the arm beats" in line and not all(self._grows(n) for n in range(5)):
             return "with some drag the arm is stable"
-        if "has returned" in line and any(self._grows(n) for n in range(5)):
+        if "straight arm is stable again." in line and any(self._grows(n) for n in range(5)):
             return "with some drag the arm is unstable"
         return ""
 

@@ -90,7 +90,9 @@ def proves(found: Remainder) -> bool:
 
 @compiled
 def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """k points for a line and a hull with which every term of R is positive, (k,); none where none are."""
+    """k points, (k,), for which the term of R of every w in the hull right of the line is positive; empty if
+    no such points exist.
+    """
     x = max(FIRST_POINT * abs(line), a * a, 1e-6)
     points = np.empty(k)
     for j in range(k):

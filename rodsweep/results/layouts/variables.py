@@ -88,7 +88,7 @@ def integer(name: str, long_name: str, *extra: str) -> Variable:
 
 
 def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
-    """Variable that stands for a word: by the word's place in a list, or by given numbers.
+    """Variable that stands for a word: by the word's index in a list, or by given numbers.
 
     The fill value is -1 if a word has the number -1, for a missing value; else 0, the first word of a list.
     """
