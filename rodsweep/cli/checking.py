@@ -37,10 +37,10 @@ def describe_job(job: Job) -> None:
     cost = job.task.cost()
     if cost.unknowns is not None:
         low, high = cost.unknowns
-        console.print(f"unknowns a point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
+        console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
     console.print(
         f"expected: {cost.seconds:.3g} s on one rank (divide by the ranks; first use compiles for some "
-        f"seconds more), {cost.memory / 1e6:.0f} MB of memory a rank, "
+        f"seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:

@@ -37,7 +37,7 @@ WITHOUT_CYCLE = {
     "straight": "does not beat",
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle is known, nor that there is none",
+    "not_settled": "is not settled: no stable cycle was found, but one may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     "failed": "is not known: the integration failed",
 }
@@ -319,7 +319,8 @@ def _alike_but_for_drag(view):
 def _drag_sentences(view, page, start, chosen, numbers):
     """The check of how much drag changes numbers at chosen points, by their name in the sentence."""
     found, alike = [], _alike_but_for_drag(view)
-    for line, match in read(page, rf"{start}over NUMBER drags of its range one arm varies: (.*)$"):
+    sentence = rf"{start}over NUMBER drags of the range the results of one arm vary: (.*)$"
+    for line, match in read(page, sentence):
         why = [] if int(match[1]) == len(DRAGS) else ["drags"]
         items = re.findall(
             rf"([a-z ]+?) by (up to )?(?:({NUMBER}) %|a factor of ({NUMBER}))(?:, |$)", match[2]

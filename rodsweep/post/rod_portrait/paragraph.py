@@ -6,7 +6,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...wording import counted
+from ...wording import counted, is_or_are
 from ..branch_curves import count_incomplete_branches, curves_of
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
@@ -60,7 +60,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     if clauses:
         yield f"Straight, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
-        yield "Straight, it has no threshold in this range."
+        yield "The straight rod has no threshold in this range."
     if v["crossing_count"] >= 0:
         yield f"This list of thresholds is {'proved complete' if v['certified'] else 'not proved complete'}."
 
@@ -87,7 +87,10 @@ def _branches(results: RodResults) -> Iterator[str]:
     curves = curves_of(view, 0)
     hidden = count_incomplete_branches(view, 0)
     if hidden:
-        yield f"Of {hidden} of its branches of cycles the special points are not stored; they are not drawn."
+        yield (
+            f"{hidden} of its branches of cycles {is_or_are(hidden)} not drawn: not all special points are "
+            "stored."
+        )
     if not curves:
         yield "No branch of cycles begins at a Hopf point in this range."
         return

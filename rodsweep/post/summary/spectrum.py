@@ -108,7 +108,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["eigenvalues of every point were followed from the first point of its stretch, or it failed"]
     without = f"; none at {followed} that were followed or failed" if followed else ""
-    return [f"unknowns a point: {span(unknowns[unknowns > 0])}{without}"]
+    return [f"unknowns per point: {span(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:

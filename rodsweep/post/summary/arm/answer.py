@@ -26,7 +26,7 @@ NO_CYCLE = {
     "straight": "does not beat",
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle is known, nor that there is none",
+    "not_settled": "is not settled: no stable cycle was found, but one may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     FAILED: "is not known: the integration failed",
 }
