@@ -103,7 +103,7 @@ class Store:
             create_file(copy, self.plan)
         if own and not fresh:
             self.fold({})
-            self.notes.append("the file was missing, and is made anew with the points of its journal")
+            self.notes.append("the file was missing; a new file holds the points of its journal")
 
     def _extend(self, header: Header) -> None:
         """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
