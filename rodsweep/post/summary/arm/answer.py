@@ -168,7 +168,7 @@ def _with_status(view: View, *words: str) -> np.ndarray:
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
-    """Share of the points in a mask, as an ending; empty where there is one point only."""
+    """Ending of a sentence with the share of the points in a mask; empty for a single point."""
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
