@@ -78,7 +78,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     if clauses:
         yield f"Straight, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
-        yield "Straight, it has no threshold in this range."
+        yield "The straight rod has no threshold in this range."
     if v["crossing_count"] >= 0:
         yield f"This list of thresholds is {'proved complete' if v['certified'] else 'not proved complete'}."
 
@@ -105,7 +105,10 @@ def _branches(results: RodResults) -> Iterator[str]:
     curves = curves_of(view, 0)
     hidden = count_incomplete_branches(view, 0)
     if hidden:
-        yield f"Of {hidden} of its branches of cycles the special points are not stored; they are not drawn."
+        yield (
+            f"{hidden} of its branches of cycles {is_or_are(hidden)} not drawn: not all special points are "
+            "stored."
+        )
     if not curves:
         yield "No branch of cycles begins at a Hopf point in this range."
         return
