@@ -70,6 +70,13 @@ def test_what_is_not_decided_is_not_denied(portrait):
     assert "It is not known whether a stable cycle exists beside the stable straight rod." in text
 
 
+def test_branches_without_all_special_points_are_counted(portrait, monkeypatch):
+    monkeypatch.setattr("rodsweep.post.rod_portrait.paragraph.count_incomplete_branches", lambda *_: 1)
+    assert "1 of its branches of cycles is not drawn: not all special points are" in paragraph(
+        portrait.results
+    )
+
+
 def test_cycles_are_those_of_the_limit_cycle_task(portrait):
     assert len(portrait.cycles) == 3
     for F, cycle in portrait.cycles.items():
