@@ -7,7 +7,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...wording import counted
+from ...wording import counted, is_or_are
 from ..branch_curves import Range, coexistence_is_decided, count_incomplete_branches, curves_of
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
