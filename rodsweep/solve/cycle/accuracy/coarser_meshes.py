@@ -7,6 +7,7 @@ the three orbits measure the errors of the coarse meshes; slowest rates of decay
 """
 
 from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ....arrays import Array
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import multiplier_change, newton
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh
+from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
 from .calibration import Calibration, calibration_of
@@ -27,11 +28,20 @@ class CoarserMeshSettings:
     """The coarser meshes that predict a cycle on a fine mesh."""
 
     fewer_orders: int = 2
-    """Orders of the fine mesh minus those of the coarse mesh made to predict it."""
+    """Orders of the fine mesh minus those of the coarse mesh made to predict it, at least."""
+    most_fewer_orders: int = 4
+    """Largest such difference."""
+    fall_between: float = 1.5
+    """Smallest expected fall of the errors in space from the coarse mesh to the fine mesh, natural logarithm,
+    which determines the difference of the orders. Where coefficients decay slowly, errors oscillate with the
+    order, and meshes of nearly the same order agree by luck: with a difference of 2, 16 of 112 errors of
+    slender cones were beyond their estimates, up to 2.2 times; none was with this fall, the largest 0.4 times
+    its estimate."""
     more_intervals: float = 0.4
     """Intervals that the fine mesh has more, in units of those of the coarse mesh made to predict it."""
-    served_orders: int = 4
-    """Largest difference in orders of a predicted mesh and the coarse mesh."""
+    served_orders: int = 2
+    """Largest difference in orders of a predicted mesh and the fine mesh for which the coarse mesh was made.
+    """
     served_intervals: float = 2.0
     """Largest ratio of intervals of a predicted mesh and the coarse mesh."""
     slowest_fall: float = 1.2
@@ -46,7 +56,9 @@ class CoarserMeshes:
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
-        order = mesh.order - COARSER_MESHES.fewer_orders
+        fewer = _fewer_orders(near)
+        order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.fewer_orders)
+        self._highest_order = order + fewer + COARSER_MESHES.served_orders
         intervals = round((mesh.intervals - 1) / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = COMPARISON.newton_share * accuracy
@@ -57,7 +69,7 @@ class CoarserMeshes:
     def serve(self, mesh: OrbitMesh) -> bool:
         """Whether the coarse meshes can predict the cycle on a fine mesh."""
         few = (
-            mesh.order - self.mesh.order <= COARSER_MESHES.served_orders
+            mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESHES.served_intervals
         )
         return few and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
@@ -68,11 +80,7 @@ class CoarserMeshes:
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
         fine, in_intervals, coarse = (mesh.carry(each.orbit) for each in (space, time, self._both))
         orbit = replace(fine, values=fine.values + in_intervals.values - coarse.values)
-        fall = min(
-            max(COARSER_MESHES.slowest_fall * tails_of(space.orbit).decay, CALIBRATION.min_fall),
-            CALIBRATION.max_fall,
-        )
-        by_orders = np.exp(fall * (mesh.order - self.mesh.order))
+        by_orders = np.exp(_fall(space.orbit) * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # Each of the two meshes has one of the errors. The fine mesh's multipliers may be as wrong as the two
         # differ: their errors need not fall as those of the paths.
@@ -96,3 +104,15 @@ class CoarserMeshes:
 
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
         return (mesh.intervals - 1) / (self.mesh.intervals - 1)
+
+
+def _fall(orbit: Orbit) -> float:
+    """Slowest expected decay of errors in space per order, natural logarithm, by an orbit's coefficients."""
+    slowest = COARSER_MESHES.slowest_fall * tails_of(orbit).decay
+    return min(max(slowest, CALIBRATION.min_fall), CALIBRATION.max_fall)
+
+
+def _fewer_orders(near: Orbit) -> int:
+    """Orders of a fine mesh minus those of the coarse mesh that predicts it, for a cycle near an orbit."""
+    needed = ceil(COARSER_MESHES.fall_between / _fall(near))
+    return min(max(needed, COARSER_MESHES.fewer_orders), COARSER_MESHES.most_fewer_orders)
