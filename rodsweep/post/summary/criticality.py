@@ -10,7 +10,7 @@ from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import rounded, span, to_error
 from .summary_lines import SummaryLines, completeness, in_brackets, region
-from .thresholds import not_known, not_stored
+from .thresholds import ended_early, not_known, not_known_beyond, not_stored
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
@@ -26,13 +26,14 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
         lines = list(_hopf_lines(view)) or [none]
+        lines[0] += not_known_beyond(view, float(v["F_end"].ravel()[0]))
         return SummaryLines(lines, [_searched(view, done)], of_arm=crossings_of_arm(view))
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    unknown = int((v["crossing_count"][done] < 0).sum())
+    unknown = int(((v["crossing_count"] < 0) | (ended_early(view) & ~with_hopf))[done].sum())
     lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])
