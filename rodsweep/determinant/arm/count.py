@@ -57,6 +57,9 @@ SHARP = 1e-3
 NONE_KNOWN: Complex = np.empty(0, complex)
 SMALLEST_ARM_REACH = 1e-12
 """Reach in units of |w| below which the line counts as running through a zero of D."""
+LEVELS_ABOVE = 1
+"""Number of levels of elements above the own one that serve a node: the many evaluations of a count are worth
+elements of their own."""
 MAX_NODES = 5000
 """Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
 STRIDE = 1.9
@@ -180,7 +183,7 @@ def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIU
     """
     determinant, hull, known = divided
     length = determinant.length(w)
-    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length)
+    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length, LEVELS_ABOVE)
     return _node(w, known, (length, radius), hull, level)
 
 
