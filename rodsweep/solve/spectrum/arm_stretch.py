@@ -54,7 +54,8 @@ HULL_ARMS = 7
 class Interval(NamedTuple):
     """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`.
 
-    arms: number of points inside the family, of which `p` are those that are followed.
+    arms: number of points inside the family, of which `p` are those that are followed. further: number of
+    modes that were followed beyond those wanted.
     """
 
     p: Array
@@ -63,6 +64,7 @@ class Interval(NamedTuple):
     family: ArmFamily
     hulls: Hulls
     arms: int
+    further: int
 
     def proved(self, modes: int) -> int:
         """The number of points at which so many leading modes are proved complete."""
@@ -90,7 +92,7 @@ def _interval(
     previous interval of the path, whose family serves again where it contains enough of the points.
     """
     best: Interval | None = None
-    for further in FURTHER_ARM_MODES:
+    for further in (number for number in FURTHER_ARM_MODES if before is None or number >= before.further):
         found = _followed(path, p, request, further, before) if len(p) >= FEWEST else None
         if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
             best = found
@@ -121,7 +123,7 @@ def _followed(
     if reached == 0:
         return None
     arms = before.arms if before is not None and family is before.family else n
-    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls, arms)
+    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls, arms, further)
 
 
 def _empty_track(first: Complex, points: int) -> Track:
