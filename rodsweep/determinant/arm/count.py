@@ -112,10 +112,9 @@ def count_right_of(
     """
     if not math.isfinite(hull.a):
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
-    real, imag = hull.box(max(-line, 0.0))
-    if line >= real:
+    if line >= hull.box(max(-line, 0.0))[0]:
         return Count(0, 0)
-    corner = complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
+    corner = _corner(line, hull)
     top = complex(line, corner.imag)
     known = known[error < SHARP * np.abs(known.real - line)]
     known = known[is_whole(known)]
@@ -136,6 +135,23 @@ def count_right_of(
     if abs(total / math.pi - number) > NOT_AN_INTEGER:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number + int((known.real > line).sum()), nodes)
+
+
+def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
+    """Whether eigenvalues right of a line at most 0 can be counted: a bound is known, and D resolved."""
+    if not math.isfinite(hull.a):
+        return False
+    try:
+        determinant.level(abs(_corner(0.0, hull)), LEVELS_ABOVE)
+    except FloatingPointError:
+        return False
+    return True
+
+
+def _corner(line: float, hull: Hull) -> complex:
+    """The corner of the box about all eigenvalues right of the line, with the largest |w|."""
+    real, imag = hull.box(max(-line, 0.0))
+    return complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
 
 
 def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> tuple[float, int]:

@@ -68,6 +68,8 @@ class CrossingSearch:
             modes = MIN_KNOWN_MODES if near is None else max(MIN_KNOWN_MODES, 2 + near.unstable)
             found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
+                if self.certify and found.unstable_count < 0:
+                    break  # a count that fails does not succeed with more modes
                 modes = _needed(found)
                 found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
             if found.unstable_count < 0:

@@ -23,6 +23,9 @@ SPARE_MODES = 1
 """Number of eigenvalues requested beyond the count of the winding number."""
 UNKNOWNS_A_MODE = 6
 """Fewest unknowns of a mesh for each requested eigenvalue."""
+ENOUGH_UNPROVED = 50
+"""Number of growing modes after which no more are solved for if no count is possible: each doubling costs
+several times as much, and nothing is proved in the end."""
 MAX_MESHES_TRIED = 12
 """Maximum number of attempts."""
 MAX_FAILURES = 3
@@ -121,7 +124,7 @@ class Search:
             self.why = found.failure or self.why
             self.wanted, self.mesh = self.wanted + self.modes, self.problem.finer(self.mesh)
             return None
-        if self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all():
+        if self.wants_the_axis(found):
             self.reach_the_axis(len(found.roots.w))
             return None
         verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
@@ -155,6 +158,12 @@ class Search:
         if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
             more, self.mesh = self.wanted + number - here + SPARE_MODES, self.problem.finer(self.mesh)
         self.request_more(more)
+
+    def wants_the_axis(self, found: Candidates) -> bool:
+        """Whether eigenvalues beyond the axis are needed for a count, or for a list that nothing proves."""
+        if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
+            return False
+        return len(found.roots.w) < ENOUGH_UNPROVED or self.problem.countable
 
     def reach_the_axis(self, number: int) -> None:
         """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""
