@@ -61,8 +61,10 @@ test-peers: .venv/installed  ## install what the tests use where it is there: Sl
 	  else echo "make: apt-get knows no package $$p; without it the tests in a browser are skipped" >&2; fi
 	done
 	apt_install $$browser
-survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time; further Hopf points and branches (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/solve/hopf/test_criticality.py tests/solve/branch/test_branch.py tests/solve/branch/test_branch_auto.py tests/solve/branch/test_coexistence.py tests/solve/cycle/test_torus.py tests/solve/cycle/test_marched.py tests/solve/spectrum/test_following.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_branch_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py tests/hard/test_random_rods.py tests/determinant/test_arm_count.py tests/solve/spectrum/test_arm_spectrum.py tests/solve/changes/test_arm_thresholds.py tests/hard/test_sentences.py tests/post/test_figure_layout.py tests/cli/test_start.py tests/cli/test_pages_run.py
+survey: .venv/installed  ## all cases of the tests that `make test` asks of a few: RODS (300) random rods, VERDICTS (50) marched in time (some minutes)
+	surveyed=$$(grep -rl --include='test_*.py' --exclude=test_time_marched_verdicts.py --exclude=test_settings.py \
+	  'surveyed import\|import.*RODS\|RODSWEEP_RODS' tests)
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto $$surveyed
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py tests/hard/test_settings.py
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, damage files and configs CASES (10) times as often (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/results/test_stress.py tests/solve/test_interrupts.py

@@ -5,6 +5,7 @@ import scipy.linalg
 
 from rodsweep.arrays import Array, Complex
 from rodsweep.discretization.elements.resolution import Resolution
+from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.rod import Rod
 
@@ -16,7 +17,8 @@ INFINITE_BELOW = 1e-11
 
 def whole_matrices(rod: Rod, mesh: Resolution) -> tuple[Array, Array]:
     """(A, diagonal of B), shape (unknowns, unknowns) and (unknowns,), the statical unknowns last."""
-    return assemble(mesh.elements, mesh.order).dense(rod)
+    form = dense_form(rod, assemble(mesh.elements, mesh.order))
+    return form.A, form.B
 
 
 def inverse_spectrum(A: Array, B: Array) -> Eigenvalues:

@@ -8,6 +8,7 @@ are half changed.
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import partial
 from typing import NamedTuple
 
 
@@ -47,25 +48,22 @@ class _Part(NamedTuple):
         return SolvePosition(": ".join(filter(None, (self.name, inner.words))), share)
 
 
-_listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
+_listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
+"""Listeners, outer ones first, each with the number of parts that its `with` block lies in."""
 _parts: ContextVar[tuple[_Part, ...]] = ContextVar("parts", default=())
 
 
 @contextmanager
 def reporting_to(listener: Listener) -> Iterator[None]:
-    """Sends the reports of all solves in the `with` block to the listener, after any outer listeners."""
-    outer = _listener.get()
+    """Sends the reports of all solves in the `with` block to the listener, after any outer listeners.
 
-    def both(place: MakePosition) -> None:
-        if outer is not None:
-            outer(place)
-        listener(place)
-
-    token = _listener.set(both)
+    The listener receives positions within the block: parts outside the block do not precede its texts.
+    """
+    token = _listeners.set((*_listeners.get(), (listener, len(_parts.get()))))
     try:
         yield
     finally:
-        _listener.reset(token)
+        _listeners.reset(token)
 
 
 @contextmanager
@@ -84,15 +82,17 @@ def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]
 
 def report(place: MakePosition = SolvePosition) -> None:
     """Reports the position of the solve. Called without a position, it only marks a safe place to stop."""
-    listener = _listener.get()
-    if listener is not None:
-        listener(lambda: _in_whole(place()))
+    for listener, outside in _listeners.get():
+        listener(partial(_in_whole, place, outside))
 
 
-def _in_whole(place: SolvePosition) -> SolvePosition:
-    """Converts a position within the innermost part into a position within the whole solve."""
-    if not place.words:
-        return place
-    for outer in reversed(_parts.get()):
-        place = outer.of_whole(place)
-    return place
+def _in_whole(place: MakePosition, outside: int) -> SolvePosition:
+    """Position within the whole solve. place: within the innermost part. outside: number of outer parts of
+    which the whole solve is a part itself.
+    """
+    position = place()
+    if not position.words:
+        return position
+    for outer in reversed(_parts.get()[outside:]):
+        position = outer.of_whole(position)
+    return position

@@ -84,8 +84,8 @@ def pytest_configure(config):
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which need not be there
 def pytest_xdist_auto_num_workers(config):
-    """Two workers more than cores, four at most: some tests wait for other processes, or sleep."""
-    return min(len(os.sched_getaffinity(0)) + 2, 4)
+    """One worker more than cores, four at most: some tests wait, and each worker loads all of it."""
+    return min(len(os.sched_getaffinity(0)) + 1, 4)
 
 
 def pytest_collection_finish():

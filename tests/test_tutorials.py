@@ -6,11 +6,13 @@ import re
 import numpy as np
 import pytest
 from conftest import ROOT
+from surveyed import only
 
 CELL = re.compile(r"^```\{code-cell\} python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.]*\d)")
 """A number with a decimal point: whole numbers are chosen by the author, or lists."""
-PAGES = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+TUTORIALS = ROOT / "docs" / "tutorials"
+PAGES = sorted(page.stem for page in TUTORIALS.glob("*.md"))
 GIVEN = {"arm": {"0.1", "1.5"}, "filament": {"0.5", "37.69", "2.2"}}
 """Numbers of the text that others published, or that are input, by page."""
 
@@ -34,8 +36,9 @@ def is_printed(text, printed):
     return bool((np.abs(printed - float(text)) <= 0.501 * unit).any())
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", only(["filament"], PAGES))
 def test_every_number_of_a_tutorial_is_printed_by_its_cells(page, tmp_path, monkeypatch):
+    page = TUTORIALS / f"{page}.md"
     monkeypatch.chdir(tmp_path)
     printed = np.array(re.findall(r"-?\d+\.\d+(?:e[+-]?\d+)?", outputs_of(page)), float)
     prose = re.sub(r"^```.*?^```|\([^()]*\d{4}\)", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.integrate
 
 from rodsweep.arrays import Array
-from rodsweep.bench.limit_cycle.integrators import CAREFUL, Family, Leg, by_petsc
+from rodsweep.bench.limit_cycle.integrators import CAREFUL, IntegratorFamily, Leg, by_petsc
 from rodsweep.discretization.stress.rates import rate, rate_jacobian
 from rodsweep.solve.motion.integrator import Ending, Trajectory
 
@@ -78,21 +78,23 @@ def by_cvode(cvode: Any, tolerance: float, leg: Leg) -> Trajectory:
 
 RADAU = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 FAMILIES = (
-    Family("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-    Family("ARKIMEX 3", partial(by_petsc, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    Family("ARKIMEX 4", partial(by_petsc, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-    Family("BDF 5", partial(by_petsc, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-    Family("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
-    Family("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
-    Family("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    Family("SciPy Radau", partial(by_scipy, "Radau"), RADAU, (*RADAU[2:5], *CAREFUL[:4])),
-    Family("SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
+    IntegratorFamily("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    IntegratorFamily("ARKIMEX 3", partial(by_petsc, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("ARKIMEX 4", partial(by_petsc, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("BDF 5", partial(by_petsc, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    IntegratorFamily("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
+    IntegratorFamily("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
+    IntegratorFamily("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("SciPy Radau", partial(by_scipy, "Radau"), RADAU, (*RADAU[2:5], *CAREFUL[:4])),
+    IntegratorFamily("SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
 )
 """BDF 5 is at the edge of its stability until the tolerance is tight."""
 
 
-def families() -> tuple[Family, ...]:
+def families() -> tuple[IntegratorFamily, ...]:
     """All that can be run here."""
     module = installed(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
-    return FAMILIES + ((Family(CVODE, partial(by_cvode, module), ladder, CAREFUL),) if module else ())
+    return FAMILIES + (
+        (IntegratorFamily(CVODE, partial(by_cvode, module), ladder, CAREFUL),) if module else ()
+    )

@@ -16,7 +16,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.spectrum.own_solvers import ORDERS, PENCIL, WANTED_MODES, leading, mesh_of, shift_of
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.newton import refined
-from rodsweep.discretization.straight.pencil import SHEAR_WEIGHT, assemble
+from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
 
 from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices
@@ -26,7 +26,7 @@ def dense_qz(rod: Rod, size: int) -> Eigenvalues:
     """LAPACK's QZ (ggev), eigenvalues only; s at full weight, as its rounding needs."""
     A, B = whole_matrices(rod, mesh_of(size))
     scale = np.ones(len(B))
-    scale[2 * len(B) // 3 :] = SHEAR_WEIGHT
+    scale[2 * len(B) // 3 :] = PENCIL_NORM.shear_weight
     return leading(qz(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
 
 

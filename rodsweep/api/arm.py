@@ -27,7 +27,8 @@ EXCLUSIVE = (
     (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of exclusive sets of quantities: setting one set removes the other."""
+"""Pairs of exclusive sets of quantities: setting a quantity of either set removes the quantities of the
+opposite set."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
@@ -62,8 +63,8 @@ class Arm(SlenderArm):
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
-        """A copy with other quantities. A force replaces a pressure, width and height replace a radius, and
-        segments replace both, and the length.
+        """A copy with changed quantities. A force replaces a pressure; width and height replace a radius;
+        segments replace radius, width, height and length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE:
@@ -125,13 +126,15 @@ class Arm(SlenderArm):
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
             if name in self._names:
-                raise InputError(f"{name} belongs to the arm: arm.replace({name}=...) is another one")
+                raise InputError(
+                    f"{name} is a quantity of the arm, no option; arm.replace({name}=...) makes another arm"
+                )
         options = dict(options)
         progress = options.pop("progress", None)
         takes_load = "F" in CONFIGS[task].taken_of_a_rod(options)
         if takes_load and self.load is None:
             raise InputError(
-                f"{task} needs a load; arm.replace(pressure='2 kPa') has one, or '1.2 of flutter'"
+                f"{task} needs a load; give one by arm.replace(pressure='2 kPa'), or '1.2 of flutter'"
             )
         data, messages = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
         return Answer(repr(self), data, "; ".join(filter(None, (messages[0], self._plane))))

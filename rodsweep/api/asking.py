@@ -60,7 +60,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _write_out_arm(task: str, tree: Tree) -> None:
-    """Replaces an `rs.Arm` by its quantities. The load is included only if the task takes one."""
+    """Replaces an `rs.Arm` by the arm's quantities. The load is included only if the task takes a load."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):

@@ -1,4 +1,4 @@
-"""Results as xarray Datasets, the same from a file as from points solved in this process."""
+"""Results as xarray Datasets, equal for a file and for points solved in this process."""
 
 import json
 import os
@@ -99,12 +99,13 @@ def _loaded(path: Path, header: Header) -> xr.Dataset:
         found = json.loads(_sealed(data).attrs[SEAL])["variables"]
         for name, digest in sealed.items():
             if found.get(name) != digest:
-                raise ValueError(f"its variable {name} is not read as rodsweep wrote it")
+                raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
     return data
 
 
 def _sealed(data: xr.Dataset) -> xr.Dataset:
-    """Adds checksums, by which a file written from this Dataset by xarray is recognised as complete."""
+    """Adds checksums. After xarray has written this Dataset to a file, readers recognise by the checksums
+    that the file is complete."""
     variables = {
         str(name): variable_digest(
             v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]

@@ -12,7 +12,7 @@ class OfEveryTask(TypedDict, total=False):
     accuracy: float
     title: str
     progress: bool | None
-    """Whether to display progress; None displays it only in a terminal or a notebook. No config key."""
+    """Whether to display progress; None displays progress only in a terminal or a notebook. No config key."""
 
 
 class OfSpectrum(OfEveryTask, total=False):

@@ -17,9 +17,9 @@ from ..config.tasks import CONFIGS
 from ..config.values import as_number, short
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
+from ..model.arm.as_rod import material_of, parameters_of
 from ..model.material.build import STANDARD
-from ..model.material.profile import FACTORS
-from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
 from .asking import job_from, known_load, tree_of
@@ -73,7 +73,7 @@ class SoftRod:
         if arm is not None:
             given = _of_arm(arm) | given
             beside = {name: value for name, value in material.items() if value is not None}
-            material = _build_of(arm) | beside
+            material = material_of(arm) | beside
         for name in REQUIRED:
             if name not in given:
                 raise InputError(f"parameters.{name} is missing; give {words(REQUIRED, 'and')}")
@@ -137,25 +137,23 @@ class SoftRod:
     def portrait(
         self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
     ) -> "RodPortrait":
-        """Everything about the rod up to `F_max`, in one picture and one paragraph.
+        """All results for the rod up to `F_max`, in a picture and a paragraph.
 
         Thresholds, criticality, branches of cycles, ranges with two stable states, modes at the thresholds,
-        and three cycles. A result that cannot be solved has its reason in its place.
+        and three cycles. Instead of a result that cannot be solved, the portrait states the reason.
         """
+        from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest
         from .answers.rod_portrait import portrait_of
 
-        request = PortraitRequest(
-            parameters=self._values, F_max=F_max, accuracy=accuracy, material=self._given_material
-        )
+        own = DescribedRod(parameters=self._values, material=self._given_material)
+        request = PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy)
         return portrait_of(repr(self), request, progress)
 
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
-            """A method for every task of one rod without a method of its own; AttributeError for unknown
-            names.
-            """
+            """The method of a task that this class does not define; AttributeError for unknown names."""
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
@@ -166,7 +164,9 @@ class SoftRod:
             raise InputError(f"{task} is a task of several rods; use rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
-                raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+                raise InputError(
+                    f"{name} is a parameter of the rod, no option; rod.replace({name}=...) makes another rod"
+                )
         section: Any = CONFIGS[task].model_fields[task].annotation
         known = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:
@@ -217,21 +217,7 @@ def _of_arm(arm: object) -> dict[str, Any]:
     """Rod parameters of an arm, without F for an arm without load."""
     if not isinstance(arm, SlenderArm):
         raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
-    known = known_load(arm)
-    names = [name for name in NONLINEAR_PARAMETERS if name != "F" or known.load is not None]
-    names += ["taper"] if known.taper != 1 else []
-    return {name: known.parameter(name) for name in names}
-
-
-def _build_of(arm: SlenderArm) -> dict[str, Any]:
-    """Law, section and profile of an arm as keys of `material`, None where they are the default."""
-    build, profile = arm.build, arm.build.profile
-    columns = None if profile is None else dict(zip(FACTORS, zip(*profile.rows, strict=True), strict=True))
-    return {
-        "law": None if build.law == STANDARD.law else build.law,
-        "section": None if build.section == STANDARD.section else build.section,
-        "profile": None if profile is None or columns is None else {"u": profile.u, **columns},
-    }
+    return parameters_of(known_load(arm))
 
 
 def _number(name: str, value: Any) -> float:

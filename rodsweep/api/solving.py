@@ -1,7 +1,8 @@
-"""Solves all points of a job one after another in this process, without files and without ranks."""
+"""Solves all points of a job in sequence in this process, without files and without MPI."""
 
 import socket
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,13 @@ from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
-from ..sweep.listener import RankListener
 from ..sweep.points.shards import Shard
 from ..tasks.protocol import AllPoints, Arrays, Solver
 from ..tasks.running.in_memory import blas, blas_kernels, view_in_memory
 from ..tasks.running.job import Job
 from ..tasks.running.plan import plan_of
 from ..tasks.running.unforeseen import Note, guarded
-from ..watch import reporting_to
+from ..watch import part, reporting_to
 from .answers.showing import Display, display, listener
 from .dataset import dataset_of
 
@@ -89,10 +89,11 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
 
 
 def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
-    """Variables that all points together determine."""
+    """Variables that need all points, for example curves."""
     units, results = together.units(view), dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
-        with reporting_to(listener(shown, units.where(wanted[0]))):
+        name = units.where(wanted[0])
+        with part(name), reporting_to(listener(shown, name)):
             results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)
 
@@ -101,12 +102,16 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     """Every point's index with its outcome; along a chain each point starts from the previous solution."""
     done = 0
 
-    def place() -> RankListener:
-        return listener(shown, f"point {done + 1} of {count}" if count > 1 else "")
+    @contextmanager
+    def reported() -> Iterator[None]:
+        """Names the next point to the display, and to the listeners of the caller."""
+        name = f"point {done + 1} of {count}" if count > 1 else ""
+        with part(name, (done / count, (done + 1) / count)), reporting_to(listener(shown, name)):
+            yield
 
     if solver.chained is None:
         for done in range(count):
-            with reporting_to(place()):
+            with reported():
                 outcome = solver.solve(done)
             yield done, outcome
         return
@@ -114,7 +119,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):
-            with reporting_to(place()):
+            with reported():
                 outcome, state = solve_from(index, state)
             done += 1
             yield index, outcome

@@ -98,7 +98,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
 
 
 def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
-    """Runs a command in a directory and shows its progress; returns its exit status and standard error."""
+    """Runs a command in a directory and shows the progress; returns exit status and standard error."""
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
         words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True

@@ -1,6 +1,6 @@
-"""Options of the command `arm`: quantities with units, segments, and the law."""
+"""Options of the commands `arm` and `portrait`: quantities with units, segments, and the law."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import click
@@ -34,14 +34,28 @@ OF_MATERIAL: dict[str, dict[str, Any]] = {
 """Options of shape and material that are no quantities."""
 
 
-def arm_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options of all quantities to a command."""
-    for name in reversed(UNITS):
-        meaning = QUANTITIES[name].meaning
-        help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
-        option = "--" + name.replace("_", "-")
-        add = click.option(option, name, metavar="QUANTITY", required=QUANTITIES[name].needed, help=help_text)
-        command = add(command)
-    for option, settings in reversed(OF_MATERIAL.items()):
-        command = click.option(option, **settings)(command)
-    return command
+Command = Callable[..., Any]
+
+
+def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Callable[[Command], Command]:
+    """A decorator that adds the options of all quantities but those left out to a command.
+
+    is_needed: whether the command refuses to run without an arm.
+    """
+
+    def add_options(command: Command) -> Command:
+        for name in reversed([name for name in UNITS if name not in left_out]):
+            command = _quantity_option(name, is_needed and QUANTITIES[name].needed)(command)
+        for option, settings in reversed(OF_MATERIAL.items()):
+            command = click.option(option, **settings)(command)
+        return command
+
+    return add_options
+
+
+def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
+    """The option of a quantity."""
+    meaning = QUANTITIES[name].meaning
+    help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
+    option = "--" + name.replace("_", "-")
+    return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)

@@ -24,7 +24,7 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
     try:
         report = report_on(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
     except InputError as error:
-        raise InputError(_as_options(str(error))) from None
+        raise InputError(as_options(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)
     for line, kind in report.lines():
         console.print(line, markup=False, style=STYLES.get(kind, ""))
@@ -35,7 +35,7 @@ NAMED = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
 """A quantity at the beginning of a sentence, or the second of two that are given."""
 
 
-def _as_options(sentence: str) -> str:
+def as_options(sentence: str) -> str:
     """A sentence with the names of options in place of those of quantities."""
     named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence).replace(
         "--segments", "--segment"

@@ -1,4 +1,5 @@
-"""Work of all ranks before the result file is created: what no point is needed for, and what points need."""
+"""Work of all ranks before the result file is created: variables that need no points, and data that all
+points need."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +27,7 @@ class _SharedWork:
     """Whether this rank has left out an item."""
 
     def in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
-        """Results for all items, in order, on every rank; None for an item that is left out."""
+        """Results for all items, in order, on every rank; None for an omitted item."""
         return self.team.in_order(items, lambda item: self._unless_stopped(work, item))
 
     def _unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
@@ -40,16 +41,16 @@ class _SharedWork:
 
 
 def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
-    """The plan with its constants, computed by all ranks together; None if a stop signal came first."""
+    """The plan with constants computed by all ranks together; None if a stop signal came first."""
     shared = _SharedWork(team, stop)
     found = task.constants(shared.in_order)
     return None if shared.stopped else replace(plan, constants=lambda: found)
 
 
 def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
-    """Flutter of the rods whose load is relative to it, searched for by all ranks together.
+    """Flutter forces of rods with a load relative to flutter, searched by all ranks together.
 
-    Empty without such loads. None if a stop signal came first.
+    Empty if no load is relative to flutter. None if a stop signal came first.
     """
     rods = team.on_first(lambda: flutter_rods(config))
     if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together

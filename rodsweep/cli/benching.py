@@ -1,4 +1,4 @@
-"""The command `bench`: runs the benchmarks, prints their text, writes their numbers and figures."""
+"""The command `bench`: runs the benchmarks, prints text, writes numbers and figures."""
 
 import sys
 from collections.abc import Callable
@@ -21,9 +21,9 @@ equal accuracy. An HDF5 file beside the text has every number with all settings.
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
-    """Runs one benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png.
+    """Runs a benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png.
 
-    directory: folder of the peers; None for the folder `benchmarks` of the running checkout.
+    directory: folder of the peers, by default the folder `benchmarks` of the running checkout.
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study

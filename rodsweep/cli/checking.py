@@ -1,4 +1,4 @@
-"""Output of `rodsweep check`: the points, what is modelled and what is neglected, and the cost."""
+"""Output of `rodsweep check`: the points, modelled and neglected effects, and the cost."""
 
 from dataclasses import replace
 
@@ -52,9 +52,7 @@ def describe_job(job: Job) -> None:
 
 
 def _arm_lines(job: Job) -> list[str]:
-    """Lines on an arm: its quantities, its parameters and unit of time, and the validity of the model at
-    rest.
-    """
+    """Lines on an arm: quantities, parameters, unit of time, and the validity of the model at rest."""
     arm = job.config.parameters.arm
     assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
@@ -83,6 +81,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     if arm.inner_radius is None:
         return []
     names = ("length", "radius", "inner_radius", "poisson")
+    # Only poisson may be missing; its default is that of rubber.
     values = [arm.given[name].array() if name in arm.given else np.array([0.5]) for name in names]
     length, radius, bore, poisson = np.meshgrid(*values)
     tubes = bore < radius

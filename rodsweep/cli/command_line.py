@@ -31,11 +31,20 @@ def commands(context: click.Context) -> None:
 
 @commands.command()
 @click.argument("config", type=FILE)
-@click.option("-o", "--output", type=FILE, help="Result file; by default CONFIG's name with .h5, here.")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    help="Result file; by default CONFIG's name with .h5, in the working directory.",
+)
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
-@click.option("--extend", is_flag=True, help="Add to a result file whose config this one contains.")
-@click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
+@click.option(
+    "--extend", is_flag=True, help="Extend a result file; CONFIG must contain all points of the file."
+)
+@click.option(
+    "--shard", metavar="I/N", default="1/1", help="Compute only part I of N; `merge` joins the parts."
+)
 @click.option("--strict", is_flag=True, help="End the run at the first exception that is a bug.")
 @click.option("-q", "--quiet", is_flag=True, help="Print problems only; show no progress.")
 def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: str, **options: bool) -> None:
@@ -63,24 +72,24 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("output", type=FILE)
 @click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
-    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that make a larger one."""
+    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
     from .merging import merge_files
     from .run.running import CONTINUE
 
     output = result_file(output)
     merged = merge_files(output, tuple(map(followed, shards)))
     if merged.missing:
-        click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
+        click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(CONTINUE)
     if not merged.finished:
-        click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that all points together determine")
+        click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 
 @commands.command()
 @click.argument("file", type=FILE)
 @click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
-    """Write the points of the result FILE that are done so far, without disturbing the run."""
+    """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.recent import take_snapshot
 
     output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
@@ -238,7 +247,7 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 
 
 @commands.command()
-@arm_options
+@arm_options()
 @click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
 def arm(poisson: float, segment: tuple[str, ...], **quantities: str | None) -> None:
     """Print when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""

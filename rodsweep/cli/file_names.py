@@ -21,7 +21,7 @@ def result_file(path: Path) -> Path:
 
 
 def beside(file: Path, ending: str) -> Path:
-    """A file name beside `file`: its stem with another ending; InputError for a directory."""
+    """The name of `file` with a different ending, in the same folder; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
     return file.with_name(file.stem + ending)

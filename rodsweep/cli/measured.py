@@ -29,10 +29,10 @@ far."""
 
 @dataclass(frozen=True, slots=True)
 class InstantSpectra(SpectrumTask):
-    """The task spectrum with random outcomes from a table: all measured time belongs to the sweep.
+    """The task spectrum with random outcomes from a table, so that all measured time belongs to the sweep.
 
-    killed: directory in which the rank of the last point notes its memory before being killed; None to
-    finish.
+    killed: directory in which the rank of the last point notes its memory before the kill; None for a run
+    without a kill.
     """
 
     killed: Path | None = None

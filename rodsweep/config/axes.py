@@ -34,10 +34,10 @@ class Axes(LinearAxes):
     ] = None
     """Optional parameters among the columns of `points`; by default those in the header of the file."""
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
-    """An arm in SI units. A parameter given beside it replaces the arm's value."""
+    """An arm in SI units. A parameter given beside the arm replaces the arm's value."""
 
     of_arm: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-    """Parameters that an arm, or the axes beside it, may provide."""
+    """Parameters that an arm, or axes beside the arm, may provide."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are rows of a phase diagram, which need a grid of parameters."""
 
@@ -93,7 +93,7 @@ class Axes(LinearAxes):
 
     @property
     def alone(self) -> dict[str, int]:
-        """Number of values of each parameter along an axis that changes no other parameter."""
+        """Number of values of each parameter that has an axis to itself."""
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes

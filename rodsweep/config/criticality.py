@@ -29,8 +29,8 @@ class CriticalityConfig(Config):
     task: Literal["criticality"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
-    """Relative error of each Hopf point, of the slope of its eigenvalue and of its Landau coefficient. The
-    amplitude coefficient and the frequency slope follow from these; the file holds error estimates of all."""
+    """Relative error of each Hopf point, of the eigenvalue's slope and of the Landau coefficient. The errors
+    of the amplitude coefficient and of the frequency slope follow; the file holds all error estimates."""
     criticality: CriticalityOptions = CriticalityOptions()
 
     of_cycles: ClassVar[bool] = True

@@ -15,7 +15,7 @@ Along = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF, LONGEST)
 
 
 class LimitCycleOptions(Strict):
-    """Start of each point, limits of its computation, and stored data of its cycle."""
+    """Start of each point, limits of the computation, and stored data of the cycle."""
 
     method: Literal["collocation", "integration"] = "collocation"
     """Cycles by collocation in time, with multipliers, or by time integration alone, without multipliers."""
@@ -24,8 +24,8 @@ class LimitCycleOptions(Strict):
     start: Literal["mode", "neighbour", "hopf"] = "mode"
     """Start of each point: the leading mode, a neighbour's cycle, or the Hopf point."""
     along: Along = LONGEST
-    """Parameter along which neighbours follow each other, or a quantity of the arm that changes only this
-    parameter; `longest` is the parameter with most values."""
+    """Parameter along which each point starts from the previous point's cycle, or a quantity of the arm that
+    changes only this parameter; `longest`: the parameter with most values."""
     direction: Literal["up", "down"] = "up"
     """Whether the parameter `along` increases or decreases from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
@@ -45,7 +45,7 @@ class LimitCycleOptions(Strict):
 
 
 class LimitCycleConfig(Config):
-    """The limit cycle of the nonlinear rod at every point, or the fact that none exists."""
+    """The limit cycle of the nonlinear rod at every point, or the fact that the rod has no limit cycle."""
 
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
@@ -58,10 +58,11 @@ class LimitCycleConfig(Config):
 
     @property
     def along(self) -> str:
-        """Parameter along which neighbours follow each other: by default the first parameter with most
-        values.
+        """Parameter along which each point starts from the previous point's cycle: by default the first
+        parameter with most values.
         """
-        sizes, given = self.parameters.alone, self.limit_cycle.along
+        sizes = self.parameters.alone
+        given = self.limit_cycle.along
         if given == LONGEST:
             return max(sizes, key=lambda name: sizes[name], default=given)
         return AXIS_OF.get(given, given)
@@ -74,10 +75,11 @@ class LimitCycleConfig(Config):
             found |= dict.fromkeys(("along", "direction"), "start: neighbour")
         if options.method == "integration":
             found |= dict.fromkeys(("start", "along", "direction", "transient"), "method: collocation")
-            return found if options.shapes else found | {"nodes": "shapes"}
-        if options.start == "hopf":
+        elif options.start == "hopf":
             found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
-        return found if options.shapes else found | {"nodes": "shapes"}
+        if not options.shapes:
+            found["nodes"] = "shapes"
+        return found
 
     @property
     def meaning(self) -> dict[str, Any]:
@@ -89,7 +91,8 @@ class LimitCycleConfig(Config):
     def _only_what_is_used(self) -> "LimitCycleConfig":
         self.parameters.require(self.names)
         self.refuse_unused()
-        arm, along = self.parameters.arm, self.limit_cycle.along
+        arm = self.parameters.arm
+        along = self.limit_cycle.along
         if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.given}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or one of "

@@ -24,7 +24,7 @@ Column = Annotated[
 
 
 class ProfileTable(Strict):
-    """Factors along the arm: columns of one length. A column that is left out is 1 all along the arm."""
+    """Factors along the arm: columns of equal length. An omitted column is 1 along the whole arm."""
 
     u: Annotated[list[Number], Field(max_length=MOST_ROWS, description="a list of numbers from 0 to 1")]
     """Material coordinate, from 0 at the base to 1 at the tip, not decreasing; a value twice is a jump."""
@@ -43,7 +43,7 @@ class ProfileTable(Strict):
 
     @cached_property
     def profile(self) -> Profile:
-        """The profile; ValueError for a table that is none."""
+        """The profile; ValueError for a table that describes no profile."""
         given = {name: getattr(self, name) for name in FACTORS}
         ones = [1.0] * len(self.u)
         columns = {name: ones if column is None else column for name, column in given.items()}
@@ -64,12 +64,12 @@ def _or_file(schema: dict[str, Any]) -> None:
 
 
 class MaterialSection(Strict):
-    """Constitutive law of the arm, and how the arm varies along its length."""
+    """Constitutive law of the arm, and its variation along the length."""
 
     law: LawName = "linear"
     """Constitutive law: stress proportional to strain, or incompressible neo-Hookean rubber."""
     section: SectionName = "fixed"
-    """Whether the cross-section keeps its size or swells as the arm shortens."""
+    """Whether the cross-section keeps a fixed size or swells as the arm shortens."""
     profile: Annotated[
         ProfileTable | None,
         Field(
@@ -92,9 +92,9 @@ class MaterialSection(Strict):
 
 
 def with_profile_read(tree: Any, directory: Path) -> Any:
-    """A config's tree with the file that `material.profile` names replaced by its columns.
+    """A config's tree with the file name in `material.profile` replaced by the columns of the file.
 
-    directory: where the name of the file begins. Raises InputError for a file that is no table of numbers.
+    directory: folder of a relative file name. Raises InputError for a file that is no table of numbers.
     """
     if not isinstance(tree, dict) or not isinstance(tree.get("material"), dict):
         return tree
@@ -105,7 +105,7 @@ def with_profile_read(tree: Any, directory: Path) -> Any:
 
 
 def read_profile(path: Path) -> dict[str, list[float]]:
-    """The columns of a profile's CSV file, by the names in its header; InputError if it has none."""
+    """The columns of a profile's CSV file, by the names in the header; InputError without a header."""
     where = f"material.profile: {path}"
     try:
         if not path.is_file():

@@ -17,7 +17,7 @@ THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 
 
 class BautinAlong(LinearAxes):
-    """One parameter with values, over which generalised Hopf points are followed."""
+    """A parameter with values, over which generalised Hopf points are followed."""
 
 
 class PhaseDiagramOptions(Strict):
@@ -35,7 +35,7 @@ class PhaseDiagramOptions(Strict):
     """Follow the cycles of each row, for the stable states and, with `curves`, the curves of their folds."""
     cycle_accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-6
     """Relative error of the period and of the largest y of each cycle; needs `cycles`. Special points are
-    located to the smaller of `cycle_accuracy` and 1e-9. A smaller number decides more states."""
+    located to the smaller of `cycle_accuracy` and 1e-9. A smaller number leaves fewer states undecided."""
     bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
         None
     )

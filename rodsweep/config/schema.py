@@ -38,28 +38,28 @@ class Config(Strict):
     of_cycles: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
     into_crushed: ClassVar[bool] = False
-    """Whether a grid may contain crushed rods, because they are one of the task's states."""
+    """Whether a grid may contain crushed rods, because `crushed` is a state of the task."""
 
     others_may_be_needed: ClassVar[bool] = False
-    """Whether the options of the task decide which parameters are needed."""
+    """Whether the needed parameters depend on the options of the task."""
     of_several_rods: ClassVar[bool] = False
     """Whether the task needs several rods."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters of a point of the sweep: what the task needs, and what the config adds."""
+        """Parameters of a point of the sweep: needed by the task, or added by the config."""
         return (*self.taken_of_a_rod({}), *self.added)
 
     @property
     def added(self) -> tuple[str, ...]:
-        """Optional parameters that the config gives, by name or by the shape of its arm."""
+        """Optional parameters given in the config, by name or by the shape of the arm."""
         arm = self.parameters.arm
         made = () if arm is None else arm.tapering
         return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.optional or n in made)
 
     @property
     def stated_build(self) -> Build | None:
-        """Law and profile of the section `material`; None without that section."""
+        """Law and profile of the section `material`; None without such a section."""
         return None if self.material is None else self.material.build
 
     @property

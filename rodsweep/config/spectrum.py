@@ -26,7 +26,7 @@ class SpectrumOptions(Strict):
     follow: bool = True
     """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
     longitudinal: bool = False
-    """Add the longitudinal modes: of a uniform rod of linear material -(k1/gamma1) (pi (n - 1/2))^2."""
+    """Add the longitudinal modes: -(k1/gamma1) (pi (n - 1/2))^2 for a uniform rod of linear material."""
 
 
 class SpectrumConfig(LinearConfig):
@@ -76,7 +76,7 @@ class SpectrumConfig(LinearConfig):
         self.parameters.require(self.names)
         if "gamma1" in self.parameters.numbers and not self.spectrum.longitudinal:
             raise ValueError(
-                "parameters.gamma1 is given but not used: the transverse spectrum does not contain it; "
+                "parameters.gamma1 is given but not used: the transverse spectrum does not depend on it; "
                 "remove it or set spectrum.longitudinal: true"
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:

@@ -15,8 +15,8 @@ class ThresholdsOptions(Strict):
     """Range of the search, and the number of crossings that are stored."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
-    """Largest force of the search, which ends just below the force that crushes the arm if that is smaller,
-    k1 for a uniform rod of linear material."""
+    """Largest force of the search. If the arm is crushed at a smaller force (k1 for a uniform rod of linear
+    material), the search ends just below the crushing force."""
     crossings: Crossings = 16
     """Maximum number of stored crossings."""
     certify: bool = True

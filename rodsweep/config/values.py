@@ -61,7 +61,8 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """Text with its control characters escaped as `\\x1b` and such, because a terminal would obey them."""
+    """Text with control characters escaped, for example as `\\x1b` and such, because a terminal would obey
+    control characters."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
@@ -109,7 +110,7 @@ DIGITS_OF_QUANTITY = 15
 
 
 class Axis(Strict):
-    """Values of one parameter: one number, a list, or `num` values from start to stop."""
+    """Values of a parameter: a number, a list, or `num` values from start to stop."""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, *_: Any) -> dict[str, Any]:
@@ -212,7 +213,7 @@ def _range(value: dict) -> Axis:
 
 
 def axis_of(resolved: dict[str, Any]) -> Axis:
-    """The axis in a resolved config; ValueError or TypeError if it is none."""
+    """The axis in a resolved config; ValueError or TypeError if the value is no axis."""
     values = resolved.get("values")
     return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_number, values))}))
 

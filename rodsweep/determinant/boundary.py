@@ -18,12 +18,16 @@ from .parameter_plane import PLANE, STENCIL, Plane
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundarySettings:
-    """Newton's method for a point of a boundary curve."""
+    """Settings of Newton's method for a point of a boundary curve."""
 
     max_steps: int = 12
     """Maximum Newton steps of a correction; beyond, the correction has failed."""
     longest_step: float = 0.5
     """Largest Newton step, in units of the axes' lengths and of h, before the correction counts as failed."""
+    converged: float = 4.0
+    """Newton step, in units of the rounding error, at which the correction has converged."""
+    singular: float = 1e-300
+    """Determinant of the matrix below which it is singular; far below that of any regular matrix."""
     stagnation: float = 1e-10
     """A Newton step below this that did not halve is rounding error: the correction has converged."""
 
@@ -80,14 +84,14 @@ class Boundary:
                 return None
             matrix = np.vstack([jacobian, normal])
             right = np.append(-residual, -normal @ (v - guess))
-            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < 1e-300:
+            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < BOUNDARY.singular:
                 return None
             inverse = np.linalg.inv(matrix)
             step = inverse @ right
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
             size = float(np.abs(step).max())
             v = v + step
-            if size <= 4 * error or (size < BOUNDARY.stagnation and size > last / 2):
+            if size <= BOUNDARY.converged * error or (size < BOUNDARY.stagnation and size > last / 2):
                 return OnBoundary(v, jacobian, max(error, size))
             if size > BOUNDARY.longest_step or not np.isfinite(v).all():
                 return None

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .exponents import Hyperbolic, entire_cosh, exponents, hyperbolic, modulus
+from .exponents import LEAST_DIVISOR, Hyperbolic, entire_cosh, exponents, hyperbolic, modulus
 
 UNIT = 4.440892098500626e-16
 """Unit of the noise of s, d and D: two relative rounding errors."""
@@ -169,7 +169,7 @@ def _noise_by_squares(
             blur = (blur_product + z * blur_large) / large
             blur_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
             blur_slope = blur_slope / large + steep * blur_large / large
-        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, 1e-300))
+        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, LEAST_DIVISOR))
         noise += bound * (blur_slope + steep * (1 + q / 4 + blur / 2 / max(1.0, q)))
     return noise
 
@@ -246,6 +246,7 @@ def by_series(
         power_minus = minus * power_minus
         pair = minus * pair + power_plus
         s += factor * (power_plus + power_minus)
+    # Bounds of the first terms of the series, times the rounding errors of M and P^2.
     noise_s = size * (1 + blur_M / 10 + blur_square / 80)
     noise_d = size * (0.1 + blur_M / 300 + blur_square / 8000)
     return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d

@@ -10,6 +10,8 @@ from typing import NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 
+LEAST_DIVISOR = 1e-300
+"""Smallest modulus of a divisor: far below all numbers here that are not 0, and its inverse is finite."""
 E_SERIES_BELOW = 0.1
 """abs(z) below which E is a series, because the closed form of dE/dz would cancel."""
 FEW_TERMS_BELOW = 0.25

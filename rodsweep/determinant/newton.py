@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
+from .exponents import LEAST_DIVISOR
 from .parameter_path import coefficients_at, determinant_along
 from .value import ROUND_OFF, scaled_determinant
 
@@ -23,6 +24,8 @@ LAST_NEWTON_STEP = 4.0
 """Step, in units of the rounding error, at which the iteration has converged."""
 JACOBIAN_STEP = 1e-5
 """Relative step of the differences in the Jacobian, which need not be accurate."""
+STAGNANT_STEP = 1e-9
+"""Relative step of p below which a step that did not halve is rounding error: the iteration has converged."""
 REAL_BELOW = 1e-14
 """Relative imaginary part below which an eigenvalue is real: the size of rounding errors."""
 
@@ -67,7 +70,7 @@ def crossing_newton(
         eta += in_eta
         p += in_p
         if (abs(in_eta) <= LAST_NEWTON_STEP * e_eta and abs(in_p) <= LAST_NEWTON_STEP * e_p) or (
-            step > last / 2 and step * scale[1] < 1e-9 * abs(p)
+            step > last / 2 and step * scale[1] < STAGNANT_STEP * abs(p)
         ):
             return Zero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
@@ -100,7 +103,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         in_p = (D_ww * D - D_w * D_w) / cross
         blur = noise + ROUND_OFF * abs(p * D_p)
         e_p = blur * abs(D_ww) / abs(cross)
-        e_x = (blur * abs(D_wp) + noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
+        e_x = (blur * abs(D_wp) + noise / max(abs(x), LEAST_DIVISOR) * abs(D_p)) / abs(cross)
         x += in_x
         p += in_p
         if not abs(p - first) <= 2 * reach or not x * start > 0:

@@ -14,7 +14,7 @@ from .value import ROUND_OFF, Value, scaled_determinant
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneSettings:
-    """Differences along the scaled axes of a plane of two parameters."""
+    """Settings for the differences along the scaled axes of a plane of two parameters."""
 
     beyond_an_end: float = 1e-12
     """Distance beyond the end of a scaled axis that counts as rounding error."""

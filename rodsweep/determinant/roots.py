@@ -31,6 +31,9 @@ ON_THE_AXIS = 1e-13
 """Relative real part below which an eigenvalue counts as imaginary, whatever its error estimate."""
 BLURRED = 1e-11
 """Relative Newton correction above which a double root is checked for."""
+SEPARATED = 16.0
+"""|D'|^2 in units of e |D''| from which the Newton correction is valid: the next root, at 2 |D'/D''|, is then
+32 errors away."""
 SAME_ROOT = 4.0
 """Distance of two roots, over the sum of their errors, below which the two may be equal."""
 
@@ -66,7 +69,7 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
         D, D1, S, noise = scaled_determinant(w, coefficients)
         e = max(abs(D), TYPICAL_NOISE * noise)
         second = abs(second_derivative(w, S, coefficients))
-        if abs(D1) ** 2 < 16 * e * second:
+        if abs(D1) ** 2 < SEPARATED * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
     return error, length, wave
@@ -82,7 +85,12 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
     if middle.imag == 0:
         D = complex(D.real, 0.0)
         D1 = complex(D1.real, 0.0)
-    D2 = second_derivative(middle, S, coefficients)
+    return roots_of_parabola(middle, D, D1, second_derivative(middle, S, coefficients))
+
+
+@compiled
+def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
+    """The two roots of the Taylor polynomial about `middle` with value D, slope D1 and curvature D2."""
     if D2 == 0:
         return middle, middle
     root = cmath.sqrt(D1 * D1 - 2 * D * D2)

@@ -25,8 +25,8 @@ MAX_ZEROS_PER_MODE = 6
 class ForceChange(NamedTuple):
     """A change of stability. `kind` is a word of `rodsweep.results.layouts.thresholds`.
 
-    F, error: force of the change and its absolute error estimate, in k3/L^2. growth_rate, frequency: of the
-    eigenvalues that change, in 1/tau2.
+    F, error: force of the change and its absolute error estimate, in k3/L^2. growth_rate, frequency: parts of
+    the eigenvalues that change, in 1/tau2.
     """
 
     kind: str

@@ -25,14 +25,17 @@ from typing import NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
-from .exponents import exponents
+from .exponents import LEAST_DIVISOR, exponents
 
 ROUND_OFF = 2.220446049250313e-16
 """Spacing of doubles at 1."""
 TYPICAL_NOISE = 0.1
 """Typical rounding error of D in units of `noise`: the upper quartile; median 0.05, maximum 0.7."""
+IN_PLACE_OF_0 = 1e-200
+"""w, in 1/tau2, in place of 0: D - 1 is below rounding there, and no formula divides by 0."""
 SECOND_STEP = 1e-4
-"""Step of the difference for D'', in units of |w|."""
+"""Step of the difference for D'', in units of |w|; its relative error is about the square, enough to tell a
+double root from two roots."""
 
 
 class Value(NamedTuple):
@@ -69,9 +72,9 @@ def branches(w: complex, coefficients: Coefficients) -> Branches:
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> Value:
-    """D and D' at w; w = 0 is replaced by 1e-200, where D is 1 too."""
+    """D and D' at w; w = 0 is replaced by IN_PLACE_OF_0, where D is 1 too."""
     if w == 0:
-        w = complex(1e-200, 0.0)
+        w = complex(IN_PLACE_OF_0, 0.0)
     return from_parts(w, coefficients, even_parts(w, coefficients))
 
 
@@ -88,12 +91,18 @@ def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
 
 
 @compiled
+def second_difference(after: Value, before: Value, S: float, h: float) -> complex:
+    """D'' exp(-S) by the central difference of D' a step h beyond and before a point."""
+    return (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
+
+
+@compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) at w, by a central difference of D'; real for real w."""
     h = SECOND_STEP * abs(w)
     after = scaled_determinant(w + h, coefficients)
     before = scaled_determinant(w - h, coefficients)
-    second = (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
+    second = second_difference(after, before, S, h)
     return complex(second.real, 0.0) if w.imag == 0 else second
 
 
@@ -101,7 +110,7 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 def distance_to_next(w: complex, coefficients: Coefficients) -> float:
     """Estimated distance 2 |D'/D''| from an eigenvalue w to the next; accurate for close eigenvalues."""
     here = scaled_determinant(w, coefficients)
-    return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), 1e-300)
+    return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), LEAST_DIVISOR)
 
 
 @compiled
@@ -114,7 +123,7 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
-    error = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), 1e-300)
+    error = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), LEAST_DIVISOR)
     P, P1, _, plus, minus = branches(w, coefficients)
     root_plus = math.sqrt(abs(plus))
     root_minus = math.sqrt(abs(minus))
@@ -122,4 +131,4 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     # D is even in P: for z+ close to z- the branch point of P does not affect D, and P' is limited.
     P1 *= min(1.0, abs(P) / max(1.0, root_plus, root_minus))
     fast = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
-    return error, 2 / max(fast, 1e-300), (root_plus + root_minus) / 2
+    return error, 2 / max(fast, LEAST_DIVISOR), (root_plus + root_minus) / 2

@@ -3,7 +3,8 @@
 At a node between two elements a coefficient may jump. The mass is lumped, so that the equations of the node
 contain the mean strain of both sides, weighted by the quadrature. This keeps the accuracy of the mesh if
 elements end at the jumps. For a linear law the mean compliance gives the stress of the mean strain; with
-another law both sides are needed (`rodsweep.model.material.jump`).
+another law both sides are needed (`rodsweep.model.material.jump`). Shapes need both sides for every law
+(`element_strains`).
 """
 
 from functools import lru_cache
@@ -15,6 +16,7 @@ from ..model.balance import Material
 from ..model.material.build import Build, Sections
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import NO_JUMPS, NO_SIDE_CHANGE, Integers, Jumps
@@ -39,25 +41,39 @@ def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
+def profile_compliance_on(build: Build, grid: Mesh) -> Array:
+    """Bending compliance of an arm without taper at all nodes, in units of the one at the base, (nodes + 1,).
+
+    At a jump it is the mean of both sides; times m3 it is the mean bending strain.
+    """
+    if build.profile is None:
+        return np.ones(grid.nodes + 1)
+    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside.ravel())[2:], grid)[0]
+
+
 def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
-    """The nodes at which the material of a rod jumps, with both sides; none for a linear law."""
+    """The nodes at which the material of a rod jumps, with both sides."""
     inside, at = _beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
-    points, weights = grid.points_inside.ravel()[inside], _places_of(grid)[1][inside]
+    points = grid.points_inside.ravel()[inside]
+    weights = _places_of(grid)[1][inside]
     sections = rod.sections(points.ravel())
-    c1, _, c3 = sections.compliance.reshape(3, *points.shape)
+    c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
     shares = [values / values.sum(axis=1, keepdims=True) for values in (weights * soft[0], weights * soft[2])]
     mean = weights / weights.sum(axis=1, keepdims=True)
-    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *shares, mean], axis=-1)
+    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *shares, mean, c2], axis=-1)
     return Jumps(at, np.ascontiguousarray(sides))
 
 
 def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
-    """Derivatives of nu, c1 and c3 on both sides of the jumps by a parameter's coordinate, (k, 2, 3)."""
+    """Derivatives of nu, c1 and c3 on both sides of the jumps by a parameter's coordinate, (k, 2, 3).
+
+    None for a linear law, whose stresses at a jump depend on the mean strain alone.
+    """
     inside, at = _beside_jumps(rod.build, grid)
-    if not len(at):
+    if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_SIDE_CHANGE
     changes = rod.section_changes(name, grid.points_inside.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
@@ -65,8 +81,8 @@ def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
 
 
 def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
-    """(places in `points_inside` before and behind each jump, (k, 2); its node, (k,)); none if linear."""
-    jumps = () if build.constitutive_law is LINEAR else build.jumps
+    """(places in `points_inside` before and behind each jump, (k, 2); its node, (k,))."""
+    jumps = build.jumps
     ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
     return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
@@ -74,19 +90,23 @@ def _beside_jumps(build: Build, grid: Mesh) -> tuple[Integers, Integers]:
 
 def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     """Compliance, drag and strain at rest, or their derivatives, at all nodes, (3, nodes + 1) each."""
-    place, weights = _places_of(grid)
-
-    def mean(values: Array) -> Array:
-        return np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
-
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
-    return mean(sections.compliance), mean(sections.drag), mean(rest)
+    compliance, drag, rest = (
+        _mean_at_nodes(values, grid) for values in (sections.compliance, sections.drag, rest)
+    )
+    return compliance, drag, rest
 
 
-@lru_cache(maxsize=64)
+def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
+    """Means over both sides of each node, (m, nodes + 1), of values at the `points_inside`, (m, points)."""
+    place, weights = _places_of(grid)
+    mean: Array = np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
+    return mean
+
+
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _places_of(grid: Mesh) -> tuple[Integers, Array]:
     """(node, weight in the quadrature) of each of the `points_inside`, (elements (order + 1),) each."""
-    nodes = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
     weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
-    return nodes.ravel(), weights.ravel()
+    return grid.element_nodes.ravel(), weights.ravel()

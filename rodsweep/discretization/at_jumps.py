@@ -13,29 +13,36 @@ from ..arrays import Array
 from ..model.balance import Values
 from ..model.compiled.compilation import compiled
 from ..model.material.jump import Unknowns, before_jump, behind_jump
+from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
 from .elements.basis import interpolation
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh, transfer
 from .elements.quadrature import gauss_lobatto
-from .nodal_rod import Integers, NodalRod
+from .nodal_rod import NO_JUMPS, Integers, NodalRod
 
-STRETCHING, BENDING = 0, 2
+STRETCHING = 0
+BENDING = 2
 """Components of S that are not smooth at a jump, in the order of their shares."""
 
 
 @compiled
 def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
-    """q1 and q3 before a jump, then behind it, of mean unknowns, (m,) each, into out, (4, m)."""
+    """Writes (q1, q3) before a jump and (q1, q3) behind into out, (4, m), for means q1, q3 over both sides,
+    (m,)."""
     for i in range(len(q1)):
         q = Unknowns(q1[i], q3[i])
         a = before_jump(law, sides, q)
         b = behind_jump(sides, q, a)
-        out[0, i], out[1, i], out[2, i], out[3, i] = a.q1, a.q3, b.q1, b.q3
+        out[0, i] = a.q1
+        out[1, i] = a.q3
+        out[2, i] = b.q1
+        out[3, i] = b.q3
 
 
 def parted(rod: NodalRod, S: Array) -> Array:
-    """S1 and S3 on both sides of each jump, (k, 2, 2, ...): of each jump and side both.
+    """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
 
     S: (3, ..., nodes + 1).
     """
@@ -50,8 +57,7 @@ def parted(rod: NodalRod, S: Array) -> Array:
 
 def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     """S at the nodes of each element, (3, ..., elements, order + 1), with its own side of each jump."""
-    places = np.arange(grid.elements)[:, None] * grid.order + np.arange(grid.order + 1)
-    fields: Array = S[..., places]
+    fields: Array = S[..., grid.element_nodes]
     for node, sides in zip(rod.jumps, parted(rod, S), strict=True):
         e = node // grid.order
         for component, before, behind in zip((STRETCHING, BENDING), sides[0], sides[1], strict=True):
@@ -68,7 +74,7 @@ def carried(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
     """
     E = transfer(source, target)
     out = S @ E.T
-    there = jumps_on(rod, target)
+    there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on(rod, target)
     if len(there.nodes):
         here = jumps_on(rod, source).nodes
         for column, component in ((3, STRETCHING), (4, BENDING)):
@@ -85,12 +91,14 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
     here, there: nodes of the jumps, (k,) each. shares: of both sides in the unknown of a jump, (k, 2).
     """
-    out, p = E.copy(), source.order
+    out = E.copy()
+    p = source.order
     element = np.searchsorted(source.edges, target.positions, side="right") - 1
     at_jumps = [int(node) // p for node in here]
     for e, node in zip(at_jumps, here, strict=True):
         for side in (e - 1, e):
-            rows, columns = element == side, slice(side * p, (side + 1) * p + 1)
+            rows = element == side
+            columns = slice(side * p, (side + 1) * p + 1)
             row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
             weights = out[rows, node].copy()
             out[rows, node] = 0.0
@@ -103,7 +111,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Row from values at an element's nodes to its first or last one, without its nodes at jumps, (p + 1,).
 

@@ -13,11 +13,21 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
+from .elements.mesh import configuration
 from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
-TINY = 1e-30
-"""Imaginary step of the complex-step derivative in `tip_velocity`, in tau2."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeamSettings:
+    """Derivatives of the tip."""
+
+    tip_step: float = 1e-30
+    """Imaginary step of the complex-step derivative in `tip_motion`, in tau2; its square underflows, so it
+    has no error."""
+
+
+BEAM = BeamSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +48,15 @@ class Beam(RodOnMesh):
 
     @cached_property
     def crushed(self) -> Array:
-        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,)."""
-        return np.ascontiguousarray(-self.nodal.rest[0, :-1] / self.roots[0, :-1])
+        """The z1 at which h1 = 0, at all nodes except the tip, (nodes,).
+
+        At a jump h1 vanishes on one side first if the law is linear, and on both sides at once otherwise.
+        """
+        crushed = -self.nodal.rest[0, :-1] / self.roots[0, :-1]
+        if self.smooth_stresses:
+            for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
+                crushed[node] = self.roots[0, node] * (-sides[:, 0] / sides[:, 1]).max()
+        return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
         scaled = self.layout.stresses(z)
@@ -69,10 +86,18 @@ class Beam(RodOnMesh):
         rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
+    def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
+        """The tip's (x, y, theta) and their d/dt for dz/dt = direction, (3, ...) each.
+
+        z, direction: (..., unknowns). A small imaginary step gives the velocity without cancellation.
+        """
+        change = self.element_strain_changes(z, BEAM.tip_step * direction)
+        moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
+        return moved.real, moved.imag / BEAM.tip_step
+
     def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3, ...)."""
-        velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
-        return velocity
+        """d/dt of the tip's (x, y, theta) for dz/dt = direction, shape (3, ...)."""
+        return self.tip_motion(z, direction)[1]
 
     def _along(self, field: Values) -> Array:
         """`roots` reshaped to broadcast against a field (3, ..., nodes + 1)."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..model.balance import Material
 from ..model.material.jump import COLUMNS
+from .elements.elements import ELEMENTS
 from .elements.mesh import Mesh
 
 Integers = NDArray[np.int64]
@@ -21,7 +22,7 @@ class NodalRod(NamedTuple):
     shape (d, nodes + 1). mobility: 1/drag, but 0 for components of V that are unknowns. second:
     -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: indices of the components of V that are unknowns. law:
     number of the constitutive law, see `rodsweep.model.material.response`. jumps: nodes at which the
-    material jumps, increasing, (k,); none for a linear law. sides: both sides of these nodes, (k, 2, 6), see
+    material jumps, increasing, (k,). sides: both sides of these nodes, (k, 2, 7), see
     `rodsweep.model.material.jump`.
     """
 
@@ -45,9 +46,9 @@ class Jumps(NamedTuple):
 
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
-"""Of a rod without jumps, or of linear material, of which the mean over both sides is all that counts."""
+"""Of a rod without jumps."""
 NO_SIDE_CHANGE = np.zeros((0, 2, 3))
-"""`sides` of a change of such a rod."""
+"""`sides` of a change of a rod without jumps, or of linear material."""
 
 
 class NodalChange(NamedTuple):
@@ -79,7 +80,7 @@ def nodal_change(change: Material, grid: Mesh, sides: Array = NO_SIDE_CHANGE) ->
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Integers]:

@@ -13,10 +13,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
+from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
 from .at_jumps import carried, parted
+from .element_strains import write_element_rates, write_element_strains
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
@@ -57,20 +59,44 @@ class RodOnMesh(ABC):
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod as argument of compiled functions."""
-        rod, mesh = self.rod, self.mesh
-        law, jumps = rod.build.law_number, jumps_on(rod, mesh)
+        rod = self.rod
+        mesh = self.mesh
+        law = rod.build.law_number
+        jumps = jumps_on(rod, mesh)
         return nodal_rod(material_on(rod, mesh), mesh, self.kept, law, jumps)
 
+    @property
+    def smooth_stresses(self) -> bool:
+        """Whether S is continuous along the rod: without jumps of the material, and for a linear law."""
+        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
+
     def strains(self, x: Values) -> Values:
-        """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1)."""
-        S, c = self.stresses(x), self.nodal
+        """(h1, h2, Pi) at all nodes, tip included, shape (3, ..., nodes + 1); the mean strain at a jump."""
+        S = self.stresses(x)
+        c = self.nodal
         return _along(c.rest, S) + _along(c.compliance, S) * S
 
-    def shape(self, x: Values) -> Values:
-        """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
-        return configuration(self.mesh, self.strains(x), np.zeros(3))
+    def element_strains(self, x: Array) -> Array:
+        """(h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1))."""
+        S = self.stresses(x)
+        out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        write_element_strains(_listed(S), self.nodal, self.mesh.order, _listed(out))
+        return out
 
-    def tip(self, x: Values) -> Values:
+    def element_strain_changes(self, x: Array, change: Array) -> Array:
+        """Changes of `element_strains` with changes of states; x, change: (..., unknowns)."""
+        S = self.stresses(x)
+        dS = self.stresses(change)
+        moved = _along(self.nodal.compliance, dS) * dS
+        out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
+        write_element_rates(_listed(S), _listed(moved), self.nodal, self.mesh.order, _listed(out))
+        return out
+
+    def shape(self, x: Array) -> Array:
+        """(x, y, theta) at all nodes in L and rad, (3, ..., nodes + 1); clamped at the origin along e_x."""
+        return configuration(self.mesh, self.element_strains(x), np.zeros(3))
+
+    def tip(self, x: Array) -> Array:
         """(x, y, theta) of the tip, shape (3, ...)."""
         return self.shape(x)[..., -1]
 
@@ -79,20 +105,24 @@ class RodOnMesh(ABC):
 
         For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
-        S, c = self.stresses(x), self.nodal
-        nu, (c1, c2, c3) = _along(c.rest, S)[0], _along(c.compliance, S)
+        S = self.stresses(x)
+        c = self.nodal
+        nu = _along(c.rest, S)[0]
+        (c1, c2, c3) = _along(c.compliance, S)
         density = self._stored(nu, c1, c3, S[0], S[2])
         for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
             density[..., node] = 0.0
-            for (q1, q3), (nu, c1, c3, _, _, share) in zip(sides, numbers, strict=True):
+            for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
                 density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
         energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
         return energy
 
     def _stored(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
         """Energy per length of stretching and bending of the unknowns q1, q3 of sections, without shear."""
-        F, law = self.rod.F, self.rod.build.constitutive_law
-        load, h1 = F * c1, nu + c1 * q1
+        F = self.rod.F
+        law = self.rod.build.constitutive_law
+        load = F * c1
+        h1 = nu + c1 * q1
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         push = q1 - F * ratio  # (h1 - 1)/c1
         stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
@@ -103,8 +133,11 @@ class RodOnMesh(ABC):
         return carried(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
-        """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive."""
-        return float(self.strains(x)[0].min())
+        """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive.
+
+        At a jump both sides count.
+        """
+        return float(self.element_strains(x)[0].min())
 
     def is_convex(self, x: Array) -> bool:
         """Whether the energy of every section is convex in its strain, for one state x, (unknowns,).
@@ -119,6 +152,11 @@ class RodOnMesh(ABC):
             sections = np.vstack([sections, behind])
         tangents = (tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
+
+
+def _listed(field: Array) -> Array:
+    """A field (3, ..., n) as (3, m, n), with the same memory."""
+    return field.reshape(len(field), -1, field.shape[-1])
 
 
 def _along(constant: Array, field: Values) -> Array:

@@ -14,7 +14,8 @@ from ..model.compiled.compilation import compiled_for_vectors
 
 FIELDS = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stresses in the plane and in space."""
-COMPONENTS, BENDING = 3, 2
+COMPONENTS = 3
+BENDING = 2
 """Number of stress components in the plane, and the index of m3 among them, for compiled code."""
 
 

@@ -18,6 +18,7 @@ from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
+from .solving.diagrams import has_cycle_curves
 from .state import PageState
 
 
@@ -47,8 +48,10 @@ class PageContents:
                 ("branch", "branches", "Solve the branches"),
                 ("cycles", "cycles", "Add folds and torus points of cycles (minutes)"),
                 ("film", "film", "Save a film of the cycle (GIF)"),
+                ("stop", "stop", "Stop"),
             )
         }
+        self.buttons["stop"].visible = False
         self.numbers.root.stylesheets = [texts]
         for div in (card.message for card in self.cards):
             div.update(sizing_mode="stretch_width", stylesheets=[texts])
@@ -90,6 +93,7 @@ class PageContents:
         y = second.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
+        self.buttons["cycles"].visible = has_cycle_curves(state)
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:

@@ -33,7 +33,7 @@ class Field:
         self.slider.on_change("value", self._slid)
         self.root = Column(self.text, self.slider, sizing_mode="stretch_width", spacing=0)
         self._is_shown = False
-        """True while the page itself changes the widgets, so that their callbacks must not react."""
+        """True while the page changes widgets, so that callbacks of the widgets must not react."""
         self._sliding = False
 
     def show(self, text: str) -> None:

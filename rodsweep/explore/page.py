@@ -1,4 +1,4 @@
-"""One page, in one browser tab: state, questions being solved, and pictures."""
+"""A page in a browser tab: state, questions being solved, and pictures."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,13 +13,12 @@ from .scales import SCALES
 from .sharing import state_of_text
 from .solving.diagrams import uniform
 from .solving.letting_go import Tip
+from .solving.needs import OF_TIP, Needs, needs
 from .solving.questions import Question, Reply
+from .solving.sign import in_words, sign
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
-
-Needs = tuple[PageState, Tip | None]
-"""What an answer depends on."""
 
 AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of questions that are asked after every change."""
@@ -27,18 +26,18 @@ WHEN_IDLE = ("branch", "diagram")
 """Kinds of questions that take seconds, and are asked after a pause of `IDLE`."""
 ON_REQUEST = ("motion", "film", "cycles")
 """Questions that only the user asks; a change of the rod drops them."""
+STOPPABLE = (*WHEN_IDLE, *ON_REQUEST)
+"""Questions that the button "Stop" cancels."""
+STOPPED = "Stopped. A change of the rod starts it again, or the button below."
+"""Sentence in place of a picture whose solve the user has stopped."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
-OF_TIP = ("bent", "motion")
-"""Questions of a drag of the tip; an answer to another place of the tip is not shown."""
-NAMES = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
-"""Names of kinds in the sign "solving ..."; a missing kind is its own name."""
 
 
 class Page:
-    """Connects controls, solvers and pictures of one session.
+    """Connects controls, solvers and pictures of a session.
 
-    session: name of the session. stored: what a result file answers, or None.
+    session: name of the session. stored: answers from a result file, or None.
     """
 
     def __init__(
@@ -50,6 +49,8 @@ class Page:
         self.session = f"page-{id(self)}"
         self.is_open = True
         self.solving: set[str] = set()
+        self.progress: dict[str, str] = {}
+        """Progress of long solves in words, by kind."""
         self.asked: dict[str, Needs] = {}
         """The part of the state, `needs`, that the latest question of each kind depends on."""
         self.contents = PageContents(self.change, self.load)
@@ -87,23 +88,35 @@ class Page:
 
     def solve(self, kind: str) -> None:
         """Asks a question now, even if its answer is already shown."""
-        if kind == "cycles":
+        if kind == "cycles" and "diagram" in self.solving:
             self._drop("diagram")
         self._drop(kind)
         self._ask(kind, is_solved_again=True)
 
+    def stop(self) -> None:
+        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures of an earlier rod
+        do not stay without a word.
+        """
+        for kind in STOPPABLE:
+            if kind in self.solving:
+                self._drop(kind)
+                if kind in OF_TIP:
+                    self.contents.beating.let_go()
+                elif kind in WHEN_IDLE:
+                    self.contents.say(kind, STOPPED)
+
     def bend(self, tip: Tip) -> None:
-        """Bends the arm so that its tip is at a place, in L."""
+        """Bends the arm until the tip is at a place, in L."""
         self._drop("motion")
         self._ask("bent", tip)
 
     def let_go(self, tip: Tip) -> None:
-        """Lets go the arm with its tip at a place, in L."""
+        """Releases the arm with the tip at a place, in L."""
         self._drop("bent")
         self._ask("motion", tip)
 
     def _drop(self, kind: str) -> None:
-        """Drops a question, and its answer if it comes nevertheless."""
+        """Drops a question; an answer that still arrives is ignored."""
         self.asked.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
@@ -118,6 +131,7 @@ class Page:
             "film": lambda: self.solve("film"),
             "cycles": lambda: self.solve("cycles"),
             "load": self._move_load,
+            "stop": self.stop,
         }
 
     def _change_to(self, state: PageState) -> None:
@@ -180,8 +194,13 @@ class Page:
             self.contents.show(kind, stored, self.state)
             return
         self.solving.add(kind)
+        self.progress.pop(kind, None)
         self._show_solving()
-        self.solvers.ask(self.session, question, lambda reply: self._receive(question, reply))
+
+        def receive(reply: Reply) -> None:
+            self._receive(question, reply)
+
+        self.solvers.ask(self.session, question, receive, receive)
 
     def _receive(self, question: Question, reply: Reply) -> None:
         """Passes a reply to the document's event loop, because only code there may change the document."""
@@ -194,6 +213,11 @@ class Page:
         if newest is None:  # the user has entered invalid values meanwhile
             return
         is_newest = newest == needs(question)
+        if reply.outcome == "progress":
+            if is_newest and kind in self.solving:
+                self.progress[kind] = in_words(**reply.content)
+                self._show_solving()
+            return
         if is_newest:
             self.solving.discard(kind)
             self._show_solving()
@@ -208,8 +232,8 @@ class Page:
 
     def _show_solving(self) -> None:
         shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)
-        names = [NAMES.get(kind, kind) for kind in shown if kind in self.solving]
-        self.contents.working.text = f"solving {', '.join(names)} ..." if names else ""
+        self.contents.working.text = sign([kind for kind in shown if kind in self.solving], self.progress)
+        self.contents.buttons["stop"].visible = any(kind in self.solving for kind in STOPPABLE)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:
@@ -222,17 +246,5 @@ class Page:
     def _move_load(self, event: Tap) -> None:
         """Moves the load to the x of a click."""
         if event.x is not None:
-            stored = self.stored if self.state.tab == "rod" else None
-            at = event.x if stored is None else stored.load_near(event.x)
+            at = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
             self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(at)})
-
-
-def needs(question: Question) -> Needs:
-    """The state, blank in all fields that do not affect the answer, and the place of the tip."""
-    kind, state = question.kind, question.state
-    if kind in ("spectrum", "cycle", "film", *OF_TIP):
-        return replace(state, across="", F_max=""), question.tip
-    blank = {state.load: ""}
-    if kind in ("diagram", "cycles"):
-        return state.with_values(**blank, **{state.second: ""}), None
-    return replace(state.with_values(**blank), across=""), None

@@ -30,7 +30,7 @@ class ControlScale:
     has_inf: bool = False
 
     def text(self, value: float) -> str:
-        """Text that the control shows for a value in its unit."""
+        """Text of a value, with unit, in the control."""
         written = f"{value:.5g}"
         return f"{written} {self.unit}" if self.unit else written
 

@@ -1,4 +1,4 @@
-"""The state of the page, as texts of its controls, which can be saved, loaded, and sent as an address."""
+"""The state of the page, as texts of the controls; can be saved, loaded, and sent as an address."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -149,7 +149,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
 
 
 def _choice(key: str, given: str, known: Any) -> str:
-    """Checks that a word is a known one; InputError otherwise."""
+    """Checks that a word is known; InputError otherwise."""
     if given not in known:
         raise InputError(f"{key} = {short(given)} is not allowed; it must be {' or '.join(known)}")
     return given

@@ -1,6 +1,7 @@
 """The page for a result file or a config: its first rod, and the diagram stored in a result file."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,20 +12,20 @@ from ..config.document.reading import config_of, load_config
 from ..config.schema import Config
 from ..errors import InputError
 from .scales import SCALES
-from .solving.diagrams import Dataset, of_grid, of_phases, of_rows
+from .solving.diagrams import Dataset, of_arms, of_grid, of_phases, of_rows
 from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
 from .stored_results import StoredResults
 
 RESULTS = (".h5", ".hdf5", ".nc")
 """Suffixes of result files; all other files are configs."""
 NOT_SHOWN = ("density_difference", "fluid_density", "law", "section")
-"""Quantities of an arm that do not affect the page, or that have a control outside the arm's tab."""
+"""Quantities of an arm without effect on the page, or with a control outside the arm's tab."""
 
 
 def opened(path: Path) -> tuple[PageState, StoredResults | None]:
-    """(state of the first page, what the file answers; None for a config) of a result file or a config.
+    """(state of the first page, answers from the file; None for a config) of a result file or a config.
 
-    Raises InputError if it is neither, or holds arms that the page cannot show.
+    Raises InputError for any other file, and for arms that the page cannot show.
     """
     if path.suffix not in RESULTS:
         return state_of(load_config(path)[0], path), None
@@ -48,8 +49,7 @@ def state_of(config: Config, path: Path) -> PageState:
     if not axes:
         raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
     rod = {name: _text(axes[name]) if name in axes else text for name, text in ROD.items()}
-    several = [name for name in ACROSS["rod"] if name in axes and len(axes[name]) > 1]
-    across = max(several, key=lambda name: len(axes[name]), default="")
+    across = _across("rod", axes)
     F = axes.get("F", np.zeros(1))
     largest = f"{F.max():g}" if len(F) > 1 and F.max() > 0 else DEFAULT_F_MAX
     return PageState(rod=rod, law=material, across=across, F_max=largest)
@@ -65,23 +65,26 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
             f"{path}: the page cannot show an arm with {left_out[0]}; its controls are {', '.join(ARM)}"
         )
     texts = dict(ARM)
-    for name in ARM.keys() & given.keys():
+    axes = {name: given[name].array() for name in ARM if name in given}
+    for name, values in axes.items():
         scale = SCALES["arm"][name]
-        values = given[name].array()
         texts[name] = scale.text(scale.factor * float(values[len(values) // 2]))
-    return PageState(tab="arm", arm=texts, law=_law(config, path))
+    return PageState(tab="arm", arm=texts, law=_law(config, path), across=_across("arm", axes))
+
+
+def _across(tab: str, axes: Mapping[str, np.ndarray]) -> str:
+    """The axis with most values, (values,) each, that a diagram of a tab can be over; "" without one."""
+    several = [name for name in ACROSS[tab] if name in axes and len(axes[name]) > 1]
+    return max(several, key=lambda name: len(axes[name]), default="")
 
 
 def _law(config: Config, path: Path) -> str:
     """Key of `LAWS` of a config."""
-    material = config.material
-    if material is None:
-        return "linear"
-    given = material.model_dump(exclude_none=True)
-    if "profile" in given:
+    build = config.build
+    if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
-    words = {"law": "neo_hookean", "section": given.get("section", "fixed")}
-    return "linear" if given.get("law") != "neo_hookean" else next(k for k, v in LAWS.items() if v == words)
+    words = {"law": build.law, "section": build.section}
+    return next((key for key, value in LAWS.items() if value == words), "linear")
 
 
 def _text(values: np.ndarray) -> str:
@@ -92,10 +95,14 @@ def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     """The stored diagram of a file over the load and the state's second parameter; None without a diagram."""
     second = state.second
     dims = set(data["status"].dims)
-    if state.tab != "rod" or second not in dims or data.sizes[second] < 2:
+    if second not in dims or data.sizes[second] < 2:
         return None
-    middle = {n: data.sizes[n] // 2 for n in ROD if n in dims and n not in ("F", second)}
+    middle = {n: data.sizes[n] // 2 for n in state.values if n in dims and n not in (state.load, second)}
     data = data.isel(middle)
+    if state.tab == "arm":
+        scale = SCALES["arm"]["pressure"]
+        pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
+        return of_arms(data, data[second].values, pressure) if "crossing_pressure" in data else None
     over_F = data.sizes.get("F", 1) > 1
     if "class" in data and over_F:
         return of_phases(data, second)

@@ -1,41 +1,51 @@
-"""What a result file answers, so that nothing is solved again: its diagram, its cycles and its branches."""
+"""Answers from a result file, so that nothing is solved again: diagram, cycles and branches."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection
+from math import nan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..api.dataset import view_of
-from ..config.axes import DEFAULTS
+from ..arrays import Array
+from ..model.parameters import PARAMETERS
 from ..post.branch_curves import curves_of
+from .scales import SCALES
 from .solving.branches import drawn_branches, straight_pieces
 from .solving.diagrams import Dataset, code_of
-from .state import ROD, PageState, number
+from .state import PageState
 
 Found = dict[str, Any]
-SAME = 1e-5
-"""Relative difference of a value of the page, which has five digits, from the same value of the file."""
+DIGITS = (5, 6)
+"""Significant digits to which controls round values of a file; a rounded value stands for the stored one."""
+EQUAL = 1e-12
+"""Relative difference between equal values, as conversion of units leaves it."""
+POINT = "number_of_point"
+"""Dimension along which chosen points lie."""
 NEAR = 0.25
-"""Distance, as a fraction of that between stored loads, within which a click means the stored load."""
+"""Distance within which a click means a stored load, as a fraction of the distance between stored loads."""
 
 
 class StoredResults:
-    """A result file of rods on a grid, or of arms, of which only a diagram is taken.
+    """A result file of rods or of arms.
 
-    state: of the page that the file opens. diagram: answer to the question `diagram` there, or None.
+    state: state of the page opened by the file. diagram: answer to the question `diagram` in this state, or
+    None.
     """
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
         self.path, self.data, self.state, self.diagram = path, data, state, diagram
-        points = data["status"].dims
-        self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == points
+        self.dims = data["status"].dims
+        """Dimensions of the points; none of a single point."""
+        self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == self.dims
         """Whether each point has one cycle."""
 
     def answer(self, kind: str, state: PageState) -> Found | None:
         """The stored answer to a question about a state; None if the file does not hold it."""
-        if state.tab != "rod" or self.state.tab != "rod" or state.law != self.state.law:
+        if state.tab != self.state.tab or state.law != self.state.law:
             return None
         if kind == "cycle":
             return self._cycle(state) if self.has_cycles else None
@@ -43,37 +53,48 @@ class StoredResults:
             return self._cycles_over_force(state) if self.has_cycles else self._branch(state)
         return None
 
-    def load_near(self, F: float) -> float:
-        """The stored force that a click at F means, or F itself."""
-        if not self.has_cycles or self.data.sizes.get("F", 1) < 2:
-            return F
-        stored = self.data["F"].values
-        nearest = float(stored[np.argmin(np.abs(stored - F))])
-        spacing = float(np.min(np.abs(np.diff(stored))))
-        return nearest if abs(nearest - F) < NEAR * spacing else F
+    def load_near(self, state: PageState, at: float) -> float:
+        """The stored load, in the unit of its control, that a click at a load means, or the load itself."""
+        if state.tab != self.state.tab or not self.has_cycles:
+            return at
+        stored = np.unique(self._values(state.tab, state.load)[self._points(state, (state.load,))])
+        if len(stored) < 2:
+            return at
+        nearest = float(stored[np.argmin(np.abs(stored - at))])
+        spacing = float(np.min(np.diff(stored)))
+        return nearest if abs(nearest - at) < NEAR * spacing else at
 
-    def _place(self, state: PageState, free: Sequence[str] = ()) -> dict[str, int] | None:
-        """Index of a state along each axis of the file but the free ones; None for a rod not in the file."""
-        place = {}
-        for name, default in ROD.items():
-            if name in free:
-                continue
-            value = number(state.rod[name])
-            is_axis = name in self.data.dims
-            own = self.data[name].values if is_axis else np.array([DEFAULTS.get(name, float(default))])
-            same = [i for i, each in enumerate(own) if each == value or abs(each - value) <= SAME * abs(each)]
-            if not same:
-                return None
-            if is_axis:
-                place[name] = same[0]
-        return place
+    def _values(self, tab: str, name: str) -> Array:
+        """Values of a parameter or of an arm's quantity at all points, (points,), in the control's unit."""
+        default = PARAMETERS[name].default if name in PARAMETERS else None
+        missing = nan if default is None else default
+        own = self.data[name] if name in self.data.variables else missing
+        everywhere = (self.data["status"] * 0.0 + own).transpose(*self.dims)
+        values: Array = everywhere.values.ravel() * SCALES[tab][name].factor
+        return values
+
+    def _points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
+        """Numbers of the points of a state with any value of the free parameters."""
+        same = np.ones(self.data["status"].size, dtype=bool)
+        for name, text in state.values.items():
+            if name not in free:
+                value = SCALES[state.tab][name].value(text)
+                own = self._values(state.tab, name)
+                same &= np.array([value is not None and _stands_for(value, each) for each in own], dtype=bool)
+        return np.flatnonzero(same)
+
+    def _at(self, numbers: NDArray[np.integer]) -> Dataset:
+        """Points by number, along the dimension `POINT`."""
+        if not self.dims:
+            return self.data.expand_dims(POINT)
+        return self.data.stack({POINT: self.dims}, create_index=False).isel({POINT: numbers})
 
     def _cycle(self, state: PageState) -> Found | None:
         """The stored cycle of a rod, if its shapes are stored too."""
-        place = self._place(state)
-        if place is None or "shape_x" not in self.data:
+        numbers = self._points(state)
+        if len(numbers) == 0 or "shape_x" not in self.data:
             return None
-        point = self.data.isel(place)
+        point = self._at(numbers[:1]).isel({POINT: 0})
         status = _word(point["status"])
         F, k1 = float(point["F"]), float(point["k1"])
         is_drawn = np.isfinite(point["shape_x"].values).all()
@@ -89,10 +110,10 @@ class StoredResults:
 
     def _cycles_over_force(self, state: PageState) -> Found | None:
         """The stored cycles of a rod at all forces, at least two."""
-        place = self._place(state, ("F",))
-        if place is None or self.data.sizes.get("F", 1) < 2:
+        numbers = self._points(state, (state.load,))
+        if len(numbers) < 2:
             return None
-        line = self.data.isel(place)
+        line = self._at(numbers)
         y, status = line["tip_y_max"].values, line["status"]
         at_rest = status.values == code_of(status, "straight")
         y = np.where(at_rest, 0.0, y)
@@ -103,15 +124,13 @@ class StoredResults:
 
     def _branch(self, state: PageState) -> Found | None:
         """The stored branches of a rod along the force."""
-        place = self._place(state, ("F",))
-        if place is None or "branch_F" not in self.data:
+        numbers = self._points(state, (state.load,))
+        if len(numbers) == 0 or "branch_F" not in self.data:
             return None
-        point = self.data.isel(place)
+        rod = int(numbers[0])
+        point = self._at(numbers[:1]).isel({POINT: 0})
         if _word(point["status"]) == "missing":
             return None
-        sizes = [self.data.sizes[name] for name in self.data["status"].dims]
-        index = [place[str(name)] for name in self.data["status"].dims]
-        rod = int(np.ravel_multi_index(index, sizes)) if sizes else 0
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         drawn = drawn_branches(curves_of(view_of(self.data, self.path), rod))
         drawn["pieces"] += straight_pieces(point, stop)
@@ -123,6 +142,12 @@ class StoredResults:
     def _sentence(self, status: str) -> str:
         lines = str(self.data.attrs["status_sentences"]).splitlines()
         return dict(line.split(": ", 1) for line in lines).get(status, "")
+
+
+def _stands_for(value: float, stored: float) -> bool:
+    """Whether a control's value is a stored one, or the stored one rounded."""
+    rounded = [float(f"{stored:.{digits}g}") for digits in DIGITS]
+    return any(each == value or abs(each - value) <= EQUAL * abs(each) for each in (stored, *rounded))
 
 
 def _word(status: Dataset) -> str:

@@ -89,7 +89,8 @@ class Parameter:
             raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
 
 
-SMALLEST_TAPER, LARGEST_TAPER = 0.01, 100.0
+SMALLEST_TAPER = 0.01
+LARGEST_TAPER = 100.0
 """Range of the taper. Taper 0 is excluded: a pointed tip has no stiffness against the force."""
 
 

@@ -55,8 +55,8 @@ def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
     text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
     if int(a["ranks"]) == 1:
         return [text, f"the rank was busy {share[0]:.1f} % of its time"]
-    solved = f"{np.median(share):.1f} % of its time (median; least {share[least]:.1f} %, rank {least})"
+    solved = f"{np.median(share):.1f} % of the time (median; least {share[least]:.1f} %, rank {least})"
     ends = dict.fromkeys(f"{number:.6g}" for number in (points.min(), points.max()))
     each = " to ".join(ends)
     things = noun if each == "1" else plural(noun)
-    return [text, f"a rank was busy {solved} and finished {each} {things}"]
+    return [text, f"the ranks were busy {solved}; each finished {each} {things}"]

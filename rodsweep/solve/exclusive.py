@@ -1,8 +1,9 @@
-"""Access for one thread of this process at a time, and signal handlers only where a solve is safe.
+"""Lets one thread of this process solve at a time, and runs signal handlers only at safe places of a solve.
 
-PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time. Compiled
-code calls Python to make a NamedTuple of its results. An exception of a signal handler during this call, as
-by Ctrl-C, is a segmentation fault. pydantic turns the exception into a different one.
+PETSc, the solvers kept from point to point, HDF5 and matplotlib may be used by one thread at a time.
+Elsewhere a handler that raises, as that of Ctrl-C, does harm: while compiled code calls Python to make a
+NamedTuple of results, the process ends with a segmentation fault, and pydantic replaces the exception by a
+different one.
 """
 
 import inspect

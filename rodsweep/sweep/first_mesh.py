@@ -11,7 +11,7 @@ from ..discretization.elements.resolution import expected_wave_number, resolutio
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import CRUSHING_MARGIN
+from ..solve.changes.unstable_modes import end_below_crushing
 from .cost_estimate import sampled
 from .points.points import Points
 
@@ -28,7 +28,8 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """The first mesh with most nodes of some rods: of a sample, and of the corners of a grid; None for none.
+    """The finest of the first meshes of a sample of rods and of the rods at the corners of a grid; None
+    without a mesh.
 
     ends: values, (n,), of parameters along which every rod is searched.
     """
@@ -44,7 +45,7 @@ def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
         if "F" in named:
             force = named.pop("F")
             there = rod.changed(**named)
-            yield there.changed(F=min(force, there.crushing_force * (1 - CRUSHING_MARGIN)))
+            yield there.changed(F=end_below_crushing(there, force))
             continue
         try:
             yield rod.changed(**named)

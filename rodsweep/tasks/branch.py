@@ -1,4 +1,4 @@
-"""The task branch: the branches of cycles of every rod, followed in one parameter from its Hopf points."""
+"""The task branch: branches of cycles of every rod, followed in a parameter from all Hopf points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from ..config.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_branches
-from .parts import NonlinearTask, before_crushed, count_of
+from .parts import NonlinearTask, before_crushed, each_point
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class BranchTask(NonlinearTask):
         options = self.config.branch
         along, short = options.along, before_crushed(self.config) * (options.along == "F")
         ends = f"from {options.start:g} to {options.stop:g}"
-        return f"{count_of(self.points)}, each followed in {along} {ends}{short}"
+        return each_point(self.points, f"followed in {along} {ends}{short}")
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
@@ -125,7 +125,7 @@ OTHERWISE = {
     "special_tip_y_max_error": "size_error",
     "special_amplitude_coefficient_error": "coefficient_error",
 }
-"""Fields of a special point whose names differ from their variables."""
+"""Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
 def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:

@@ -9,7 +9,7 @@ from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, searched_along_F
+from .parts import NonlinearTask, before_crushed, each_point
 from .protocol import Part, Solver
 from .thresholds import search_record
 
@@ -24,7 +24,8 @@ class CriticalityTask(NonlinearTask):
     config: CriticalityConfig
 
     def headline(self) -> str:
-        return searched_along_F(self.config, self.points, self.config.criticality.F_max)
+        F_max = self.config.criticality.F_max
+        return each_point(self.points, f"searched from F = 0 to {F_max:g}{before_crushed(self.config)}")
 
     def asked(self) -> list[Part]:
         most = self.config.criticality.crossings

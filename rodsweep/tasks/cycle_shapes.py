@@ -15,9 +15,9 @@ from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
 from .running.job import Job, job_of
 
 SHAPES = 48
-"""Times per period at which shapes are solved; an animation needs about 50 frames."""
+"""Number of shapes solved per period; an animation needs about 50 frames."""
 SAMPLES = 256
-"""Times per period at which tip and energy are solved."""
+"""Number of samples of tip and energy solved per period."""
 SAME_PERIOD = 100
 """Maximum difference of the periods of a cycle solved twice, in units of their estimated errors."""
 
@@ -40,7 +40,7 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
 
 
 def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
-    """The job of one point, and the variables of its cycle."""
+    """The job of a point, and the variables of the point's cycle."""
     job = _job(view, number)
     try:
         solver = job.solver()
@@ -62,7 +62,7 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
 
 
 def _job(view: View, number: int) -> Job:
-    """Job of one point of the file, with the file's config, but independent of its neighbours."""
+    """Job of a point of the file, with the file's config, but independent of neighbouring points."""
     config = json.loads(view.attributes["config_resolved"])
     stored = config["limit_cycle"]
     options = {"shapes": SHAPES, "samples": SAMPLES, "harmonics": stored["harmonics"], "start": "hopf"}

@@ -30,7 +30,7 @@ from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import arms_line, count_of, material_parts, rod_parts
+from .parts import arms_line, count_of, each_point, material_parts, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
@@ -59,7 +59,8 @@ class LimitCycleTask(Task):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from its neighbour's cycle; None without chains."""
+        """Chains of points, in which each point starts from the cycle of the previous point; None without
+        chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -90,7 +91,7 @@ class LimitCycleTask(Task):
         if options.start == "hopf":
             start = "the Hopf point below its force"
         if chains is None:
-            return f"{count_of(self.points)}, each started from {start}"
+            return each_point(self.points, f"started from {start}")
         chained = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
             f"{count_of(self.points)} in {chained}, {options.direction} in {self.config.along}: each started "
@@ -103,12 +104,12 @@ class LimitCycleTask(Task):
 
     def _first_mesh(self) -> Elements | None:
         """The largest first mesh of the motions, or of the branches from Hopf points."""
-        from ..solve.cycle.transient.motion_mesh import MOTION_ACCURACY, coarse_mesh, motion_mesh
+        from ..solve.cycle.transient.motion_mesh import MOTION_MESH, coarse_mesh, motion_mesh
 
         options = self.config.limit_cycle
         if options.start == "hopf":
             return largest_first_mesh(self.points, coarse_mesh)
-        accuracy = self.config.accuracy if options.method == "integration" else MOTION_ACCURACY
+        accuracy = self.config.accuracy if options.method == "integration" else MOTION_MESH.accuracy
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
     def parts(self) -> list[Part]:
@@ -131,7 +132,7 @@ class LimitCycleTask(Task):
         ]
 
     def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> Part:
-        """Part on variables that are stored only on request, with their number and memory."""
+        """Text on variables that are stored only on request: number and memory."""
         options = self.config.limit_cycle
         each: int = getattr(options, option)
         if not each:
@@ -217,6 +218,6 @@ class _Stored(NamedTuple):
 
 
 def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
-    """Arrays by the names of their variables; NaN if the cycle has no such arrays."""
+    """Arrays by name of variable; NaN if the cycle has no arrays."""
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

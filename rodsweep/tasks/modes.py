@@ -39,7 +39,7 @@ class ModesTask(ProvedTask):
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change their stability; not searched for arms that are not uniform."""
+        """Forces at which the rods change stability; not searched for arms that are not uniform."""
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:

@@ -10,9 +10,10 @@ import numpy as np
 from ..config.schema import Config
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.resolution import mesh_accuracy
+from ..model.material.profile import Profile
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Rod
-from ..solve.changes.anchors import MIN_KNOWN_MODES, PLACE_ACCURACY
+from ..solve.changes.anchors import ANCHORS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
@@ -33,7 +34,7 @@ class ProvedTask(Task):
 
     @abstractmethod
     def asked(self) -> list[Part]:
-        """Parts that the task's options ask for."""
+        """Parts requested by the task's options."""
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
@@ -48,15 +49,16 @@ class ProvedTask(Task):
 
         By default rods are searched along a line, `searched`, for places where eigenvalues cross the axis.
         """
-        accuracy = mesh_accuracy(PLACE_ACCURACY, vectors=False)
+        accuracy = mesh_accuracy(ANCHORS.place_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
-            return spectrum_mesh(rod, MIN_KNOWN_MODES, accuracy)
+            return spectrum_mesh(rod, ANCHORS.min_known_modes, accuracy)
 
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Values, (n,), of the parameter at whose ends rods are searched, by its name; empty for points."""
+        """Values, (n,), of the searched parameter, by name of the parameter; empty for tasks that search no
+        parameter."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:
@@ -68,17 +70,17 @@ class ProvedTask(Task):
 
     @property
     def varies(self) -> bool:
-        """Whether any rod varies along its length, so that D has no closed form."""
+        """Whether D has no closed form, because a rod varies along the length."""
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def certificate_of_counts(self) -> tuple[bool, str]:
-        """`ProvedTask.certificate` of modes that are counted at every point."""
+        """`ProvedTask.certificate` for modes counted at every point."""
         asked, proof = ProvedTask.certificate(self)
         return asked, f"{proof}, estimated in part" if asked and self.varies else proof
 
     def certificate_of_lines(self) -> tuple[bool, str]:
-        """`ProvedTask.certificate` of modes that are counted along lines of rods."""
+        """`ProvedTask.certificate` for modes counted along lines of rods."""
         asked, proof = ProvedTask.certificate(self)
         if asked and not self.config.standard:
             return True, f"{proof} at some rods, estimated in part; between them slopes of the eigenvalues"
@@ -123,10 +125,9 @@ def count_of(points: Points) -> str:
     return f"{counted(points.count, 'point')} ({shape})"
 
 
-def searched_along_F(config: Config, points: Points, F_max: float) -> str:
-    """The number of points and the range of F that is searched for each of them."""
-    each = "each " * (points.count > 1)
-    return f"{count_of(points)}, {each}searched from F = 0 to {F_max:g}{before_crushed(config)}"
+def each_point(points: Points, clause: str) -> str:
+    """The number of points with a clause about each of them, as in "each searched from F = 0 to 200"."""
+    return f"{count_of(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
@@ -139,9 +140,9 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
 
 
 def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """What varies along the arm, and its law; empty for uniform arms of linear material.
+    """Quantities that vary along the arm, and the law; empty for uniform arms of linear material.
 
-    columns: values of the parameters of the rods, each of any shape.
+    columns: values of the rods' parameters, arrays of any shape.
     """
     if config.standard:
         return []
@@ -155,9 +156,9 @@ def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Pa
 def arms_line(
     config: Config, columns: Mapping[str, np.ndarray], first_mesh: Callable[[], Elements | None]
 ) -> str:
-    """What is modelled of arms that vary or are of rubber, and their first mesh; empty for other arms.
+    """Variation and law of an arm that is not uniform or of rubber, and the first mesh; empty for other arms.
 
-    columns: as in `material_parts`, each of any shape.
+    columns: as in `material_parts`, arrays of any shape.
     """
     if config.standard:
         return ""
@@ -172,18 +173,23 @@ def arms_line(
 
 
 def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """What varies along the arms, in words; empty for uniform arms."""
+    """Quantities that vary along the arms, in words; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     shapes = [] if (tapers == 1).all() else [f"{ratios} {_span(tapers)}"]
     profile = config.build.profile
     if profile is not None:
-        jumps = len(profile.u) - len(profile.breaks)
-        rows = counted(len(profile.u), "row")
-        shapes.append(
-            f"a profile of {rows} with {counted(jumps, 'jump')}" if jumps else f"a smooth profile of {rows}"
-        )
+        shapes.append(_profile(config, profile))
     return shapes
+
+
+def _profile(config: Config, profile: Profile) -> str:
+    """A profile in words; that of a cone in SI units is made by rodsweep, from the drag at each radius."""
+    if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
+        return "the drag of each local radius"
+    jumps = len(profile.u) - len(profile.breaks)
+    rows = f"a profile of {counted(len(profile.u), 'row')}"
+    return f"{rows} with {counted(jumps, 'jump')}" if jumps else rows
 
 
 def _law(config: Config) -> str:
@@ -193,7 +199,7 @@ def _law(config: Config) -> str:
 
 
 def _span(values: np.ndarray) -> str:
-    """The range of some numbers in words."""
+    """The range of several numbers in words."""
     low, high = float(values.min()), float(values.max())
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 

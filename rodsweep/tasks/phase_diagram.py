@@ -132,7 +132,7 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def _with_cycles(self, request: "RowRequest") -> Solver:
-        """Solver of rows with their cycles."""
+        """Solver of rows with cycles."""
         from ..solve.branch.branches import warm_up
         from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
         from ..solve.orbit.matrix.workspace import NewtonWorkspace

@@ -20,8 +20,8 @@ Arrays = dict[str, np.ndarray]
 InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Maps a function over items, in their order, possibly sharing the work among ranks."""
 Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
-"""Wraps the solve of a point: takes its index, its starting state and the solve, returns (outcome, state for
-the neighbour)."""
+"""Wraps the solve of a point: takes index, starting state and the solve, returns (outcome, state for the
+neighbour)."""
 Part = tuple[str, bool, str]
 """(part, whether it is modelled, reason): a row of the table printed by `check`."""
 
@@ -39,7 +39,7 @@ class Units(Protocol):
 
 
 class AllPoints(Protocol):
-    """Variables that need all points, such as curves. The object exists on every rank."""
+    """Variables that need all points, for example curves. The object exists on every rank."""
 
     def units(self, view: View) -> Any:
         """The work as `Units`, from the file with all points; None if nothing is done in units."""
@@ -48,7 +48,7 @@ class AllPoints(Protocol):
         """Starting data for units, kept on this rank and useful to every rank."""
 
     def take(self, starts: Mapping[int, Any]) -> None:
-        """Keeps starting data from another rank."""
+        """Keeps starting data of a different rank."""
 
     def solve(self, units: Any, unit: int) -> Arrays:
         """Result of a unit."""
@@ -73,9 +73,9 @@ class Solver:
     together: AllPoints | None = None
     """Variables that need all points; None for tasks without joint variables."""
     chained: ChainedWork | None = None
-    """Replaces `solve` if points start from their neighbour's solution."""
+    """Replaces `solve` if points start from a neighbour's solution."""
     stretched: tuple[Stretches, SolveStretch] | None = None
-    """Replaces `solve` if neighbours are solved together, from their flat indices."""
+    """Replaces `solve` if neighbours are solved together; takes flat indices."""
 
     def within(self, around: Around, together: SolveStretch | None = None, **changed: Any) -> "Solver":
         """The solver with `around` wrapped about the solve of every point, and with `together` for
@@ -103,7 +103,7 @@ def alone(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class Task(ABC):
-    """A task with its points. It is sent to all ranks and starts PETSc only when `solver` is called."""
+    """A task with points. The task is sent to all ranks and starts PETSc only when `solver` is called."""
 
     config: Any
     """The config, of the task's own class."""
@@ -111,7 +111,8 @@ class Task(ABC):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, each started from its neighbour's solution; None without chains."""
+        """Chains of points, in which each point starts from the solution of the previous point; None without
+        chains."""
         return None
 
     @property
@@ -139,7 +140,8 @@ class Task(ABC):
         """One line: the number of points and the request for each point."""
 
     def arms(self) -> str:
-        """A line on arms that vary or are of rubber: what they are, and the first mesh; empty for others."""
+        """A line on arms that are not uniform or of rubber: variation, law, and the first mesh; empty for all
+        other arms."""
         return ""
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""A rod that a user bends by its tip and lets go: its bent shape, and the motion from there."""
+"""A rod bent by the tip and released: bent shape, and the motion after the release."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -41,7 +41,8 @@ class ReleasedMotion:
 
 @solving
 def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
-    """(x, y) in L, (2, NODES), of the only rod of a job with its tip at a place, in L; straight for None."""
+    """Shape (x, y) in L, (2, NODES), of the only rod of a job, with the tip held at a place, in L; the
+    straight rod for None."""
     from ..discretization.beam import Beam
     from ..solve.cycle.transient.motion_mesh import motion_mesh, near_rod
     from ..solve.motion.held_tip import held_by_tip

@@ -1,7 +1,7 @@
-"""Everything about one rod, for its portrait: thresholds, criticality, branches, modes, three cycles."""
+"""All results of a portrait: thresholds, criticality, branches, modes, three cycles."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 from ..post.branch_curves import Range, curves_of, union
-from ..post.rod_portrait.results import RodResults
+from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
@@ -25,7 +25,7 @@ SHAPES = 12
 LARGE_START = 0.5
 """Tip deflection, in L, of a start from which the rod comes to a cycle beside a stable straight rod."""
 MODE_KINDS = ("onset", "hopf")
-"""Kinds of thresholds at whose first place the leading mode is solved."""
+"""Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
 """Default of the largest force, as of the task thresholds."""
 
@@ -36,31 +36,30 @@ Solve = Callable[[Job], View]
 class PortraitRequest:
     """A rod and the choices of its portrait.
 
-    parameters: values by name. F_max: largest force. accuracy: relative error, or None for the default of
-    each task. material: section `material` of a config, empty for a uniform rod of linear material.
+    F_max: largest force. accuracy: relative error, or None for the default of each task.
     """
 
-    parameters: Mapping[str, float]
+    rod: DescribedRod
     F_max: float = F_MAX
     accuracy: float | None = None
-    material: Mapping[str, Any] = field(default_factory=dict)
 
     def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
-        """Job of a task for this rod, at a force if the task takes one."""
+        """Job of a task for this rod, at a force if the task takes a force."""
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
-        values = {name: self.parameters[name] for name in names if name in self.parameters and name != "F"}
+        own = self.rod.parameters
+        values = {name: own[name] for name in names if name in own and name != "F"}
         values |= {} if F is None else {"F": F}
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
-        tree |= {"material": dict(self.material)} if self.material else {}
+        tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
         tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
         return job_of(Path(task), validated(tree), yaml_of(tree))
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
-    """Solves everything about a rod; solve: how the only point of a job is solved.
+    """Solves all results of a portrait. solve: function that solves the only point of a job.
 
-    Raises InputError for parameters that are no rod. What cannot be solved of a rod has its reason in the
-    result.
+    Raises InputError if the parameters describe no rod. For a result that cannot be solved, the reason is
+    kept.
     """
     F_max = {"F_max": request.F_max}
     views = {"thresholds": solve(request.job("thresholds", F_max))}
@@ -89,7 +88,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
         reason = missing.get("branch", "no stable cycle lies on a branch from a Hopf point")
         missing.setdefault("limit_cycle", reason)
     return RodResults(
-        parameters=request.parameters,
+        rod=request.rod,
         F_max=request.F_max,
         views=views,
         modes=modes,
@@ -99,7 +98,8 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
 
 
 def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at a force, from the Hopf point, or from a large start if that leads to none."""
+    """The limit cycle at a force, started from the Hopf point; if no cycle is found, from a large
+    deflection."""
     found = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_START}):
         view = solved("limit_cycle", {**start, "shapes": SHAPES}, F)

@@ -53,7 +53,7 @@ class SpectrumTask(ProvedTask):
 
     @property
     def stretches(self) -> Stretches | None:
-        """Stretches of neighbours along which eigenvalues are followed; None without stretches."""
+        """Stretches of neighbouring points, along which eigenvalues are followed; None without stretches."""
         return (
             stretches_along_longest_axis(self.points.shape, self.points.moved)
             if self.config.follows
@@ -94,7 +94,7 @@ class SpectrumTask(ProvedTask):
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change their stability; not searched for arms that are not uniform."""
+        """Forces at which the rods change stability; not searched for arms that are not uniform."""
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
@@ -187,7 +187,7 @@ def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> n
 
 
 def record(result: "Spectrum") -> dict[str, Any]:
-    """The spectrum of one point, or of several, as variables of the file."""
+    """The spectrum of a point, or of several points, as variables of the file."""
     values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):

@@ -9,7 +9,7 @@ from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
-from .parts import ProvedTask, searched_along_F
+from .parts import ProvedTask, before_crushed, each_point
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
 
 EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Crossings whose first occurrence is a threshold, each with the variable stored beside its F."""
+"""Kinds of crossings; the first crossing of a kind is a threshold. Each kind has the variable stored beside
+F."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +30,8 @@ class ThresholdsTask(ProvedTask):
     not_proved: ClassVar[str] = "crossings may be missed"
 
     def headline(self) -> str:
-        return searched_along_F(self.config, self.points, self.config.thresholds.F_max)
+        until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
+        return each_point(self.points, f"searched from F = 0 to {until}")
 
     def asked(self) -> list[Part]:
         most = self.config.thresholds.crossings

@@ -25,7 +25,9 @@ USUAL_POISSON = (0.3, 0.5)
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Check of one neglected effect, or of an assumption; validity: of the model under this effect."""
+    """Check of one neglected effect, or of an assumption. validity: whether the model applies despite this
+    effect.
+    """
 
     validity: Validity
     sentence: str

@@ -35,7 +35,7 @@ def rounded_percent(low: float, high: float) -> str:
 
 
 class Load:
-    """Load of an arm in the user's unit; a pressure if the arm has no load."""
+    """Load of an arm in the user's unit. For an arm without a load, loads are stated as pressures."""
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"

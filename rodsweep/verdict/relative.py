@@ -19,7 +19,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import CRUSHING_MARGIN, Kind
+from ..solve.changes.unstable_modes import Kind, end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 FARTHEST = 1000.0
@@ -30,7 +30,7 @@ forces."""
 ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
 """Largest forces of the search for an arm that is not uniform or not of linear material, in k3/L^2 at its
 base, tried in turn: a search far beyond the first flutter, where many modes are unstable, takes up to half a
-minute a drag."""
+minute for each drag."""
 REFERENCE_DIGITS = 10
 """Digits of the reference threshold: more than the data of an arm, and few enough for equal results on all
 machines. A run resumed on another machine therefore has the same points."""
@@ -41,7 +41,7 @@ class FlutterUnknown(InputError):
 
 
 def turned(arm: A) -> A:
-    """The same arm, turned by 90 degrees: width and height of the rectangle exchanged."""
+    """The arm turned by 90 degrees: width and height of the rectangle exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 
@@ -92,7 +92,7 @@ def first_hopf_force(rod: Rod) -> float:
     first_up_to = _first_up_to if rod.standard else _first_of_varied
     try:
         for end in (NEAR, FARTHEST) if rod.standard else ENDS_OF_VARIED:
-            first = first_up_to(path, min(end, rod.crushing_force * (1 - CRUSHING_MARGIN)))
+            first = first_up_to(path, end_below_crushing(rod, end))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:

@@ -67,7 +67,7 @@ def test_a_branch_tells_its_special_points_in_words(branch):
     assert known.notna().all(axis=None)
     for word in ("hopf", "fold", "special_points: 3", f"cycles: {branch.point_count} rows"):
         assert word in repr(branch.table())
-    assert repr(branch).startswith("1 branch of cycles from 2 Hopf points: 24 cycles, largest tip y 0.105")
+    assert repr(branch).startswith("1 branch of cycles from 2 Hopf points: 25 cycles, largest tip y 0.1057 L")
 
 
 def test_a_branch_is_one_table_of_cycles_with_special_points_marked(branch):

@@ -12,6 +12,7 @@ from conftest import ROOT
 from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
 
 import rodsweep as rs
+from rodsweep.api.answers.frames import frame_of
 from rodsweep.cli.checking import describe_job
 from rodsweep.post.headline.digits import Digits
 from rodsweep.post.headline.sentences import HEADLINES
@@ -187,3 +188,8 @@ def test_check_stays_in_the_window(name, monkeypatch):
     lines = page.getvalue().splitlines()
     assert max(map(len, lines)) <= WINDOW
     assert any(line.startswith("expected: ") for line in lines)
+
+
+def test_a_frame_holds_no_negative_zero():
+    frame = frame_of([real("multiplier_imag", [-0.0, -1.5, np.nan])])
+    assert frame.to_csv(index=False, header=False, na_rep="none") == "0.0\n-1.5\nnone\n"

@@ -1,18 +1,23 @@
 """`rod.portrait()` and `rodsweep portrait`: the numbers are the solver's, and what is missing is said."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from matplotlib.text import Text
 from pages import read_page
+from surveyed import few
 
 import rodsweep as rs
+from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.tasks.rod_portrait import cycle_forces
 
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
 """Its branch of cycles passes a fold, beyond which straight rod and cycle are both stable."""
 ACCURACY = 1e-4
+UNDECIDED = ("unstable_multipliers", "special_unstable_after", "unstable_at_start")
+"""Variables of a branch that decide what is stable."""
 
 
 @pytest.fixture(scope="module")
@@ -40,12 +45,29 @@ def test_thresholds_and_criticality_are_those_of_their_tasks(portrait):
     assert re.findall(r"(supercritical|subcritical)", text) == sides == ["supercritical", "subcritical"]
 
 
+def test_an_arm_has_the_si_values_of_its_units(portrait):
+    scales = {"force_scale": 0.012, "pressure_scale": 155.0, "tau2": 3.5}
+    rod = replace(portrait.results.rod, scales=scales)
+    sentence = "F = 1 stands for 0.012 N, or a pressure of 155 Pa on the face of its tip, and tau2 for 3.5 s."
+    assert sentence in paragraph(replace(portrait.results, rod=rod))
+    assert "stands for" not in portrait.paragraph
+
+
 def test_ranges_with_two_states_are_those_of_the_branch(portrait):
     special = FOLDED.branch(accuracy=ACCURACY).special_points
     fold = float(special["special_at"][special["special_kind"] == "fold"].iloc[0])
     again = float(FOLDED.thresholds().F_restabilization)
     found = re.search(r"beside the stable straight rod at F = ([\d.]+) to ([\d.]+\d)", portrait.paragraph)
     assert [float(end) for end in found.groups()] == pytest.approx([again, fold], rel=1e-8)
+
+
+def test_what_is_not_decided_is_not_denied(portrait):
+    view = portrait.results.branch
+    unknown = {name: np.full_like(view.variables[name], -1) for name in UNDECIDED}
+    views = {**portrait.results.views, "branch": replace(view, variables={**view.variables, **unknown})}
+    text = paragraph(replace(portrait.results, views=views))
+    assert "Stable cycles: none is known." in text
+    assert "It is not known whether a stable cycle exists beside the stable straight rod." in text
 
 
 def test_cycles_are_those_of_the_limit_cycle_task(portrait):
@@ -79,7 +101,7 @@ def test_the_picture_has_the_curves_of_the_branch(portrait):
     assert stars[0].get_ydata() == pytest.approx([cycle.period for cycle in portrait.cycles.values()])
 
 
-@pytest.mark.parametrize("suffix", ["png", "svg", "pdf", "html"])
+@pytest.mark.parametrize("suffix", few(["png", "html", "svg", "pdf"], 2))
 def test_a_portrait_is_written_in_every_format(portrait, tmp_path, suffix):
     path = tmp_path / f"p.{suffix}"
     assert portrait.save(path).startswith(f"wrote {path}: ")
@@ -111,6 +133,9 @@ def test_a_notebook_shows_the_picture_and_a_terminal_the_paragraph(portrait):
 def test_a_rod_that_never_beats_has_the_reasons_in_the_places_of_the_drawings():
     portrait = rs.Rod(k1=100, k2=1e4, gamma3=1e-4).portrait(accuracy=ACCURACY)
     assert "No branch of cycles begins at a Hopf point in this range." in portrait.paragraph
+    end = portrait.thresholds.F_end
+    assert end < 200
+    assert f"gamma1 = 1 was searched up to F = {end:.6g}, not to F = 200:" in portrait.paragraph
     assert portrait.cycles == {}
     said = " ".join(
         " ".join(text.get_text().split()) for axes in portrait.figure().axes for text in axes.findobj(Text)
@@ -126,6 +151,8 @@ def test_segments_of_rubber_have_cycles():
     assert portrait.branch is not None
     assert portrait.cycles
     assert not portrait.missing
+    words = "The rod with k1 = 500, k2 = 10000, gamma3 = 0.0001, gamma1 = 1, law neo_hookean, a profile along"
+    assert portrait.paragraph.startswith(f"{words} its length was searched up to F = 50. ")
 
 
 def test_bad_choices_are_refused():

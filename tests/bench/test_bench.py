@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from rods import rod_of
+from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
 from rodsweep.bench.machine import machine
@@ -153,6 +154,7 @@ def test_a_name_that_cannot_take_the_markdown_is_refused_at_once(command, name):
     assert done.stderr.startswith("rodsweep: --output")
 
 
+@survey_only
 def test_command_times_the_peers_of_its_checkout(command, tmp_path):
     done = command("bench", "spectrum", "--quick", "-o", "b.md")
     assert done.returncode == 0, done.stderr

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import RANK
+from surveyed import survey_only
 
 from rodsweep.bench.sweep import followed
 from rodsweep.bench.sweep import study as sweep
@@ -53,6 +54,7 @@ def row(name, points, ranks, seconds, memory):
     return measured(case, ranks, runs)
 
 
+@survey_only
 def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded):
     """Its runs are forked from a loaded process; the tests below start theirs as users do."""
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
@@ -84,7 +86,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
 def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
     """Up to a kill at the last point, and in the next run, which reads all that is there."""
     peaks = {}
-    for points in (2_000, 100_000):
+    for points in (2_000, 50_000):
         case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
         killed = run(case, 1)
         assert killed.journal > 74 * (points - 1)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from surveyed import few
 
 import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
@@ -149,7 +150,7 @@ def random_arm(rng):
     return SlenderArm(**given, **({} if load is None else {"pressure": load}))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", few(range(6), 2))
 def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     arm = random_arm(np.random.default_rng(seed))
     report = report_on(arm)

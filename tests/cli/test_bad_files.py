@@ -178,10 +178,10 @@ def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
     assert not complaints, report(complaints)
 
 
-@pytest.mark.parametrize("name", ["spectrum", "limit_cycle"], indirect=True)
+@pytest.mark.parametrize("name", ["list", "limit_cycle"], indirect=True)
 def test_odd_things_among_the_journals_do_no_harm(results, tmp_path, name):
     complaints = []
-    for oddity in OF_CHAINS if name == "limit_cycle" else JOURNALS:
+    for oddity in OF_CHAINS if name == "limit_cycle" else list(JOURNALS)[:: 1 if MORE > 1 else 2]:
         path = results.copied(name, "half", tmp_path / "a")
         journal = Path(f"{path}.journal")
         JOURNALS[oddity](journal)
@@ -242,10 +242,11 @@ def tried(results, path, what, lines):
 
 def test_result_that_another_program_made_unfit_is_refused(results, tmp_path, name):
     complaints = []
-    for edit, change in shared(MISFITS.items(), name, 1):
+    for number, (edit, change) in enumerate(shared(MISFITS.items(), name, 1)):
         path = changed(results, name, "whole", change, tmp_path / "a")
         before = path.read_bytes()
-        lines = [*((words, {2}) for words in (SHOW, RUN, MERGE)), *drawn(name, {2})]
+        read = (SHOW, MERGE, plot_of(name)) if MORE > 1 else [(SHOW, MERGE, plot_of(name))[number % 3]]
+        lines = [(words, {2}) for words in (RUN, *read)]
         complaints += tried(results, path, edit, lines)
         if path.read_bytes() != before:
             complaints.append(f"{edit}: the file is changed")

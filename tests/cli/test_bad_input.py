@@ -93,11 +93,14 @@ def report(complaints, total):
 def test_mutated_config_is_refused_in_one_sentence_or_valid(run, tmp_path, kind):
     complaints, cases = [], cases_of(kind)
     assert len(cases) >= 50
-    for case in cases:
-        (tmp_path / "c.yaml").write_bytes(case.config)
-        outcome = run(tmp_path, "check", "c.yaml", *words_of(case))
+    places = [tmp_path / str(number) / "here" for number in range(len(cases))]
+    for place, case in zip(places, cases, strict=True):
+        place.mkdir(parents=True)
+        (place / "c.yaml").write_bytes(case.config)
+    runs = [(place, ("check", "c.yaml", *words_of(case))) for place, case in zip(places, cases, strict=True)]
+    for place, case, outcome in zip(places, cases, run.several(runs), strict=True):
         why = complaint(outcome, case.refused, case.says)
-        left = {path.name for path in tmp_path.iterdir()} - {"c.yaml"}
+        left = {path.name for path in place.iterdir()} - {"c.yaml"}
         if why or left:
             complaints.append((case.name, why or f"it leaves {left}"))
     assert not complaints, report(complaints, len(cases))
@@ -111,9 +114,13 @@ def test_kinds_have_hundreds_of_cases_and_most_must_be_refused():
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
 def test_untouched_configs_are_valid_also_as_the_mutations_write_them(run, tmp_path, path):
-    for content in (path.read_bytes(), configs.text_of(configs.tree_of(path))):
-        (tmp_path / "c.yaml").write_bytes(content)
-        outcome = run(tmp_path, "check", "c.yaml")
+    places = [tmp_path / name / "here" for name in ("own", "written")]
+    for place, content in zip(
+        places, (path.read_bytes(), configs.text_of(configs.tree_of(path))), strict=True
+    ):
+        place.mkdir(parents=True)
+        (place / "c.yaml").write_bytes(content)
+    for outcome in run.several([(place, ("check", "c.yaml")) for place in places]):
         assert outcome == Outcome(0, False, outcome.out, "")
         assert outcome.out.startswith("c.yaml: valid")
 
@@ -121,6 +128,14 @@ def test_untouched_configs_are_valid_also_as_the_mutations_write_them(run, tmp_p
 def test_guards_see_a_solve(run, tmp_path, no_solver):
     (tmp_path / "c.yaml").write_bytes(CONFIGS[0].read_bytes())
     assert "is imported although nothing is to be solved" in run(tmp_path, "run", "c.yaml").fault
+    places = [tmp_path / str(number) / "here" for number in range(3)]
+    for place in places:
+        place.mkdir(parents=True)
+        (place / "c.yaml").write_bytes(CONFIGS[0].read_bytes())
+    among = run.several(
+        [(place, (word, "c.yaml")) for place, word in zip(places, ("check", "run", "check"), strict=True)]
+    )
+    assert [end.fault == "" for end in among] == [True, False, True]
     assert the_command(tmp_path, no_solver, "run", "c.yaml").status == MET_SOLVER
 
 

@@ -50,7 +50,7 @@ def results(loaded, tmp_path_factory):
         (("show", "."), ". is not a file"),
         (
             ("run", "c.csv"),
-            "c.csv is no config but a table; a config names a list of points, parameters.points",
+            "c.csv is a table, not a config; name the table in a config, as parameters.points",
         ),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",

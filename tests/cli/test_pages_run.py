@@ -16,7 +16,10 @@ from surveyed import survey_only
 
 DOCS = ROOT / "docs"
 PAGES = [*sorted((DOCS / "tasks").glob("*.md")), *sorted((DOCS / "howto").glob("*.md"))]
-LONG_PAGES = ("branch", "limit_cycle", "phase_diagram", "criticality", "amplitude-map")
+LONG_PAGES = (
+    "branch", "limit_cycle", "phase_diagram", "criticality", "amplitude-map", "thresholds", "modes",
+    "configs", "reports", "figures",
+)  # fmt: skip
 """Names of pages whose commands take longer than all others together."""
 CLUSTER = ROOT / "tests" / "cluster" / "test_slurm.py"
 BAD_INPUT = 2
@@ -149,6 +152,7 @@ def test_a_line_that_does_not_come_is_seen():
     assert missing(["a 1"], come) == "nothing, but there is 'b 2.0001'"
 
 
+@survey_only
 def test_arm_page_says_what_comes(command):
     text = (ROOT / "docs" / "arm.md").read_text()
     said = [pair for language, block in BLOCK.findall(text) if language == "console" for pair in typed(block)]

@@ -12,6 +12,7 @@ from contents import content, same
 from faults import small
 from ranks import PATIENCE, kill, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
+from surveyed import few
 
 from rodsweep.results.file.view import read_view
 
@@ -27,7 +28,7 @@ spectrum: {modes: 4, follow: false}
 """
 
 
-@pytest.mark.parametrize("ranks", [1, 3])
+@pytest.mark.parametrize("ranks", few([3, 1], 1))
 def test_any_number_of_ranks_gives_the_same_file(command, ranks):
     command.write("c.yaml", SMALL)
     alone = command("run", "c.yaml", "-o", "alone.h5")
@@ -40,7 +41,7 @@ def test_any_number_of_ranks_gives_the_same_file(command, ranks):
         assert file.attrs["ranks"] == ranks
 
 
-MANY = SMALL.replace("num: 21", "num: 100")
+MANY = SMALL.replace("num: 21", "num: 40")
 
 
 @pytest.mark.parametrize("whole_job", [True, False], ids=["all ranks", "one rank"])
@@ -60,7 +61,7 @@ def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
     assert "100 of the points that are done wait" in " ".join(command("show", "c.h5").stdout.split())
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
-    assert "1100 of 1200 points to do, 100 kept" in again.stdout
+    assert "380 of 480 points to do, 100 kept" in again.stdout
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(path), content(command.directory / "whole.h5"))
     assert not (command.directory / "c.h5.journal").exists()

@@ -221,6 +221,7 @@ JUMP = "material: {profile: {u: [0, 0.4, 0.4, 1], k3: [1, 1, 0.2, 0.2]}}"
 SAID = [
     (CONE, RUBBER, "a cone of radius ratio 0.5 of neo-Hookean rubber with a swelling section"),
     (ALONE, RUBBER, "a uniform arm of neo-Hookean rubber with a swelling section"),
+    (ALONE, JUMP.replace("0.4, 0.4", "0.4, 0.5"), "an arm with a profile of 4 rows of linear material"),
     (ALONE, JUMP, "an arm with a profile of 4 rows with 1 jump of linear material"),
 ]
 

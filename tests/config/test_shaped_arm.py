@@ -94,7 +94,7 @@ def test_an_arm_alike_all_along_is_standard(tmp_path):
             f"{CAST}, length: [11 cm, 12 cm]",
             "",
             "",
-            "parameters.arm.length has several values, but the segments make one; leave it out",
+            "parameters.arm.length has several values, but the segments fix the length; leave it out",
         ),
         (f"{CAST}, radius: 6 mm", "", "", "parameters.arm.radius = 0.006 m and segments are both given"),
         (
@@ -122,6 +122,6 @@ def test_bad_shapes_are_refused(tmp_path, arm, more, beside, sentence):
 def test_profiles_that_differ_along_an_axis_of_one_parameter_are_refused(tmp_path):
     """Poisson's ratio is an axis of k2, and changes the shear of a tube and of solid segments otherwise."""
     tube = CAST.replace("radius 6 mm", "radius 6 mm, inner_radius 3 mm")
-    with pytest.raises(InputError, match=r"parameters\.arm\.poisson has several values, with which"):
+    with pytest.raises(InputError, match=r"parameters\.arm\.poisson has several values, and the ratios"):
         config(tmp_path, f"{tube}, poisson: [0.4, 0.5]")
     assert config(tmp_path, f"{CAST}, poisson: [0.4, 0.5]").build.profile

@@ -8,6 +8,7 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.roots import refined
 from rodsweep.discretization.straight.arm_pencil import ArmMesh, ArmPencil
 from rodsweep.discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh
+from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -18,8 +19,9 @@ SHIFT = 500.0
 
 def leading(rod, mesh, number):
     """The eigenvalues of the pencil nearest to a shift, by dense shift-and-invert."""
-    A, B = ArmPencil(mesh).dense(rod)
-    inverse = np.linalg.solve(A - SHIFT * np.diag(B), np.diag(B))
+    form = dense_form(rod, ArmPencil(mesh))
+    M = np.diag(form.B)
+    inverse = np.linalg.solve(form.A - SHIFT * M, M)
     m = np.linalg.eigvals(inverse)
     w = SHIFT + 1 / m[np.abs(m) > 1e-8]
     return w[np.argsort(-w.real)][:number]
@@ -29,10 +31,10 @@ def leading(rod, mesh, number):
     "rod", [Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3), Rod(F=9.0, k1=40.0, k2=np.inf, gamma3=0.0)]
 )
 def test_uniform_arm_has_the_pencil_of_the_uniform_rod(rod):
-    A, B = ArmPencil(ArmMesh((0.0, 0.5, 1.0), 10)).dense(rod)
-    expected, mass = assemble(2, 10).dense(rod)
-    np.testing.assert_allclose(A, expected, rtol=0, atol=1e-14 * np.abs(expected).max())
-    np.testing.assert_allclose(B, mass, rtol=1e-14)
+    form = dense_form(rod, ArmPencil(ArmMesh((0.0, 0.5, 1.0), 10)))
+    expected = dense_form(rod, assemble(2, 10))
+    np.testing.assert_allclose(form.A, expected.A, rtol=0, atol=1e-14 * np.abs(expected.A).max())
+    np.testing.assert_allclose(form.B, expected.B, rtol=1e-14)
 
 
 @pytest.mark.parametrize("seed", range(8))

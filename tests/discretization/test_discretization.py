@@ -6,7 +6,7 @@ import pytest
 from rodsweep.discretization.elements.basis import differentiation, interpolation
 from rodsweep.discretization.elements.mesh import configuration, mesh
 from rodsweep.discretization.elements.quadrature import gauss, gauss_lobatto
-from rodsweep.discretization.elements.resolution import LARGEST_ORDER, finer, required_order, resolution_for
+from rodsweep.discretization.elements.resolution import RESOLUTION, finer, required_order, resolution_for
 from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.discretization.stress.tip_motion import tip_matrices, tip_motion
 from rodsweep.model.rod import Rod
@@ -80,7 +80,7 @@ def test_resolution_grows_with_waves_and_digits():
     last = 0
     for wave in (5, 20, 60, 200, 1000):
         resolution = resolution_for(wave, 1e-10)
-        assert resolution.order <= LARGEST_ORDER + 1
+        assert resolution.order <= RESOLUTION.largest_order + 1
         assert resolution.unknowns > last
         assert finer(resolution).unknowns >= 1.2 * resolution.unknowns
         last = resolution.unknowns
@@ -89,7 +89,7 @@ def test_resolution_grows_with_waves_and_digits():
 @pytest.mark.parametrize(("elements", "order"), [(1, 15), (3, 6)])
 def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, order):
     grid, rng = mesh(elements, order), np.random.default_rng(5)
-    strains, rates = rng.standard_normal((2, 3, 4, grid.nodes + 1))
+    strains, rates = rng.standard_normal((2, 3, 4, grid.element_nodes.size))
     tip, velocity = np.empty((2, 4, 3))
     tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
     tiny = 1e-30

@@ -10,6 +10,7 @@ from html import unescape
 
 import pytest
 from explore.browser import LONGEST, Browser, needs_browser
+from surveyed import few, survey_only
 
 import rodsweep as rs
 from rodsweep.errors import InputError
@@ -111,6 +112,7 @@ def mode(browser: Browser) -> str:
     return browser.model("arm_source", "tags")[0]
 
 
+@survey_only
 def test_an_arm_that_is_dragged_by_its_tip_and_let_go_moves_into_its_cycle(browser):
     assert mode(browser) == "beats"
     browser.drag("beating_figure", [(0.9, 0.1), (0.8, 0.3), (0.7, 0.4), (0.6, 0.45)])
@@ -128,6 +130,7 @@ def test_an_arm_that_is_dragged_by_its_tip_and_let_go_moves_into_its_cycle(brows
     assert abs(tip) < 0.01
 
 
+@survey_only
 def test_the_film_is_saved_as_a_gif(browser):
     browser.run(
         "HTMLAnchorElement.prototype.click = function () { window.film = [this.download, this.href] }"
@@ -144,14 +147,16 @@ def test_the_film_is_saved_as_a_gif(browser):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [
-        ("F", "abc"), ("F", ""), ("F", "1e5"), ("F", "nan"), ("k1", "-1"), ("k1", "0"), ("k2", "1,5"),
-        ("k2", "<b>x</b>"), ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"),
-        ("taper", "1e9"), ("k1", "40"), ("k2", "1e400"),
-    ],
+    few(
+        [
+            ("F", "abc"), ("F", ""), ("k1", "40"), ("k2", "<b>x</b>"),
+            ("taper", "1e9"), ("F", "1e5"), ("F", "nan"), ("k1", "-1"), ("k1", "0"), ("k2", "1,5"),
+            ("k2", "1e400"), ("gamma3", "-0.1"), ("gamma3", "inf"), ("gamma1", "0"), ("taper", "0"),
+        ],
+        4,
+    ),
 )  # fmt: skip
-def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(opened, name, value):
-    browser = opened
+def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended(browser, name, value):
     before = browser.model(f"{name}_field", "value")
     change(browser, f"{name}_field", value)
     browser.wait_for("Bokeh.documents[0].get_model_by_name('spectrum_message').visible")
@@ -166,8 +171,8 @@ def test_a_bad_value_has_its_sentence_in_place_of_the_picture_until_it_is_mended
 
 
 def test_a_slider_that_never_rests_ends_at_its_last_value(browser):
-    for step in range(40):
-        change(browser, "F_slider", 20.0 + step)
+    for step in range(20):
+        change(browser, "F_slider", 40.0 + step)
     solved(browser)
     F = float(browser.model("F_field", "value"))
     assert pytest.approx(59.0) == F

@@ -83,7 +83,7 @@ def test_an_answer_to_another_place_of_the_tip_is_not_shown():
     kept = []
     solvers = ImmediateSolvers()
     page = page_with(solvers)
-    solvers.ask = lambda session, question, done: kept.append((question, done))
+    solvers.ask = lambda session, question, done, progress: kept.append((question, done))
     drag(page, "let go", 0.6, 0.5)
     drag(page, "let go", 0.5, -0.5)
     question, done = kept[0]

@@ -9,7 +9,7 @@ from bokeh.document import Document
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
-from rodsweep.explore.page import AT_ONCE, Page
+from rodsweep.explore.page import AT_ONCE, STOPPED, Page
 from rodsweep.explore.pictures.diagram import DiagramCell, cells
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
@@ -28,7 +28,7 @@ class ImmediateSolvers:
         self.kinds = kinds
         self.questions: list[Question] = []
 
-    def ask(self, session, question, done):
+    def ask(self, session, question, done, progress=None):
         self.questions.append(question)
         if question.kind not in self.kinds:
             return
@@ -125,7 +125,7 @@ def test_the_sign_names_what_is_being_solved_until_it_is_answered():
 def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
     kept = []
     solvers = ImmediateSolvers()
-    solvers.ask = lambda session, question, done: kept.append((question, done))
+    solvers.ask = lambda session, question, done, progress: kept.append((question, done))
     page = page_with(solvers)
     page.change({"F": "60"})
     question, done = next(each for each in kept if each[0].kind == "spectrum")
@@ -172,3 +172,98 @@ def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
         DiagramCell(0.0, 0.5, pytest.approx(root), pytest.approx(10 * root), 0),
         DiagramCell(0.5, 2.0, pytest.approx(root), pytest.approx(10 * root), 2),
     ]
+
+
+def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
+    class Halfway(ImmediateSolvers):
+        dropped: list[str] = []
+
+        def ask(self, session, question, done, progress=None):
+            super().ask(session, question, done)
+            if question.kind == "cycles":
+                progress(Reply("progress", {"words": "curve 1 of <2>", "share": 0.5}, 1.0))
+
+        def drop(self, session, kind):
+            self.dropped.append(kind)
+
+    solvers = Halfway()
+    page = page_with(solvers)
+    stop = page.contents.buttons["stop"]
+    assert page.contents.buttons["cycles"].visible
+    run_callbacks(page.document)
+    assert not stop.visible
+    page.solve("cycles")
+    run_callbacks(page.document)
+    assert page.contents.working.text == "solving folds and torus points (curve 1 of &lt;2&gt;, 50%) ..."
+    assert stop.visible
+    page.stop()
+    assert (page.contents.working.text, stop.visible, solvers.dropped) == ("", False, ["cycles"])
+
+
+def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
+    solvers = ImmediateSolvers((*AT_ONCE, "bent"))
+    page = page_with(solvers)
+    run_callbacks(page.document, seconds=True)
+    diagram, *_ = [question for question in solvers.questions if question.kind == "diagram"]
+    page._answered(diagram, Reply("refused", {"sentence": ""}, 0.0))
+    page.solve("cycles")
+    page.stop()
+    page.bend((0.6, 0.5))
+    run_callbacks(page.document)
+    assert len(page.contents.beating.bent.data["x"]) > 0
+    page.let_go((0.6, 0.5))
+    page.stop()
+    assert len(page.contents.beating.bent.data["x"]) == 0
+    solvers.questions.clear()
+    page.change({"F": "51"})
+    run_callbacks(page.document, seconds=True)
+    assert "branch" in {question.kind for question in solvers.questions}
+    assert "diagram" not in {question.kind for question in solvers.questions}
+
+
+def test_a_failure_takes_the_sign_and_the_button_away():
+    class Failing(ImmediateSolvers):
+        def ask(self, session, question, done, progress=None):
+            super().ask(session, question, done)
+            if question.kind == "cycles":
+                progress(Reply("progress", {"words": "point 1 of 8", "share": None}, 1.0))
+                done(Reply("failed", {"sentence": "the solver ended unexpectedly"}, 2.0))
+
+    page = page_with(Failing())
+    page.solve("cycles")
+    run_callbacks(page.document)
+    assert page.contents.working.text == ""
+    assert not page.contents.buttons["stop"].visible
+    assert page.contents.diagram.card.message.text == "the solver ended unexpectedly"
+
+
+def test_the_pictures_of_an_arm_are_in_si_units():
+    page = page_with(ImmediateSolvers(("spectrum", "thresholds", "growth")), "tab=arm&F_max=60")
+    arm = rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="12 Pa s", pressure="4 kPa")
+    spectrum, growth = page.contents.spectrum, page.contents.growth
+    answer, thresholds = arm.spectrum(), arm.thresholds(F_max=60)
+    assert not page.contents.buttons["cycles"].visible
+    labels = [axis.axis_label for axis in (*spectrum.card.figure.axis, *growth.card.figure.axis)]
+    assert labels == ["growth rate (1/s)", "frequency (Hz)", "pressure (kPa)", "growth rate (1/s)"]
+    assert spectrum.source.data["growth"][0] == pytest.approx(float(answer.growth_rate_si[0]))
+    assert spectrum.source.data["frequency"][0] == pytest.approx(float(answer.frequency_hz[0]))
+    assert len(growth.rates.data["F"]) > 100
+    at = np.interp(3.2, growth.rates.data["F"], growth.rates.data["first"])
+    softer = arm.replace(pressure="3.2 kPa").spectrum()
+    assert at == pytest.approx(float(softer.growth_rate_si[0]), rel=1e-3)
+    onset, hopf = (float(at) / 1e3 for at in (thresholds.pressure_onset, thresholds.pressure_hopf))
+    title = f"Oscillates from {onset:.5g} kPa, flutters from {hopf:.5g} kPa (certified)"
+    lines = growth.card.figure.title.text.splitlines()
+    assert " ".join(lines) == title
+    assert max(map(len, lines)) <= 46  # a longer line would be cut
+    assert growth.lines.data["frequency"][1] == pytest.approx(float(thresholds.frequency_hopf_hz))
+
+
+def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
+    page = page_with(ImmediateSolvers())
+    run_callbacks(page.document, seconds=True)
+    page.stop()
+    for picture in (page.contents.branches, page.contents.diagram):
+        assert picture.card.message.text == STOPPED
+        assert not picture.card.figure.visible
+    assert page.contents.working.text == ""

@@ -85,7 +85,7 @@ def test_a_newer_question_cancels_an_older_one_in_the_same_process(solver):
     new: list[Reply] = []
     solver.ask(("page", "branch"), SLOW, old.append)
     pid = solver.pid
-    wait_until(lambda: _has_read(solver))
+    wait_until_it_solves(solver)
     solver.ask(("page", "branch"), QUICK, new.append)
     wait_until(lambda: new)
     assert (old, new[0].outcome, solver.pid, solver.starts) == ([], "answer", pid, 1)
@@ -112,7 +112,7 @@ def test_questions_of_another_page_are_kept(solver):
 def test_a_page_that_ends_takes_its_questions_along(solver):
     replies: list[Reply] = []
     solver.ask(("one", "branch"), SLOW, replies.append)
-    wait_until(lambda: _has_read(solver))
+    wait_until_it_solves(solver)
     solver.forget("one")
     solver.ask(("two", "thresholds"), QUICK, replies.append)
     wait_until(lambda: replies)
@@ -180,8 +180,27 @@ def test_a_solver_ends_in_the_middle_of_a_solve_when_its_page_is_killed():
     wait_until(lambda: not exists(pid))
 
 
-def _has_read(solver: SolverProcess) -> bool:
-    """Whether the process of a solver solves: it has used a second of processor time since its start."""
+def wait_until_it_solves(solver: SolverProcess) -> None:
+    """Waits until the process has used half a second of processor time since it became ready."""
+    wait_until(lambda: solver.is_ready)
+    before = _seconds_used(solver)
+    wait_until(lambda: _seconds_used(solver) > before + 0.5)
+
+
+def _seconds_used(solver: SolverProcess) -> float:
     with open(f"/proc/{solver.pid}/stat") as stat:
         used = sum(map(int, stat.read().rpartition(")")[2].split()[11:13]))
-    return used / os.sysconf("SC_CLK_TCK") > 3.0
+    return used / os.sysconf("SC_CLK_TCK")
+
+
+def test_a_long_solve_sends_its_progress_until_it_is_dropped(solver):
+    replies: list[Reply] = []
+    places: list[Reply] = []
+    solver.ask(("page", "branch"), SLOW, replies.append, places.append)
+    wait_until(lambda: places)
+    assert places[0].outcome == "progress"
+    assert places[0].content["words"]
+    solver.drop(("page", "branch"))
+    solver.ask(("page", "thresholds"), QUICK, replies.append)
+    wait_until(lambda: replies)
+    assert ([reply.outcome for reply in replies], solver.starts) == (["answer"], 1)

@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 from explore.test_page import ImmediateSolvers, page_with, run_callbacks, shown
+from surveyed import few
 
 import rodsweep as rs
 from rodsweep.explore.page import Page
+from rodsweep.explore.pictures.card import TORUS
 from rodsweep.explore.pictures.numbers import written
-from rodsweep.explore.stored import opened
+from rodsweep.explore.solving.diagrams import code_of
+from rodsweep.explore.stored import opened, stored_diagram
+from rodsweep.explore.stored_results import StoredResults
 
 ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
 CYCLES = f"task: limit_cycle\nparameters: {{F: [20, 40, 50], {ROD}}}\nlimit_cycle: {{shapes: 16}}\n"
@@ -66,7 +70,7 @@ def test_a_stored_rod_at_rest_is_drawn_straight(command):
     assert page.contents.beating.shapes.data["x"][-1] == pytest.approx(1 - 20 / 1e4)
 
 
-@pytest.mark.parametrize("query", ["F=41", "k2=110", "gamma1=2", "law=fixed", "taper=0.9"])
+@pytest.mark.parametrize("query", few(["F=41", "law=fixed", "k2=110", "gamma1=2", "taper=0.9"], 2))
 def test_what_the_file_does_not_hold_is_solved(command, query):
     _, solvers = opened_page(command, CYCLES, query)
     assert "cycle" in asked(solvers)
@@ -101,6 +105,24 @@ def test_stored_curves_of_folds_are_drawn_in_the_diagram(command):
     assert page.contents.diagram.legend.visible
 
 
+def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own(command):
+    """On the smallest plane with folds, whose curves become torus points: real ones take 5 s."""
+    command.write("result.yaml", PLANE)
+    path = command.solved("result.yaml")
+    state, _ = opened(path)
+    data = rs.open(path).load()
+    kind = data["cycle_curve_kind"]
+    kind.values[:] = code_of(kind, "torus")
+    page = page_with(
+        NoSolvers(), state=state, stored=StoredResults(path, data, state, stored_diagram(data, state))
+    )
+    curves = page.contents.diagram.of_cycles.data
+    assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS, "dashed")]
+    assert curves["x"][0] == pytest.approx(data["cycle_curve_F"].values)
+    words = [item.label.value for item in page.contents.diagram.legend.items]
+    assert (page.contents.diagram.legend.visible, words) == (True, ["folds of cycles", "torus points"])
+
+
 def test_curves_of_folds_are_solved_by_their_button_only():
     solvers = NoSolvers()
     page = page_with(solvers)
@@ -109,3 +131,54 @@ def test_curves_of_folds_are_solved_by_their_button_only():
     page.solve("cycles")
     assert "cycles" in asked(solvers)
     assert "folds and torus points" in page.contents.working.text
+
+
+OF_ARM = "length: [8 cm, 10 cm], radius: 5 mm, young: 100 kPa, viscosity: 12 Pa s"
+CYCLES_OF_ARMS = f"""task: limit_cycle
+parameters: {{arm: {{{OF_ARM}, pressure: [1 kPa, 4.00004 kPa, 5 kPa]}}}}
+limit_cycle: {{shapes: 16}}
+"""
+THRESHOLDS_OF_ARMS = f"task: thresholds\nparameters: {{arm: {{{OF_ARM}, law: neo_hookean}}}}\n"
+BRANCH_OF_ARM = f"task: branch\nparameters: {{arm: {{{OF_ARM.replace('[8 cm, 10 cm]', '10 cm')}}}}}\n"
+BRANCH_OF_ARM += "branch: {start: 30, stop: 40}\naccuracy: 1.0e-4\n"
+
+
+def test_stored_cycles_of_arms_are_drawn_and_not_solved_again(command):
+    page, solvers = opened_page(command, CYCLES_OF_ARMS)
+    arms = rs.open(command.directory / "result.h5").sel(length=0.1)
+    data = arms.isel(pressure=1)
+    assert (page.state.tab, page.state.arm["pressure"]) == ("arm", "4 kPa")  # the control has five digits
+    assert not {"cycle", "branch"} & asked(solvers)
+    assert float(shown(page)["period_si"]) == pytest.approx(float(data["period_si"]), rel=1e-7)
+    picture = page.contents.beating.shapes.data
+    assert picture["y"] == pytest.approx(10 * data["shape_y"].values.ravel(), abs=1e-6)
+    drawn = page.contents.branches.cycles.data
+    assert drawn["F"] == pytest.approx([1, 4.00004, 5])
+    assert drawn["y"] == pytest.approx([0, *10 * arms["tip_y_max"].values[1:]])
+    loads = page.contents.branches.card.figure.x_range
+    assert (loads.start < 1, loads.end > 5) == (True, True)  # no dot is cut at an edge
+    page._move_load(type("Click", (), {"x": 4.9}))
+    assert page.state.arm["pressure"] == "5 kPa"
+    page.change({"length": "8 cm"})
+    assert not {"cycle", "branch"} & asked(solvers)
+    page.change({"pressure": "4.0003 kPa"})
+    assert "cycle" in asked(solvers)
+
+
+def test_stored_thresholds_of_arms_are_the_diagram(command):
+    page, solvers = opened_page(command, THRESHOLDS_OF_ARMS)
+    data = rs.open(command.directory / "result.h5")
+    assert (page.state.law, page.state.second) == ("fixed", "length")
+    assert "diagram" not in asked(solvers)
+    drawn = page.contents.diagram.crossings.data
+    stored = data["crossing_pressure"].values / 1e3
+    assert np.sort(drawn["x"]) == pytest.approx(np.sort(stored[stored < 8]))
+    assert set(drawn["y"]) == {8, 10}
+
+
+def test_a_stored_branch_of_an_arm_is_drawn(command):
+    page, solvers = opened_page(command, BRANCH_OF_ARM)
+    data = rs.open(command.directory / "result.h5").squeeze()
+    assert "branch" not in asked(solvers)
+    ys = np.concatenate(page.contents.branches.pieces.data["y"])
+    assert np.max(ys) == pytest.approx(100 * np.nanmax(data["tip_y_max_si"].values))

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -93,6 +93,27 @@ class Isolated:
         answer = self._ask(json.dumps(request | {name: str(path) for name, path in streams.items()}))
         out, err = (path.read_text(errors="backslashreplace") for path in streams.values())
         return Outcome(answer["status"], answer["slow"], out, err)
+
+    def several(
+        self, runs: Sequence[tuple[Path, Sequence[object]]], seconds: int = 2, memory: float = 500e6
+    ) -> list[Outcome]:
+        """Runs of the command, each in a directory of its own, which forks a child only where one has ended.
+
+        Beside each directory there are files of its run then. `seconds` are those of each, `memory` of all.
+        """
+        asked = [
+            (str(directory), [os.fsencode(str(word)).hex() for word in words]) for directory, words in runs
+        ]
+        limits = {"seconds": seconds, "memory": int(memory), "patience": PATIENCE}
+        ended = self._ask(json.dumps({"runs": asked} | limits))["runs"]
+        outcomes = []
+        for (directory, _), one in zip(runs, ended, strict=True):
+            out, err = (
+                directory.with_name(name).read_text(errors="backslashreplace")
+                for name in ("stdout", "stderr")
+            )
+            outcomes.append(Outcome(one["status"], one["slow"], out, err))
+        return outcomes
 
     def content(self, path: Path) -> dict[str, list]:
         """Type, shape and bytes of each variable of a file but `seconds`; empty if it cannot be read."""

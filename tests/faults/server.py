@@ -20,6 +20,7 @@ import socket
 import sys
 import traceback
 from contextlib import suppress
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO, NoReturn
@@ -40,16 +41,13 @@ class NoSolver:
 
 def child(request: dict) -> NoReturn:
     """Runs the command in this process, which it ends."""
-    for stream, name in ((1, "stdout"), (2, "stderr")):
-        os.dup2(os.open(request[name], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), stream)
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    write_to(request["stdout"], request["stderr"])
     code = UNCAUGHT
     try:
         os.chdir(request["directory"])
         os.environ.update(request["environment"])
         limit_resources(request["seconds"], request["memory"])
-        request["words"] = [os.fsdecode(bytes.fromhex(word)) for word in request["words"]]
+        request["words"] = decoded(request["words"])
         if request["call"] == "content":
             print(json.dumps(content(Path(request["words"][0]))))
             code = 0
@@ -68,6 +66,67 @@ def child(request: dict) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
+
+
+def write_to(out: str, err: str) -> None:
+    """Lets this process write to two files, and read nothing."""
+    for stream, path in ((1, out), (2, err)):
+        file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        os.dup2(file, stream)
+        os.close(file)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+
+
+def decoded(words: list[str]) -> list[str]:
+    """Words of a command as they came."""
+    return [os.fsdecode(bytes.fromhex(word)) for word in words]
+
+
+def several(request: dict, first: int) -> NoReturn:
+    """Runs the command again and again in this process, from one of the runs on, until one run ends it.
+
+    Each has a directory, beside which it leaves its output and last its exit status: a run without is the one
+    that ended the process.
+    """
+    from rodsweep.cli import main
+
+    limit_resources(None, request["memory"])
+    for directory, words in request["runs"][first:]:
+        place = Path(directory).parent
+        write_to(f"{place}/stdout", f"{place}/stderr")
+        os.chdir(directory)
+        limit = int(sum(os.times()[:2]) + request["seconds"]) + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+        sys.argv = ["rodsweep", *decoded(words)]
+        code = UNCAUGHT
+        try:
+            main()
+            code = 0
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else 0
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        (place / "status").write_text(str(code))
+    os._exit(0)
+
+
+def answer_several(request: dict) -> dict:
+    """How each of several runs ended, in as few children as they leave alive."""
+    ended: list[dict] = []
+    places = [Path(directory).parent for directory, _ in request["runs"]]
+    while len(ended) < len(places):
+        one = answer(request | {"first": len(ended)})
+        for place in places[len(ended) :]:
+            if not (place / "status").exists():
+                ended.append(one)
+                break
+            ended.append({"status": int((place / "status").read_text()), "slow": False})
+    return {"runs": ended}
 
 
 def limit_resources(seconds: int | None, memory: int | None) -> None:
@@ -111,7 +170,7 @@ def answer(request: dict) -> dict:
     """How a child ended: its exit status, negative for a signal, and whether it took too long."""
     pid = os.fork()
     if not pid:
-        child(request)
+        several(request, request["first"]) if "first" in request else child(request)
     handle = os.pidfd_open(pid)
     waits = not select.select([handle], [], [], request["patience"])[0]
     if waits:
@@ -124,14 +183,17 @@ def answer(request: dict) -> dict:
 def keep_ranks(place: str, kernels: BinaryIO) -> NoReturn:
     """Forks a child for each rank that comes to a socket, until the process that started this one ends.
 
-    `kernels`: which compiled functions are loaded first, as `loaded_kernels` writes them.
+    `kernels`: which compiled functions are loaded when the first rank comes, as `loaded_kernels` writes them.
     """
     parent = os.pidfd_open(os.getppid())
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(place)
         server.listen(64)
-        load_for_ranks(kernels)
-        gc.freeze()
+        with kernels:
+            modules = kernels.read()
+        if parent not in select.select([server, parent], [], [])[0]:
+            load_for_ranks(modules)
+            gc.freeze()
         while parent not in select.select([server, parent], [], [])[0]:
             rank, _ = server.accept()
             if not os.fork():
@@ -220,10 +282,23 @@ def load(solving: bool, configs: list[str]) -> None:
             Team()
             with suppress(EnvironmentIncomplete):
                 job.task.solver().warm_up()
+    find_provenance(solving)
     if solving:
         draw()
     else:
         sys.meta_path.insert(0, NoSolver())
+
+
+def find_provenance(solving: bool) -> None:
+    """Finds commit and BLAS of this process once: asking git and all libraries takes as long as a run."""
+    from rodsweep.results.file.provenance import provenance
+
+    provenance()
+    if solving:
+        from rodsweep.solve.backend import blas_kernel
+
+        blas_kernel.blas = cache(blas_kernel.blas)
+        blas_kernel.blas()
 
 
 def draw() -> None:
@@ -255,13 +330,11 @@ def loaded_kernels() -> bytes:
     )
 
 
-def load_for_ranks(kernels: BinaryIO) -> None:
+def load_for_ranks(kernels: bytes) -> None:
     """Loads what the process that solves has loaded, but what starts MPI or PETSc."""
-    with kernels:
-        modules = pickle.load(kernels)
     refusal = NoSolver()
     sys.meta_path.insert(0, refusal)
-    for name, functions in modules.items():
+    for name, functions in pickle.loads(kernels).items():
         with suppress(AssertionError):
             module = import_module(name)
             for function, signatures in functions.items():
@@ -289,7 +362,9 @@ def main() -> None:
         os.dup2(2, 1)
         print("{}", file=answers, flush=True)
         for line in requests:
-            print(json.dumps(answer(json.loads(line))), file=answers, flush=True)
+            request = json.loads(line)
+            ended = answer_several(request) if "runs" in request else answer(request)
+            print(json.dumps(ended), file=answers, flush=True)
 
 
 if __name__ == "__main__":

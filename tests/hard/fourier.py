@@ -7,6 +7,7 @@ Nothing of the orbit solver is used but a first guess.
 import mixed_motion as mixed
 import numpy as np
 
+from rodsweep.discretization.element_strains import write_element_strains
 from rodsweep.discretization.elements.mesh import configuration
 from rodsweep.discretization.elements.periodic import coefficients, maxima
 from rodsweep.discretization.plane import balance
@@ -62,7 +63,8 @@ def period_and_largest_y(orbit, phases):
     form = MixedForm(orbit.form.rod, orbit.form.mesh)
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
     S, _ = form.fields(X)
-    E = S * form.nodal.compliance[:, None, :] + form.nodal.rest[:, None, :]
-    y = configuration(form.mesh, np.ascontiguousarray(E), np.zeros(3))[1, :, -1]
+    E = np.empty((*S.shape[:-1], form.mesh.element_nodes.size))
+    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal, form.mesh.order, E)
+    y = configuration(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
     return 2 * np.pi / frequency, float(maxima(coefficients(whole), whole)[0])

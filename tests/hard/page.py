@@ -28,7 +28,7 @@ BOOKKEEPING = (
     "unknowns a point",
     "every point was followed",
     "last run",
-    "a rank was busy",
+    "the ranks were busy",
     "the rank was busy",
     "parameter ",
     "status ",

@@ -547,35 +547,43 @@ def _complex(v, name):
     return v[f"{name}_real"] + 1j * v[f"{name}_imag"]
 
 
+HOPF_ROWS = {
+    "F, ": "crossing_F",
+    "frequency, ": "crossing_frequency",
+    "Re c, ": "landau_real",
+    "Im c, ": "landau_imag",
+    "Re dw/dF, ": "growth_slope_real",
+    "Im dw/dF, ": "growth_slope_imag",
+    "a, ": "amplitude_coefficient",
+    "b, ": "frequency_slope",
+}
+"""Variables in the rows of the table of Hopf points."""
+
+
 def _normal_forms(page, v):
-    """Every Hopf point of the one rod of a file."""
-    found, i = [], -1
-    stated = rf"NUMBER \(\+- ({NUMBER})\)"
-    for line in page:
-        why, old = [], i
-        for _, match in read(
-            page, rf"at F = {stated}, frequency {stated} rad/tau2; unstable modes above: NUMBER", only=line
-        ):
-            i += 1
-            why += [with_error(match[1], match[2], v["crossing_F"][i])]
-            why += [with_error(match[3], match[4], v["crossing_frequency"][i])]
-            why += [] if int(match[5]) == v["unstable_after"][i] else ["modes above"]
-        for symbol, name in (("c", "landau"), ("dw/dF", "growth_slope")):
-            for _, match in read(page, rf"Re {symbol} = {stated}, Im {symbol} = {stated}", only=line):
-                why += [with_error(match[1], match[2], v[f"{name}_real"][i])]
-                why += [with_error(match[3], match[4], v[f"{name}_imag"][i])]
-        for symbol, name in (("a", "amplitude_coefficient"), ("b", "frequency_slope")):
-            for _, match in read(page, rf"^  {symbol} = {stated}", only=line):
-                why += [with_error(match[1], match[2], v[name][i])]
+    """Every Hopf point of the one rod of a file: its sentence, and its two columns of the table."""
+    found = []
+    at = np.flatnonzero(v["crossing_kind"] > 0)
+    said = read(page, r"^(?:hopf|restabilization)\w* at F = NUMBER: .*; (NUMBER unstable modes?|number)")
+    assert len(said) == len(at)
+    for i, (line, match) in zip(at, said, strict=True):
+        why = [as_stated(match[1], v["crossing_F"][i])]
+        why += [] if match[3] is None or int(match[3]) == v["unstable_after"][i] else ["modes above"]
         for side, word in ((-1, "supercritical"), (1, "subcritical")):
-            if line.startswith(f"  {word}"):
-                why += [f"its side is {v['criticality'][i]}"] if v["criticality"][i] != side else [""]
+            if f": {word}, " in line:
+                why += [] if v["criticality"][i] == side else [f"its side is {v['criticality'][i]}"]
                 above = "F above it" in line
-                why += (
-                    ["cycles are on the other side"] if above != (v["amplitude_coefficient"][i] > 0) else []
-                )
+                other = above != (v["amplitude_coefficient"][i] > 0)
+                why += ["cycles are on the other side"] if other else []
                 read(page, r"unstable by NUMBER other modes", only=line)
-        found += [(line, "; ".join(filter(None, why)))] if why or i > old else []
+        found.append((line, "; ".join(filter(None, why))))
+    for label, name in HOPF_ROWS.items():
+        known = [i for i in at if np.isfinite(v[name][i])]
+        pairs = rf"( +NUMBER +{NUMBER}(?<=e[-+]\d\d))" * len(known)
+        for line, match in read(page, rf"^{re.escape(label)}\S+(?: \S+)?{pairs}$" if known else "(?!)"):
+            stated = [match[group].split() for group in range(1, len(match.groups()) + 1, 2)]
+            why = [with_error(*cells, v[name][i]) for i, cells in zip(known, stated, strict=True)]
+            found.append((line, "; ".join(filter(None, why))))
     return found
 
 
@@ -621,14 +629,14 @@ def cycle_sentences(view, page, keywords, fine):
     for pattern, name in (
         ("^period", "period"),
         ("^largest y of the tip", "tip_y_max"),
-        ("^largest nontrivial Floquet multiplier", "multiplier"),
+        ("^frequency", "frequency"),
+        ("^largest Floquet multiplier", "multiplier"),
     ):
-        for line, match in read(page, rf"{pattern}: NUMBER \(\+- ({NUMBER})\)"):
+        for line, match in read(page, rf"{pattern} +NUMBER +({NUMBER}(?<=e[-+]\d\d))"):
             found.append((line, with_error(match[1], match[2], float(v[name][orbits].max()))))
-            if name == "multiplier":
-                above = float(v[name][orbits].max()) > 1
-                found.append((line, "" if above == ("above" in line) else "the verdict is the other"))
-                read(page, "(?:below|above) NUMBER: the cycle", only=line)
+    for line, match in read(page, "the cycle is .*multiplier is (above|below) NUMBER"):
+        above = float(v["multiplier"][orbits].max()) > 1
+        found.append((line, "" if above == (match[1] == "above") else "the verdict is the other"))
     if beats.any():
         of_points = [name for name in v if v[name].shape[: len(shape)] == shape]
         found += _sizes(page, *({name: some[name][beats] for name in of_points} for some in (v, own)))
@@ -737,8 +745,10 @@ def diagram_sentences(view, page, keywords, fine):
             found += ranges(
                 page, rf"^{kind}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", first, rows[having]
             )
-            found += ranges(page, rf"^{kind}: .*; again on \d+, F = RANGE", again)
-            found += counts(page, rf"^{kind}: .*; again on NUMBER", sum(len(each) > 1 for each in of_kind))
+            found += ranges(page, rf"^{kind}: .*; again on \d+ of these rows, F = RANGE", again)
+            found += counts(
+                page, rf"^{kind}: .*; again on NUMBER of these rows", sum(len(each) > 1 for each in of_kind)
+            )
     found += _curve_sentences(view, page, row)
     if "stable_states" in v:
         found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)

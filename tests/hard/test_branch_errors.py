@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from surveyed import few
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
@@ -90,7 +91,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
             here = next_point(here, case.accuracy)
         except Unsolvable:
             return
-        outside = not 0 < here.at < case.stop or here.moment * last.moment < 0
+        outside = not 0 < here.at < case.stop or here.deflection * last.deflection < 0
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)
@@ -125,7 +126,7 @@ def broken_promises(case: Case) -> list[str]:
     return wrong
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+@pytest.mark.parametrize("case", few([*CASES.values()], 4), ids=few([*CASES], 4))
 def test_cycles_of_a_branch_are_as_near_to_the_true_ones_at_their_force_as_they_say(case):
     assert broken_promises(case) == []
 

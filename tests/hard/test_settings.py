@@ -1,8 +1,9 @@
 """Every number of a solver's settings, halved and doubled: answers stay within the errors that they state.
 
-An honest status in place of an answer counts too. Every field of every settings object is found by
-introspection, but for those of ANOTHER_START; an object without a case fails. The suite takes every fifteenth
-field, without the slow case; RODSWEEP_RODS=1 takes all (`make survey`).
+A status in place of an answer is honest, but no answer: at most `MOST_WITHOUT_ANSWER` of a field's runs may
+end so. Every field of every settings object is found by introspection, but for those of ANOTHER_START; an
+object without a case fails. The suite takes every thirty-first field, without the slow cases; RODSWEEP_RODS=1
+takes all (`make survey`).
 """
 
 import importlib
@@ -10,7 +11,7 @@ import os
 import pkgutil
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any, NamedTuple
@@ -19,17 +20,24 @@ import numpy as np
 import pytest
 
 import rodsweep.determinant
+import rodsweep.discretization
 import rodsweep.solve
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.rod import Rod
+from rodsweep.solve.backend.kept import forget_all
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.boundaries import curves_through, seed_of
 from rodsweep.solve.changes.boundary_curves import trace
+from rodsweep.solve.changes.rows import RowRequest, solve_row
+from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
@@ -39,12 +47,17 @@ from rodsweep.solve.motion.integrator import Ending, forget_integrators, integra
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
+from rodsweep.solve.spectrum.followed_leader import followed_leader
+from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
+from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
 ALL = "RODSWEEP_RODS" in os.environ
-EACH = 1 if ALL else 15
+EACH = 1 if ALL else 31
 ROUNDING = 1e-11
 """Relative; of numbers whose stated error is smaller."""
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
+BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {("INTEGRATOR", "relaxation_share"), ("INTEGRATOR", "relaxation_steps")}
 """Fields that define the state from which a motion starts: another value is another motion."""
@@ -157,7 +170,11 @@ def beside(accuracy: float) -> Answer:
 
 def modes(accuracy: float) -> Answer:
     """Condition numbers and transient growth of a stable rod with a boundary layer at the tip."""
-    found = solve_modes(Rod(F=20.0, k1=30.0, k2=1e2, gamma3=1e-2), ModesRequest(4, accuracy, 9, growth=True))
+    return modes_answer(Rod(F=20.0, k1=30.0, k2=1e2, gamma3=1e-2), accuracy)
+
+
+def modes_answer(rod: Rod, accuracy: float) -> Answer:
+    found = solve_modes(rod, ModesRequest(4, accuracy, 9, growth=True))
     if found.status.value:
         return None
     growth, vectors = found.growth, found.vectors
@@ -168,6 +185,110 @@ def modes(accuracy: float) -> Answer:
     answer["growth"] = growth.transient_growth, growth.growth_error * growth.transient_growth
     answer["abscissa"] = growth.numerical_abscissa, growth.abscissa_error
     return answer
+
+
+def eigenvalues_of(found: Spectrum, name: str) -> dict[str, tuple[float, float]]:
+    """Eigenvalues with errors. The estimate is at least a tenth of the error."""
+    return {
+        f"{name}, {part} w{i}": (float(value), 10 * float(error))
+        for i, (w, error) in enumerate(zip(found.eigenvalues, found.error_estimate, strict=True))
+        for part, value in (("Re", w.real), ("Im", w.imag))
+    }
+
+
+def spectra(accuracy: float) -> Answer:
+    """Spectra by search and by two meshes, of a fluttering rod, one that is soft in shear, and an arm."""
+    answer: dict[str, tuple[float, float]] = {}
+    arm = Rod(F=15.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.5)
+    for rod in (Rod(F=120.0, k1=200.0, k2=1e4, gamma3=1e-4), Rod(F=20.0, k1=30.0, k2=1e2, gamma3=0.0), arm):
+        for solve, certify in ((solve_spectrum, True), (solve_on_two_meshes, False)):
+            found = solve(rod, SpectrumRequest(4, accuracy, certify))
+            if found.status.value:
+                return None
+            answer |= eigenvalues_of(found, f"{solve.__name__} at F = {rod.F}")
+    return answer
+
+
+def followed(accuracy: float) -> Answer:
+    """Spectra of neighbours through flutter, and the leader of one from that of the other."""
+    forces = np.linspace(40.0, 170.0, 12)
+    path = Path(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), "F")
+    found = solve_stretch(Stretch(path, forces), SpectrumRequest(3, accuracy, certify=True))
+    if found.status.any():
+        return None
+    answer = {}
+    for i, F in enumerate(forces):
+        here = replace(found, eigenvalues=found.eigenvalues[i], error_estimate=found.error_estimate[i])
+        answer |= eigenvalues_of(here, f"F = {F}")
+    near = complex(found.eigenvalues[0, 0])
+    leader = followed_leader(path.at(forces[0] + 0.1), complex(near.real, abs(near.imag)), 1e-10)
+    if leader is None:
+        return None
+    return answer | {"leader": (leader.real, 1e-9 * abs(leader))}
+
+
+def changes_of(found: Thresholds) -> Answer:
+    if found.status.value:
+        return None
+    answer = {}
+    for place, crossing in enumerate(found.crossings):
+        name = f"{place}, {crossing.kind.name}: "
+        answer[name + "at"] = crossing.at, crossing.error
+        answer[name + "unstable after"] = crossing.unstable_after, 0.0
+    return answer
+
+
+def thresholds(accuracy: float) -> Answer:
+    """All changes of a rod that is soft in shear, up to where it is crushed, but for the last millionths."""
+    return changes_of(solve_thresholds(SOFT_IN_SHEAR, ThresholdsRequest(29.0, accuracy, True, 40)))
+
+
+def thresholds_of_a_cone(accuracy: float) -> Answer:
+    rod = Rod(F=0.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.5)
+    return changes_of(solve_thresholds(rod, ThresholdsRequest(40.0, accuracy, True, 20)))
+
+
+def curves_of_changes(accuracy: float) -> Answer:
+    """Curves through the changes of two rows of a plane, and their folds."""
+    rod = Rod(F=60.0, k1=155.0, k2=1e4, gamma3=1e-4)
+    plane = Plane(rod, (PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)))
+    request = RowRequest("F", np.linspace(60.0, 110.0, 5), accuracy, True, 10)
+    seeds = []
+    for k1 in (150.0, 155.0):
+        row = solve_row(rod.changed(k1=k1), request)
+        if row.status.value:
+            return None
+        found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings)
+        seeds += [seed for seed in found if seed is not None]
+    curves = curves_through(plane, seeds)
+    if curves.untraced:
+        return None
+    answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}
+    for number, curve in enumerate(curves.curves):
+        for place, fold in enumerate(curve.folds):
+            for axis, value, error in zip(plane.axes, fold.values, fold.errors, strict=True):
+                answer[f"curve {number}, fold {place}: {axis.name}"] = value, error
+    return answer
+
+
+def modes_of_a_cone(accuracy: float) -> Answer:
+    """Condition numbers and growth of an arm without rotational drag, which has a layer at the tip."""
+    return modes_answer(Rod(F=8.0, k1=1e3, k2=1e2, gamma3=0.0, taper=0.6), accuracy)
+
+
+def on_mesh(accuracy: float) -> Answer:
+    """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
+    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    u = beam.mesh.positions
+    rest = beam.strains(np.zeros(beam.layout.unknowns))
+    z = beam.unknown(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
+    numbers = [*beam.tip(z), *beam.tip_velocity(z, 0.1 * z), beam.energy(z)]
+    return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
+
+
+def small_drag(accuracy: float) -> Answer:
+    """Branches of a rod whose rotational drag is near the least that is eliminated."""
+    return branch_answer(replace(WITH_FOLD, gamma3=1.4e-5), 60.0, 110.0, accuracy)
 
 
 def motion(accuracy: float) -> Answer:
@@ -183,6 +304,61 @@ def motion(accuracy: float) -> Answer:
         return None
     size = float(np.abs(run.states[0]).max())
     return {f"z{i}": (float(z), 30 * accuracy * size) for i, z in enumerate(run.states[-1])}
+
+
+def cycle_answer(cycle: Cycle) -> Answer:
+    """Period, extrema and largest multiplier of a cycle; of a torus the multiplier of the cycle inside."""
+    if not cycle.status.succeeded:
+        return None
+    errors = cycle.errors
+    if cycle.status is CycleStatus.torus:
+        return {"multiplier": (cycle.multiplier, errors.multiplier_error)}
+    size = abs(cycle.measures.tip_y_max)
+    return {
+        "period": (cycle.measures.period, errors.period_error * cycle.measures.period),
+        "tip y": (cycle.measures.tip_y_max, errors.amplitude_error * size),
+        "tip x": (cycle.measures.tip_x_min, errors.extrema_error * size),
+        "multiplier": (cycle.multiplier, errors.multiplier_error),
+    }
+
+
+def request(accuracy: float, amplitude: float = 0.1, start: str = "mode") -> CycleRequest:
+    return CycleRequest(accuracy, amplitude, 3, 16, 4, 5, 400, start)
+
+
+def single_cycle(accuracy: float) -> Answer:
+    return cycle_answer(solve_cycle(BEATING.changed(F=60.0), request(accuracy)))
+
+
+def cycles_of_a_chain(accuracy: float) -> Answer:
+    """The last of three cycles, of which each predicts the next."""
+    last = None
+    for F in (60.0, 64.0, 72.0):
+        cycle = solve_cycle(
+            BEATING.changed(F=F), request(accuracy, start="neighbour"), last.neighbour if last else None, "F"
+        )
+        last = cycle
+    return cycle_answer(last)
+
+
+def cycle_beside_the_hopf_point(accuracy: float) -> Answer:
+    """From the leading mode and from the Hopf point, of which the second answer is taken with its errors."""
+    rod = BEATING.changed(F=27.6)
+    slow = cycle_answer(solve_cycle(rod, request(accuracy, 0.01)))
+    found = cycle_answer(solve_cycle(rod, request(accuracy, start="hopf")))
+    if slow is None or found is None:
+        return None
+    return {f"slow {name}": value for name, value in slow.items()} | found
+
+
+def cycle_by_integration(accuracy: float) -> Answer:
+    cycle = solve_by_integration(BEATING.changed(F=60.0), request(accuracy))
+    found = cycle_answer(cycle)
+    return found and {name: value for name, value in found.items() if name != "multiplier"}
+
+
+def torus(accuracy: float) -> Answer:
+    return cycle_answer(solve_cycle(BEATING.changed(F=207.0), request(accuracy)))
 
 
 class Case(NamedTuple):
@@ -202,6 +378,21 @@ BAUTIN_CURVE = Case(curve_of_generalised_hopf, 1e-10, 1e-12)
 BESIDE = Case(beside, 1e-3, 1e-3)
 MODES = Case(modes, 1e-8, 1e-10)
 MOTION = Case(motion, 1e-6, 1e-9)
+SINGLE = Case(single_cycle, 1e-6, 1e-9)
+CHAIN = Case(cycles_of_a_chain, 1e-6, 1e-9)
+BESIDE_HOPF = Case(cycle_beside_the_hopf_point, 1e-6, 1e-9)
+INTEGRATED = Case(cycle_by_integration, 1e-4, 1e-5)
+TORUS = Case(torus, 1e-6, 1e-7)
+SLOW = (LOPSIDED, TORUS)
+"""Cases that take seconds."""
+SPECTRA = Case(spectra, 1e-8, 1e-10)
+FOLLOWED = Case(followed, 1e-8, 1e-10)
+THRESHOLDS = Case(thresholds, 1e-8, 1e-10)
+CONE = Case(thresholds_of_a_cone, 1e-6, 1e-8)
+CHANGES = Case(curves_of_changes, 1e-8, 1e-10)
+CONE_MODES = Case(modes_of_a_cone, 1e-6, 1e-8)
+MESH = Case(on_mesh, 1.0, 1.0)
+SMALL_DRAG = Case(small_drag, 1e-6, 1e-8)
 CASES = {
     "SETTLING": BRANCH,
     "BRANCH_ERRORS": BRANCH,
@@ -235,29 +426,79 @@ CASES = {
     "MODE_ITERATION": MODES,
     "LEADING_MODES": MODES,
     "GROWTH": MODES,
-    "MODE_PROBLEM": MODES,
     "NORM_MAXIMUM": MODES,
     "ABSCISSA": MODES,
     "PROPAGATOR": MODES,
     "INTEGRATOR": MOTION,
+    "CYCLE_ERRORS": SINGLE,
+    "COARSER_MESHES": SINGLE,
+    "MINIMAL_PERIOD": SINGLE,
+    "REFINEMENT": SINGLE,
+    "FROM_MOTION": SINGLE,
+    "MOTION_MESH": SINGLE,
+    "RETURNS": SINGLE,
+    "SHAPE_TRACE": SINGLE,
+    "TRANSIENT": SINGLE,
+    "CALIBRATION": CHAIN,
+    "COMPARISON": CHAIN,
+    "NEIGHBOUR": CHAIN,
+    "PREDICTION": CHAIN,
+    "PARAMETER_STEPS": CHAIN,
+    "HOPF_START": BESIDE_HOPF,
+    "SMALL_MOTION": BESIDE_HOPF,
+    "STRAIGHT_ROD": BESIDE_HOPF,
+    "AMPLITUDE_EQUATION": BESIDE_HOPF,
+    "SCHEMES": BESIDE_HOPF,
+    "MARCHING": INTEGRATED,
+    "TORUS_TEST": TORUS,
+    "KRYLOV": SPECTRA,
+    "CANDIDATES": SPECTRA,
+    "SEARCH": SPECTRA,
+    "TWO_MESHES": SPECTRA,
+    "RESOLUTION": SPECTRA,
+    "PENCIL_NORM": SPECTRA,
+    "ELEMENTS": SPECTRA,
+    "ARM_RESOLUTION": SPECTRA,
+    "STRETCH": FOLLOWED,
+    "COUNT": THRESHOLDS,
+    "COVERING": THRESHOLDS,
+    "QUIET": THRESHOLDS,
+    "TRANSITIONS": THRESHOLDS,
+    "LEADER": THRESHOLDS,
+    "CHANGE_COUNTS": THRESHOLDS,
+    "ANCHORS": CONE,
+    "ARM_PATH": CONE,
+    "CHANGE_BOUNDARIES": CHANGES,
+    "CHANGE_CURVES": CHANGES,
+    "BOUNDARY_STEPS": CHANGES,
+    "SLAVING": CONE_MODES,
+    "RECONSTRUCTION": MESH,
+    "LOBATTO": MESH,
+    "BEAM": MESH,
+    "STRESS_FORM": SMALL_DRAG,
 }
+MOST_WITHOUT_ANSWER = 1
+"""Of the two runs of a field: half or twice a limit of work may not be enough, but one of the two is."""
 ROOMS = (
     "branch.",
+    "cycle.",
     "orbit.",
     "hopf.",
     "modes.",
     "continuation.",
     "motion.",
+    "spectrum.",
+    "changes.",
 )
 """Subpackages of `rodsweep.solve` whose numbers are fields of settings."""
 
 
 def solver_modules() -> Iterator[str]:
-    """Names of all modules of the solvers and of the determinant."""
-    for package in (rodsweep.solve, rodsweep.determinant):
+    """Names of all modules of the solvers, of the determinant and of the discretization."""
+    for package in (rodsweep.solve, rodsweep.determinant, rodsweep.discretization):
         for found in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
             short = found.name.removeprefix("rodsweep.solve.")
-            if short.startswith((*ROOMS, "rodsweep.determinant")):
+            if short.startswith((*ROOMS, "rodsweep.determinant", "rodsweep.discretization")):
                 yield found.name
 
 
@@ -283,21 +524,48 @@ def scaled(value: Any, factor: float) -> Any:
 
 
 FIELDS = [
-    (name, field.name, factor)
+    (name, field.name)
     for name, value in settings().items()
     for field in fields(value)
-    for factor in (0.5, 2.0)
-    if scaled(getattr(value, field.name), factor) != getattr(value, field.name)
-    if ALL or CASES.get(name) is not LOPSIDED
+    if ALL or CASES.get(name) not in SLOW
     if (name, field.name) not in ANOTHER_START
 ]
+
+
+def factors(name: str, field: str) -> list[float]:
+    """Factors that change a field, which 1 and inf cannot be, to a value that the settings do not refuse."""
+    found = []
+    for factor in (0.5, 2.0):
+        with suppress(ValueError):
+            changed(name, field, factor)
+            found.append(factor)
+    return found
+
+
+def changed(name: str, field: str, factor: float) -> Any:
+    """A settings object with another value of one field; ValueError if the value cannot change so."""
+    old = settings()[name]
+    value = scaled(getattr(old, field), factor)
+    if value == getattr(old, field):
+        raise ValueError(f"{name}.{field} = {value} cannot be scaled by {factor}")
+    return replace(old, **{field: value})
+
+
+def forget() -> None:
+    """Empties what solvers keep from point to point, which other settings may have made."""
+    forget_all()
+    for title, module in list(sys.modules.items()):
+        if title.startswith("rodsweep."):
+            for value in list(vars(module).values()):
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()
 
 
 @contextmanager
 def replaced(name: str, field: str, factor: float) -> Iterator[None]:
     """Another value of one field, in every module that has the settings object."""
     old = settings()[name]
-    new = replace(old, **{field: scaled(getattr(old, field), factor)})
+    new = changed(name, field, factor)
     users = [
         (vars(module), key)
         for title, module in list(sys.modules.items())
@@ -307,11 +575,13 @@ def replaced(name: str, field: str, factor: float) -> Iterator[None]:
     ]
     for place, key in users:
         place[key] = new
+    forget()
     try:
         yield
     finally:
         for place, key in users:
             place[key] = old
+        forget()
 
 
 @cache
@@ -320,7 +590,7 @@ def reference(case: Case) -> Answer:
 
 
 def differences(found: Answer, exact: Answer) -> list[str]:
-    """Numbers that are further from the reference than both errors allow; an honest failure has none."""
+    """Numbers that are further from the reference than both errors allow."""
     assert exact is not None
     if found is None:
         return []
@@ -344,10 +614,14 @@ def test_settings_are_frozen_and_have_keywords_only():
         assert all(field.kw_only for field in fields(value))
 
 
-@pytest.mark.parametrize(("name", "field", "factor"), FIELDS[::EACH])
-def test_a_setting_moves_no_answer_beyond_its_error(name, field, factor):
+@pytest.mark.parametrize(("name", "field"), FIELDS[::EACH])
+def test_a_setting_moves_no_answer_beyond_its_error(name, field):
     case = CASES[name]
     reference(case)
-    with replaced(name, field, factor):
-        found = case.solve(case.accuracy)
-    assert differences(found, reference(case)) == []
+    without_answer = []
+    for factor in factors(name, field):
+        with replaced(name, field, factor):
+            found = case.solve(case.accuracy)
+        assert (factor, differences(found, reference(case))) == (factor, [])
+        without_answer += [factor] if found is None else []
+    assert len(without_answer) <= MOST_WITHOUT_ANSWER

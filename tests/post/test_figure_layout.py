@@ -156,7 +156,7 @@ CASES = {
 
 @pytest.mark.parametrize(
     ("name", "words", "width"),
-    at_widths([(name, words) for name in CASES for words in CASES[name][: None if RODS else 1]]),
+    at_widths([(name, words) for name in CASES for words in CASES[name][: None if RODS else 1]], every=2),
 )
 def test_nothing_is_cut_or_over_anything_else(name, words, width, tmp_path, monkeypatch):
     assert faults(drawn(solved(name), tmp_path, monkeypatch, width, **words)) == []
@@ -185,7 +185,7 @@ CYCLES = {
 
 @pytest.mark.parametrize(
     ("name", "what", "width"),
-    at_widths([(name, what) for name, (_, kinds) in CYCLES.items() for what in kinds], WIDTHS[:2], every=2),
+    at_widths([(name, what) for name, (_, kinds) in CYCLES.items() for what in kinds], WIDTHS[:2], every=4),
 )
 def test_nothing_of_cycles_is_cut_or_over_anything_else(name, what, width, tmp_path, monkeypatch):
     (axes, _), some = CYCLES[name], 0.0 if what in ("cycle", "energy") else 0.3

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
+from rodsweep.post.figures.lists import number_points
 from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import broken, mark_thresholds, select_roots
@@ -342,6 +344,15 @@ def test_one_spectrum_is_drawn_as_its_eigenvalues_in_the_complex_plane(command, 
     assert decaying.get_xdata() == pytest.approx([-331.49731, -1599.4628], rel=1e-7)
 
 
+def test_points_of_a_list_of_arms_are_labelled_by_words_of_the_quantities():
+    quantities = {"drag": np.array([0, 2]), "poisson": np.array([0.3, 0.5]), "young": np.array([1e5, 2e5])}
+    axes = Figure().subplots()
+    number_points(axes, SimpleNamespace(quantities=quantities), 2)
+    assert axes.get_xlabel() == "drag\nPoisson's ratio\nYoung's modulus (kPa)"
+    texts = [label.get_text() for label in axes.get_xticklabels()]
+    assert texts == ["likeliest\n0.3\n100", "most rotational\n0.5\n200"]
+
+
 def test_list_of_spectra_is_drawn_over_its_points_or_over_what_alone_varies(command, monkeypatch):
     config = "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 3}\n"
     figure, _ = drawn_of(command, monkeypatch, config, LIST)
@@ -565,7 +576,7 @@ def test_thresholds_of_several_files_are_lines_of_one_figure(command, monkeypatc
     command.solved("t.yaml")
     refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-    assert "one and the same axis" in refused.stderr
+    assert "grids over one parameter, the same in every file" in refused.stderr
 
 
 def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():

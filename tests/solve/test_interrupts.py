@@ -47,7 +47,11 @@ def bits(task):
 ALL_IN_ONE = f"""
 import json, random, signal, sys, threading, time
 {TASKS}
-alone = {{task: bits(task) for task in TASKS}}
+alone, seconds = {{}}, {{}}
+for task in TASKS:
+    began = time.perf_counter()
+    alone[task] = bits(task)
+    seconds[task] = time.perf_counter() - began
 
 def beside_others():
     faults = []
@@ -73,11 +77,8 @@ def interrupt(delay):
 def interrupted(chance, times):
     faults, came = [], 0
     for task in TASKS:
-        began = time.perf_counter()
-        bits(task)
-        seconds = time.perf_counter() - began
         for _ in range(times):
-            thread = threading.Thread(target=interrupt, args=(chance.random() * seconds,))
+            thread = threading.Thread(target=interrupt, args=(chance.random() * seconds[task],))
             try:
                 thread.start()
                 bits(task)

@@ -131,7 +131,7 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"length": {"start": 5, "stop": "10 cm", "num": 4}}, {}, "in m; start has no unit, so"),
         ("spectrum", {"length": {"start": 1, "stop": 2, "num": 0}}, {}, "from 1 to [0-9]+$"),
         ("spectrum", {"force": "1 N"}, {}, "arm.pressure and parameters.arm.force are both given"),
-        ("spectrum", {"poisson": [0.3, 0.5]}, {"k2": 100}, "parameters.k2, which replaces all that it moves"),
+        ("spectrum", {"poisson": [0.3, 0.5]}, {"k2": 100}, "poisson has several values but changes k2 only"),
         ("spectrum", {"length": ["1 cm", "2 cm"]}, {}, "parameters.arm.length = 0.01 m is 2 radii"),
         ("spectrum", {"young": [500, 1000]}, {}, "pressure = 2000 Pa compresses the arm to nothing"),
         ("spectrum", {"young": ["90 kPa", "1 MPa"]}, {"k1": 2}, "parameters.k1 is 2 and every F is above"),
@@ -215,9 +215,8 @@ def test_thresholds_of_an_arm_are_those_of_its_verdict():
     assert data.pressure_hopf.sel(radius=0.0051, method="nearest").item() == data.pressure_hopf.values[1]
 
 
-@pytest.mark.parametrize("task", ["thresholds", "spectrum"])
-def test_shards_and_a_stopped_run_of_an_arm_give_the_same_file(command, task):
-    command.write("a.yaml", yaml(task))
+def test_shards_and_a_stopped_run_of_an_arm_give_the_same_file(command):
+    command.write("a.yaml", yaml("thresholds"))
     assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
     for shard in (1, 2):
         assert command("run", "a.yaml", "-o", f"{shard}.h5", "--shard", f"{shard}/2").returncode == 0

@@ -9,6 +9,7 @@ import pytest
 from conftest import Command
 from contents import content, same
 from ranks import PATIENCE, pause_until, wait_for_end
+from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import UnitResults
@@ -83,7 +84,7 @@ def run_halted(command, name, units, ranks, how):
 
 @pytest.mark.parametrize(
     ("units", "ranks", "how"),
-    [(1, 0, signal.SIGINT), (1, 0, signal.SIGKILL), (0, 2, signal.SIGUSR1)],
+    [pytest.param(1, 0, signal.SIGINT, marks=survey_only), (1, 0, signal.SIGKILL), (0, 2, signal.SIGUSR1)],
     ids=["Ctrl-C in the second", "killed", "two ranks in the first"],
 )
 def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, how):

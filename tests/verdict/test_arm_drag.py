@@ -174,7 +174,7 @@ def test_an_arm_without_flutter_is_a_point_with_a_status():
     )
     assert grid.covered is not None and grid.covered.tolist() == [NO_FLUTTER, 0]
     assert np.isnan(grid.by_name["F"][0])
-    with pytest.raises(ValueError, match="relative to flutter, which no arm has with the likeliest drag"):
+    with pytest.raises(ValueError, match="relative to flutter, but with the likeliest drag no arm flutters"):
         grid_of_arms(section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(np.inf))
 
 

@@ -28,7 +28,7 @@ EIGENVALUE = ("growth_rate", "frequency")
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WholeTable:
-    """All that is known of an answer, as text and for a notebook."""
+    """Every number of an answer and all lists, as text and for a notebook."""
 
     text: str
     html: str

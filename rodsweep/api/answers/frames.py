@@ -10,9 +10,9 @@ from ...post.tables.columns import Column
 
 
 def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFrame:
-    """A DataFrame with one column per `Column`; `frame.attrs` has `units` and `meanings` by name.
+    """A DataFrame with a column per `Column`; `frame.attrs` has `units` and `meanings` by name.
 
-    index: name of the column that numbers the rows from 1, None for pandas' own numbering from 0.
+    index: name of a column with row numbers from 1, or None to number rows from 0 as pandas does.
     """
     columns = tuple(columns)
     frame = pd.DataFrame({column.name: series_of(column) for column in columns})
@@ -30,7 +30,7 @@ def series_of(column: Column) -> Any:
     if column.values.dtype.kind in "iu" and column.absent.any():
         return pd.Series(column.values, dtype="Int64").mask(column.absent)
     if column.values.dtype.kind == "f":
-        return np.where(column.absent, np.nan, column.values)
+        return np.where(column.absent, np.nan, column.values) + column.values.dtype.type(0)  # no -0.0
     return np.array(column.values)
 
 

@@ -36,7 +36,7 @@ class Looks(TypedDict, total=False):
 
 
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument with a value outside its choices.
+    """Raises InputError for the first argument with a value that is not allowed.
 
     choices: (given value or None, allowed values) of each argument, by name.
     """

@@ -1,7 +1,7 @@
-"""Layout of an answer in a terminal and in a notebook: some ten lines, and on request the whole.
+"""Layout of an answer in a terminal and in a notebook: about ten lines, or on request all numbers and lists.
 
-Both begin with the answer in one sentence, the rod, and the meaning of the status. No line is longer than 80
-characters; numbers have as many digits as their error allows.
+Both layouts begin with the answer in a sentence, the rod, and the meaning of the status. No line is longer
+than 80 characters; numbers have as many digits as the error allows.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -66,7 +66,7 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
 
 
 def brief_text(printed: Printed) -> str:
-    """An answer in some ten lines: the answer, the numbers and the list of its headline."""
+    """An answer in about ten lines: the sentence, the main numbers and the main list."""
     heads = _heads(printed)
     lines = [*heads, *_number_lines(printed)]
     more = _more(printed)
@@ -116,7 +116,7 @@ def whole_html(printed: Printed) -> str:
 
 
 def _heads(printed: Printed) -> list[str]:
-    """Lines of the heading, none wider than the window."""
+    """Lines of the heading, folded at the width of the window."""
     return [line for text in printed.heading if text for line in folded(text).splitlines()]
 
 
@@ -129,7 +129,7 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
 
 
 def _number_pairs(printed: Printed) -> list[tuple[str, str, str, str]]:
-    """(name, value, error with its sign, unit) of the numbers of the headline that the rod has."""
+    """(name, value, error with sign, unit) of each number of the headline that is not missing."""
     pairs = []
     for name in printed.headline.numbers:
         column = printed.rod.column(name)

@@ -1,4 +1,4 @@
-"""`rod.portrait()`: all results for one rod in one picture and one paragraph."""
+"""`rod.portrait()`: all results for a rod in a picture and a paragraph."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,11 +27,12 @@ EXAMPLE = 'rod.portrait().save("portrait.png")'
 
 @dataclass(frozen=True)
 class RodPortrait:
-    """Everything about one rod. Notebooks display the picture; `save` writes it, `paragraph` says it.
+    """All results for a rod. Notebooks display the picture; `save` writes the picture, and `paragraph`
+    describes the rod.
 
-    Every result behind the picture is an `Answer`: `thresholds`, and, None where the rod has none,
-    `criticality` and `branch`; `modes` by kind of threshold, and `cycles` by force. `missing` has the reason
-    for every result that could not be solved, by task.
+    Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None for a rod
+    without Hopf points or branches; `modes` by kind of threshold; `cycles` by force. `missing` has, by task,
+    the reason for every result that could not be solved.
     """
 
     rod: str
@@ -66,7 +67,8 @@ class RodPortrait:
 
     @property
     def cycles(self) -> dict[float, Answer]:
-        """Limit cycles at three forces, by force; one that was not found has its status."""
+        """Limit cycles at three forces, by force. The answer of a cycle that was not found has a status with
+        the reason."""
         return {F: self._of(view) for F, view in self.results.cycles}
 
     @property

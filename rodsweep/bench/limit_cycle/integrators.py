@@ -34,7 +34,7 @@ Integration = Callable[[float, Leg], Trajectory]
 
 
 @dataclass(frozen=True, slots=True)
-class Family:
+class IntegratorFamily:
     """An integrator and the tolerances, from the loosest, at which it is run.
 
     waiting: tolerances, from the loosest, for waiting until a cycle is reached; empty to leave waiting out.
@@ -70,7 +70,7 @@ def by_petsc(family: str, variant: str, tolerance: float, leg: Leg) -> Trajector
 
 CAREFUL = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances for waiting until a cycle is reached."""
-DEFAULT = Family(
+DEFAULT = IntegratorFamily(
     "ARKIMEX 5 (default)",
     partial(by_petsc, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),

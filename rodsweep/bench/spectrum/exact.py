@@ -12,6 +12,7 @@ from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ...solve.spectrum.status import SpectrumStatus
 
 DIGITS = 30
+"""Digits of the eigenvalues."""
 GUARD = 25
 """Additional digits of the computation, more than the cancellation in D costs."""
 STEP = mp.mpf(10) ** -12
@@ -53,6 +54,8 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + STEP)), tol=STEP**5, verify=False)
+            # Near a simple root D grows linearly: from |D| at a relative distance of STEP follows |D| at a
+            # distance of 10^-DIGITS.
             small = abs(D(root * (1 + STEP))) * mp.mpf(10) ** -DIGITS / STEP
             if abs(root - start) > FARTHEST_ROOT * error or abs(D(root)) > small:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")

@@ -10,12 +10,12 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Complex
-from ...discretization.elements.resolution import LARGEST_ORDER, Resolution
+from ...discretization.elements.resolution import RESOLUTION, Resolution
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ...solve.spectrum.krylov_schur import eigen_solver
-from ...solve.spectrum.problem import SHIFT_ABOVE_GROWTH
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
+from ...solve.spectrum.shift_invert import KRYLOV
 from ..study import Contender
 
 WANTED_MODES = 4
@@ -35,14 +35,14 @@ def own_spectrum(rod: Rod, certify: bool) -> Complex:
 
 
 def mesh_of(order: int) -> Resolution:
-    """One element of the given order, or several equal elements of at most LARGEST_ORDER."""
-    elements = ceil(order / LARGEST_ORDER)
+    """One element of the given order, or several equal elements of at most RESOLUTION.largest_order."""
+    elements = ceil(order / RESOLUTION.largest_order)
     return Resolution(elements, ceil(order / elements))
 
 
 def shift_of(rod: Rod) -> float:
     """Shift of rodsweep's own shift-and-invert."""
-    return SHIFT_ABOVE_GROWTH * most_amplified_wave(rod)[0]
+    return KRYLOV.shift_above_growth * most_amplified_wave(rod)[0]
 
 
 def krylov_schur(rod: Rod, size: int) -> Complex:

@@ -23,7 +23,7 @@ from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
-"""Names in the directory of a case."""
+"""Names of the result file and of the folder of notes of ranks in the directory of a benchmarked sweep."""
 FIRST_RANK, OTHER_RANKS = "first", "other"
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; instant random outcomes; instant outcomes and a kill at the last

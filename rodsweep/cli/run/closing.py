@@ -10,7 +10,7 @@ class RunEnd:
     """Counts and times at the end of a run.
 
     asked: points to solve. left: points not solved. kept: points in the file. seconds: time of the points.
-    curve_seconds: time of the variables determined by all points together. in_the_middle: points interrupted
+    curve_seconds: time of the variables that need all points. in_the_middle: points interrupted
     by a stop. followed: halves of curves followed in this run, None if no curves were due. halves: halves
     kept while the curves are incomplete, else None.
     """
@@ -46,5 +46,5 @@ class RunEnd:
         if self.halves is not None:
             return f"{points}, the curves are missing, {self.halves} of their halves kept"
         if self.in_the_middle:
-            return f"{points}, {self.in_the_middle} left in the middle and solved again"
+            return f"{points}, {self.in_the_middle} interrupted, to be solved again"
         return points

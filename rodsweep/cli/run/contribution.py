@@ -1,4 +1,4 @@
-"""What each rank did in a run, and the attributes of the file made from it."""
+"""Contribution of each rank to a run, and attributes of the file made from all contributions."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -36,7 +36,7 @@ def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> lis
 
 
 def of_the_last_run(plan: Plan) -> dict[str, Any]:
-    """Attributes of a plan that belong to the last run that computed points."""
+    """Attributes of a plan that describe the last run with computed points."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
 

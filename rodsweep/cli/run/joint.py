@@ -1,4 +1,4 @@
-"""Variables that all points together determine, such as curves of a phase diagram, computed by all ranks."""
+"""Variables that need all points, for example curves of a phase diagram, computed by all ranks."""
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -23,12 +23,14 @@ from ...tasks.running.unforeseen import PASSING, UnitNote
 from ...watch import Stopped, reporting_to
 
 NOUN = "halves of curves"
-"""Name of the units of work: each curve is followed from one of its points in two halves."""
+"""Name of the units of work: half a curve each, because a curve is followed in both directions from a
+start."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """Joint work of a run. due: whether the file lacks the variables. units: units of work, or None."""
+    """Joint work of a run. due: whether the file lacks variables that need all points. units: units of work,
+    or None."""
 
     due: bool
     units: Any = None
@@ -54,7 +56,7 @@ class JointWork:
         """Results of all finished units, on the first rank only."""
 
     def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> Share:
-        """Solves the wanted units on all ranks. title: of the progress display; None shows none."""
+        """Solves the wanted units on all ranks. title: title of the progress display; None for no display."""
         found: dict[int, Arrays] = {}
 
         def keep(unit: Indices, result: Arrays) -> None:

@@ -28,7 +28,8 @@ from .options import RunOptions
 from .point_work import PointWork
 
 CONTINUE = 75
-"""Exit status of a run stopped by a signal; the same command continues it (EX_TEMPFAIL of sysexits.h)."""
+"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
+run."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -47,7 +48,7 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
 
 
 class _Run:
-    """One run of a job on this rank."""
+    """Run of a job on this rank."""
 
     store: Store
     """The result file, on the first rank, after `_open`."""

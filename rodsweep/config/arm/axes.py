@@ -15,7 +15,7 @@ from ...model.parameters import PARAMETERS
 LOAD_AXES = (*LOADS, *RELATIVE)
 """Keys of the load. An arm has at most one load."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
-"""Quantities with an effect on exactly one parameter, and the name of this parameter."""
+"""The affected parameter, by name of each quantity that affects exactly one parameter."""
 MOVES = AXIS_OF | dict.fromkeys(RELATIVE, "F")
 """The parameter changed by an axis, in a grid over an arm's quantities."""
 ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
@@ -59,5 +59,6 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def moved_by(axis: str) -> str:
-    """The parameter that an axis of an arm's grid changes; "" if it changes several or none."""
+    """The only parameter that an axis of an arm's grid changes; "" if the axis changes several parameters or
+    no parameter."""
     return axis if axis in PARAMETERS else MOVES.get(axis, "")

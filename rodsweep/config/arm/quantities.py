@@ -87,7 +87,8 @@ def _shares(value: Any) -> tuple[list[float | None], bool]:
 
 
 def as_drags(value: Any) -> Axis:
-    """Names of drags (one, a list, or "range") as an Axis of their indices in DRAGS; ValueError otherwise."""
+    """Axis of indices in DRAGS from a name of a drag, a list of names, or "range"; ValueError for anything
+    else."""
     if isinstance(value, Axis):
         return value
     names = list(DRAGS) if value == RANGE_OF_DRAG else value if isinstance(value, list | tuple) else [value]

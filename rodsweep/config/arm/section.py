@@ -31,10 +31,10 @@ NO_LOAD = {"pressure": 0.0}
 
 
 class ArmSection(Strict):
-    """The arm as `rodsweep arm` takes it; each quantity is one value or an axis."""
+    """The arm in the quantities of `rodsweep arm`; each quantity is a value or an axis."""
 
     length: Annotated[Quantities | None, Allowed] = None
-    """Length from the clamp to the tip; of an arm in segments their sum."""
+    """Length from the clamp to the tip; for an arm in segments, the sum of their lengths."""
     radius: Annotated[Quantities | None, Allowed] = None
     """Radius of a circular section; or give width and height, or segments."""
     inner_radius: Annotated[Quantities | None, Allowed] = None
@@ -48,7 +48,8 @@ class ArmSection(Strict):
     height: Annotated[Quantities | None, Allowed] = None
     """Height of a rectangular section, in the plane of motion."""
     young: Annotated[Quantities | None, Allowed] = None
-    """Young's modulus at small strain; with segments, that of those without their own."""
+    """Young's modulus at small strain; in an arm with segments, the modulus of every segment that states no
+    modulus."""
     poisson: Annotated[Values | None, RatioAllowed] = None
     """Poisson's ratio, by default 0.5."""
     law: Annotated[LawName | None, Field(description="linear or neo_hookean")] = None
@@ -56,7 +57,8 @@ class ArmSection(Strict):
     section: Annotated[SectionName | None, Field(description="fixed or swelling")] = None
     """Whether the section of rubber is fixed, the default, or swelling; in place of `material.section`."""
     viscosity: Annotated[Quantities, Allowed]
-    """Viscosity of the fluid. It changes no parameter; times are proportional to it."""
+    """Viscosity of the fluid. The parameters do not depend on the viscosity; times are proportional to the
+    viscosity."""
     fluid_density: Annotated[Quantities | None, Allowed] = None
     """Density of the fluid, by default water's. It decides whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
@@ -93,7 +95,7 @@ class ArmSection(Strict):
 
     @property
     def material(self) -> dict[str, Any]:
-        """Segments, law and section, without what is not given."""
+        """The keys among segments, law and section that are given."""
         return material_of(self)
 
     @property
@@ -120,12 +122,13 @@ class ArmSection(Strict):
 
     @property
     def several(self) -> tuple[str, ...]:
-        """Quantities with more than one value, or relative to flutter."""
+        """Quantities with several values, or relative to flutter."""
         return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """Given quantities in SI units, by name: a value if all points share it, else None; and material."""
+        """Given quantities in SI units, by name: the value if equal at all points, else None; and the
+        material."""
         varied = AXIS_OF if self.is_grid else self.several
         numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
@@ -163,8 +166,8 @@ class ArmSection(Strict):
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
         if "poisson" in self.several and "k2" in beside:
             raise ValueError(
-                "parameters.arm.poisson has several values, and parameters.k2, which replaces all that it "
-                "moves, is given too; give one of them"
+                "parameters.arm.poisson has several values but changes k2 only, and parameters.k2 is given "
+                "too; give one of them"
             )
         if self.load and not forced:
             raise ValueError(
@@ -220,7 +223,7 @@ class ArmSection(Strict):
         return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
     def sections(self) -> Iterator[dict[str, float]]:
-        """Quantities of all sections without load, in row-major order."""
+        """Yields length, material and cross-section of every arm, in SI units by name, in row-major order."""
         names = [name for name in SECTION if name in self.given]
         for values in product(*(self.given[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))

@@ -1,4 +1,5 @@
-"""Shape and material of an arm in a config: segments, taper, law, and the build that all its points share."""
+"""Shape and material of an arm in a config: segments, taper, law, and the build, which is equal at all
+points."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from .section import ArmSection
 
 OF_MATERIAL = ("segments", "law", "section")
-"""Keys of an arm that state what `material` states for a rod without dimension."""
+"""Keys of an arm with the content of the section `material` of a dimensionless rod."""
 SHAPES = ("tip_radius", "segments")
 """Keys of an arm that varies along its length."""
 RUBBER_POISSON = 0.5
@@ -25,7 +26,7 @@ RUBBER_POISSON = 0.5
 
 
 def as_segments(value: Any) -> tuple[str, ...] | None:
-    """Segments as texts; ValueError for what is no list of segments."""
+    """Segments as texts; ValueError if the value is no list of segments."""
     if value is None:
         return None
     try:
@@ -45,7 +46,7 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def material_of(arm: "ArmSection") -> dict[str, Any]:
-    """Segments, law and section of an arm, without what is not given."""
+    """The given keys among segments, law and section of an arm."""
     return {name: getattr(arm, name) for name in OF_MATERIAL if getattr(arm, name) is not None}
 
 
@@ -59,8 +60,8 @@ def build_of(arm: "ArmSection") -> Build:
         return alike
     if arm.is_grid and len(set(_builds_of(arm))) > 1:
         raise ValueError(
-            f"parameters.arm.{arm.several[0]} has several values, with which the segments differ by other "
-            "factors; give one value"
+            f"parameters.arm.{arm.several[0]} has several values, and the ratios between the segments "
+            "would differ from value to value; give one value"
         )
     return next(_builds_of(arm), alike)
 
@@ -88,12 +89,15 @@ def tapers_of(arm: "ArmSection") -> set[float]:
 
 
 def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
-    """ValueError for an axis of a length that segments fix, and for what stands beside a cone or segments.
+    """Raises ValueError for an axis of a length that segments fix, and for a parameter that must not be given
+    beside a cone or segments.
 
     beside: parameters given beside the arm.
     """
     if arm.segments is not None and "length" in arm.several:
-        raise ValueError("parameters.arm.length has several values, but the segments make one; leave it out")
+        raise ValueError(
+            "parameters.arm.length has several values, but the segments fix the length; leave it out"
+        )
     for name in SHAPES:
         if getattr(arm, name) is not None and "taper" in beside:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")

@@ -1,4 +1,5 @@
-"""Arms that no rod covers: the refusals of `rodsweep.model.arm` that are a status of a point in a sweep."""
+"""Arms to which the rod model does not apply: errors of `rodsweep.model.arm` that become a status of a point
+in a sweep."""
 
 from ...errors import InputError
 from ...model.arm.refusals import NotSlender
@@ -10,7 +11,7 @@ UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
 
 
 class UncoveredArm(ValueError):
-    """No rod covers this arm; `status` is the status of its points."""
+    """The rod model does not apply to this arm; `status` is the status of the arm's points."""
 
     def __init__(self, error: InputError):
         super().__init__(f"parameters.arm.{error}")

@@ -1,4 +1,4 @@
-"""Files that a config names: their content becomes keys of the config before it is validated."""
+"""Files named in a config: the content becomes keys of the config before validation."""
 
 import csv
 from pathlib import Path
@@ -8,13 +8,15 @@ from ...model.parameters import OPTIONAL_PARAMETERS
 from ..material import with_profile_read
 
 LONGEST_HEADER = 10_000
-"""Largest number of characters of a header; a longer first line is none, and the reader of points says so."""
+"""Largest number of characters of a header. A longer first line is no header; the reader of points refuses
+the file."""
 
 
 def with_files_read(tree: Any, directory: Path) -> Any:
-    """A config's tree with the columns of its profile and of its list of points, where it leaves them out.
+    """A config's tree, with the columns of the profile's file, and with the names of columns of the list of
+    points if omitted.
 
-    directory: where the names of files begin. Raises InputError for a profile that is no table of numbers.
+    directory: folder of relative file names. Raises InputError for a profile that is no table of numbers.
     """
     return _with_columns(with_profile_read(tree, directory), directory)
 
@@ -32,7 +34,8 @@ def _with_columns(tree: Any, directory: Path) -> Any:
 
 
 def _header(path: Path) -> list[str]:
-    """Names in the first line of a CSV file; empty if it has none, which is refused where points are read."""
+    """Names in the first line of a CSV file; empty without a header. The reader of points refuses a file
+    without a header."""
     try:
         if not path.is_file():
             return []

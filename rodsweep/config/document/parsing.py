@@ -42,12 +42,12 @@ def read_text(path: Path) -> str:
         raise InputError(f"{where} is a result file and no config; `rodsweep show` says what it holds")
     if path.suffix in TABLES:
         raise InputError(
-            f"{where} is no config but a table; a config names a list of points, parameters.points"
+            f"{where} is a table, not a config; name the table in a config, as parameters.points"
         )
     if len(data) > LARGEST_FILE:
         raise InputError(
-            f"{where} is larger than {LARGEST_FILE} bytes, which no config is; many points go into a CSV "
-            "file, parameters.points"
+            f"{where} is larger than {LARGEST_FILE} bytes, which no config is; write many points into a CSV "
+            "file and name the file as parameters.points"
         )
     try:
         return data.decode("utf-8-sig")

@@ -59,7 +59,8 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from which `canonical` made `resolved`; ValueError if not accepted by this version."""
+    """The config from which `canonical` made `resolved`; ValueError if this version does not accept the
+    config."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -76,7 +77,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
         }
         return validated(resolved | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
-        raise ValueError(f"its config is none of this version of rodsweep: {error}") from None
+        raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
 
 
 def _axes_of(section: dict[str, Any]) -> dict[str, Any]:

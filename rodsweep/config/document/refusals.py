@@ -1,4 +1,4 @@
-"""Error messages of a config, one sentence each: the key, its value, what is allowed, and the likely
+"""Error messages of a config, a sentence each: the key, the value, the allowed values, and the likely
 meaning.
 """
 
@@ -18,7 +18,7 @@ from ..values import named, short
 KEY_SHOWN = 100
 """Maximum length of a key in a message, in characters."""
 LETTERS_A_SLIP = 3
-"""Letters of a key per typing error: a key with more errors than one in three letters resembles no name."""
+"""Minimum number of letters of a key per typing error; a key with more typing errors resembles no name."""
 MOST_MEANT = 4
 """Maximum number of suggested keys. If more are equally near, all known keys are listed instead."""
 LONG_PART = 4
@@ -58,10 +58,10 @@ def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -
 
 
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """Known keys nearest to an unknown one, in their order; empty if none is near.
+    """Known keys nearest to an unknown key, in their order; empty if no key is near.
 
-    A key is near if it differs only in capitals and underscores, is the beginning or a long part of the known
-    key, or has at most one typing error in three letters.
+    A known key is near if the unknown key differs only in capitals and underscores, is the beginning or a
+    long part of the known key, or has at most one typing error in three letters.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)

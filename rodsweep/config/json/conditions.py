@@ -29,7 +29,7 @@ def given(name: str) -> Schema:
 
 
 def none_of(names: Iterable[str]) -> Schema:
-    """Schema: none of the keys is given."""
+    """Schema: not a single key of the list is given."""
     return {"not": {"anyOf": [given(name) for name in names]}}
 
 
@@ -63,9 +63,10 @@ def with_bounds(properties: Schema, axis: Schema) -> None:
 
 
 def restrict_arm(section: Schema, axis: Schema) -> None:
-    """Adds the conditions of an arm in place: positive quantities with a unit, one section, at most one load.
+    """Adds the conditions of an arm to the schema in place: positive quantities with a unit, a single
+    section, at most one load.
 
-    axis: schema of any axis of numbers.
+    axis: schema of an axis of numbers.
     """
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})

@@ -1,8 +1,8 @@
 """JSON schema of a config, for editors that complete keys and mark mistakes.
 
-It is made from the models of the tasks, the docstrings of their keys, and the conditions on combinations of
-keys in `conditions`. Conditions on the whole config (F < k1, sorted lists) are not in the schema; `rodsweep
-check` tests them.
+The schema is made from the models of the tasks, the docstrings of the keys, and the conditions on
+combinations of keys in `conditions`. Conditions on the whole config (F < k1, sorted lists) are not in the
+schema; `rodsweep check` tests them.
 """
 
 import ast

@@ -29,7 +29,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
-from ..certificate.winding_number import LEAST_HEIGHT, NOT_AN_INTEGER, WIDTH_ADDED, WIDTH_FACTOR, Count
+from ..certificate.winding_number import COUNT, Count
 from ..value import Value
 from .completeness import is_whole
 from .determinant import ArmDeterminant
@@ -71,8 +71,8 @@ class PhaseNode(NamedTuple):
     """A point w with the direction of D, L = D'/D, both without known eigenvalues, and the validity of the
     tangent.
 
-    reach: distance within which the tangent is valid. radius: of the best circle, in units of the length over
-    which D changes, or 0.
+    reach: distance within which the tangent is valid. radius: radius of the best circle, in units of the
+    length over which D changes, or 0.
     """
 
     w: complex
@@ -132,7 +132,7 @@ def count_right_of(
     except FloatingPointError as unresolved:
         return Count(None, nodes, str(unresolved))
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > NOT_AN_INTEGER:
+    if abs(total / math.pi - number) > COUNT.not_an_integer:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number + int((known.real > line).sum()), nodes)
 
@@ -151,7 +151,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
 def _corner(line: float, hull: Hull) -> complex:
     """The corner of the box about all eigenvalues right of the line, with the largest |w|."""
     real, imag = hull.box(max(-line, 0.0))
-    return complex(WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line)))
+    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
 
 
 def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> tuple[float, int]:
@@ -188,6 +188,8 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
     """The change of arg D between two nodes whose reaches overlap."""
     step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
+    # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
+    # the reaches overlap.
     expected = (here.L * step * share + there.L * step * (1 - share)).imag
     return expected + cmath.phase(there.direction / here.direction * cmath.exp(complex(0.0, -expected)))
 
@@ -195,7 +197,7 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
 def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIUS) -> PhaseNode:
     """The node at w; its reach is 0 if rounding errors hide D.
 
-    radius: of the largest circle to try, in units of the length over which D changes.
+    radius: radius of the largest circle to try, in units of the length over which D changes.
     """
     determinant, hull, known = divided
     length = determinant.length(w)
@@ -241,7 +243,7 @@ def _reach_inside(
 ) -> tuple[float, float]:
     """(reach of a node inside the hull, best radius), from the largest |f| on circles.
 
-    tangent: (w, L). The other arguments are as in `_node`.
+    tangent: (w, L). For the other arguments see `_node`.
     """
     w, L = tangent
     unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))

@@ -124,7 +124,7 @@ def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorEleme
             return PropagatorElements(lengths, local)
         middles = (edges[:-1] + edges[1:])[coarse] / 2
         edges = np.sort(np.append(edges, middles))
-    raise FloatingPointError(f"no {MAX_ELEMENTS} elements resolve this arm at |w| = {W:g}")
+    raise FloatingPointError(f"{MAX_ELEMENTS} elements are too few to resolve this arm at |w| = {W:g}")
 
 
 def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:

@@ -34,7 +34,7 @@ MOST_ENTRIES = 300_000
 class ArmFamily(NamedTuple):
     """The arms from p = low to p = high: propagators for |w| <= W.
 
-    coefficients: of the Chebyshev polynomials in p, (nodes, elements, terms, 16).
+    coefficients: coefficients of the Chebyshev polynomials in p, (nodes, elements, terms, 16).
     """
 
     low: float

@@ -46,8 +46,8 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: Array, W: float) -> Array:
     """The coefficients of Phi in powers of w/W, shape (n, elements, terms, 16), each Phi column by column.
 
-    F: of n arms. local: at the Gauss points, each (n, elements, STAGES). lengths: of the elements, in L,
-    (elements,).
+    F: forces of n arms. local: coefficients at the Gauss points, each (n, elements, STAGES). lengths: lengths
+    of the elements, in L, (elements,).
     """
     _, integrals, weights = gauss_method(STAGES)
     terms = np.zeros((len(F), len(lengths), MAX_TERMS, 16))
@@ -135,10 +135,10 @@ def _shear_and_rise(
     known: tuple[Array, Array, Array],
     rates: tuple[Array, Array, Array, Array],
 ) -> None:
-    """Fills s and y', and completes s' and m', (4, STAGES) all.
+    """Computes s and y' of one power of w, and completes s' and m', all (4, STAGES).
 
-    load: (F, start value of theta in its row). known: s without the part by bending, theta, theta'. rates: s,
-    y', and s' and m' as far as they come from the term before.
+    load: (F, start value of theta in its row). known: s without the part by bending, theta, theta'. rates: s
+    and y', and the parts of s' and m' that the previous power of w contributes.
     """
     F, start = load
     push, theta, slopes = known

@@ -15,6 +15,7 @@ The weight rho is free; the best rho makes both entries of the maximum equal.
 No eigenvalue lies on the imaginary axis close to w = 0: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
 """
 
+from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, inf, log, sqrt
 
@@ -22,10 +23,23 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients, Rod
 from ..parameter_path import Path, changes, coefficients_at
 
+PADDING = 0.01
+"""Padding of the box in units of the depth."""
+LEAST_PADDING = 1e-6
+"""Padding of the box at depth 0, in 1/tau2; far below the smallest eigenvalue of a rod at rest, 12."""
 BOX_MARGIN = 1.01
 """Safety factor on every bound, for rounding errors in the bound."""
-QUIET = 0.5
-"""Bound of |D - 1| near w = 0, where D therefore has no zero."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuietSettings:
+    """Settings for the disc about w = 0 without a zero of D."""
+
+    departure: float = 0.5
+    """Bound of |D - 1| near w = 0, where D therefore has no zero; any bound below 1 would do."""
+
+
+QUIET = QuietSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
@@ -38,7 +52,7 @@ def box_of(a: float, depth: float) -> tuple[float, float]:
     """`eigenvalue_box` from a, the square root of `squared_amplification`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
-    pad = 0.01 * depth + 1e-6
+    pad = PADDING * depth + LEAST_PADDING
     return BOX_MARGIN * a * a / 4 + pad, BOX_MARGIN * a * n + pad
 
 
@@ -111,7 +125,7 @@ def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
 
 def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
     """The first radius of r, r/2, r/4, ... with |D(i eta) - 1| < 1/2 inside; 0 for underflow."""
-    while _departure(r, T, X, G, pull) >= QUIET:
+    while _departure(r, T, X, G, pull) >= QUIET.departure:
         r /= 2
     return r
 

@@ -19,6 +19,7 @@ exponentials in D, which stays bounded near a zero of D.
 
 import cmath
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -26,15 +27,34 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
+from ..exponents import LEAST_DIVISOR
 from ..newton import FAILED, Zero, crossing_newton
 from ..parameter_path import Path, changes, coefficients_at, determinant_along
 from .box import BOX_MARGIN, quiet_radius, squared_amplification_over
 from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, centre_at
 
-SLABS = 8
-"""Minimum number of initial intervals of p."""
-FIRST_RATIO = 4.0
-"""Ratio of the upper to the lower end of the initial boxes in eta."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoveringSettings:
+    """Settings for the first boxes of a covering."""
+
+    slabs: int = 8
+    """Minimum number of initial intervals of p."""
+    first_ratio: float = 4.0
+    """Ratio of the upper to the lower end of the initial boxes in eta."""
+    nu_step: float = 0.5
+    """Largest decrease of nu over an initial interval, in units of nu."""
+    least_step: float = 1e-6
+    """Length of an initial interval near p = 0, where drags and compliances double, in units of the first
+    length."""
+    last_step: float = 1e-3
+    """Length of a last interval, in units of its predecessor, that is joined to its predecessor."""
+    padding: float = 1e-6
+    """Added to the upper bound of eta, in 1/tau2: the bound is 0 at F = 0."""
+
+
+COVERING = CoveringSettings()
+
 LARGEST_RADIUS_SHARE = 0.45
 """Largest trial share t: half-width of a box over radius of the bidisc."""
 NEXT_RADIUS_SHARE = 0.6
@@ -47,7 +67,12 @@ MAX_BOXES = 1_000_000
 """Maximum number of boxes to examine; all others are left open."""
 SAME_ZERO = 1.5
 """Distance from the centre of a regular box, in half-widths, within which a known zero is the box's zero."""
-EMPTY, REGULAR, UNDECIDED = 0, 1, 2
+BESIDE = 1.01
+"""Distance of a zero from the centre of a box, in half-widths, from which a neighbouring box finds the
+zero."""
+EMPTY = 0
+REGULAR = 1
+UNDECIDED = 2
 """Result of examining a box: no zero, at most one zero in the doubled box, or no proof of either."""
 
 
@@ -147,7 +172,7 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
-    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, 1e-300))
+    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, LEAST_DIVISOR))
 
 
 @compiled
@@ -172,7 +197,7 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
             zero = crossing_newton(eta, p, origin, direction, half)
             away = _half_widths_away(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
-                known = away > 1.01  # outside the box: a neighbouring box finds the same zero
+                known = away > BESIDE  # outside the box: a neighbouring box finds the same zero
                 for other in zeros:  # the doubled box contains at most one zero
                     known = known or _half_widths_away(other, eta, p, half) <= SAME_ZERO
                 if not known:
@@ -198,18 +223,18 @@ def _half_widths_away(zero: Zero, eta: float, p: float, half: tuple[float, float
 def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
     """Intervals of p from start to stop; in each, nu at most halves, a drag or compliance at most doubles."""
     edges = [start]
-    width = (stop - start) / SLABS
+    width = (stop - start) / COVERING.slabs
     while edges[-1] < stop:
         p = edges[-1]
         step = width
         nu = coefficients_at(p, path.origin, path.direction).nu
         slope = path.direction.nu
         if slope < 0:  # the rod is crushed at nu = 0
-            step = min(step, 0.5 * nu / -slope)
+            step = min(step, COVERING.nu_step * nu / -slope)
         if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, 1e-6 * width))
+            step = min(step, max(p, COVERING.least_step * width))
         end = p + step
-        edges.append(stop if stop - end < 1e-3 * step else end)
+        edges.append(stop if stop - end < COVERING.last_step * step else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
@@ -217,13 +242,13 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes that contain every crossing with p from start to stop, shape (n, 4); None without a bound."""
     boxes = []
     for a, b in slabs(path, start, stop):
-        top = BOX_MARGIN * squared_amplification_over(path, a, b) + 1e-6
+        top = BOX_MARGIN * squared_amplification_over(path, a, b) + COVERING.padding
         if not math.isfinite(top):
             return None
         low = quiet_radius(path, a, b, top)
         if low == 0.0:
             return None
-        count = max(1, math.ceil(math.log(top / low) / math.log(FIRST_RATIO)))
+        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.first_ratio)))
         edges = np.geomspace(low, top, count + 1)
         boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

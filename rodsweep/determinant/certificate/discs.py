@@ -18,6 +18,9 @@ CLEARANCE = 0.9
 """Largest allowed proved change, in units of |D|."""
 HUGE = 600.0
 """Upper limit of exponents before exp, which would overflow at 709."""
+AWAY_FROM_ZERO = 0.5
+"""Largest relative change x of z over a disc at which sqrt(z) is expanded; the remainder, like x^2/(1 - x),
+is small up to here."""
 LARGEST_CHANGE = 0.98
 """Largest relative change of a factor of P^2 over a disc for which a bound is computed."""
 
@@ -73,7 +76,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
     grow = crude
     decay = crude
-    if change < 0.5 * abs(z):
+    if change < AWAY_FROM_ZERO * abs(z):
         in_w = slopes[0] / (2 * root)
         in_p = slopes[1] / (2 * root)
         curve = bend_of_root(root, bend, change / abs(z))

@@ -24,6 +24,10 @@ FIRST_RADIUS = 0.25
 """Radius of the first trial disc, in units of the distance to the nearest branch point."""
 HALVINGS = 2
 """Number of further trial discs, each half as large."""
+OVERLAP_OF_DISCS = 1.001
+"""Radius of a disc in units of half its step, so that rounding leaves no gap between discs."""
+END_ROUNDING = 1e-15
+"""Relative distance from the end of a stretch that is rounding error: some units in the last place."""
 LARGEST_FACTOR_CHANGE = 0.5
 """Largest relative change of each factor of A over a disc; keeps every phase within a right angle."""
 
@@ -143,7 +147,7 @@ def dominated_stretch(
         for _ in range(HALVINGS + 1):
             discs += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if dominated(w + direction * rho, 1.001 * rho, coefficients):
+            if dominated(w + direction * rho, OVERLAP_OF_DISCS * rho, coefficients):
                 found = True
                 break
             rho /= 2
@@ -152,7 +156,7 @@ def dominated_stretch(
         if t == 0.0:
             here = dominant_factors(w, coefficients)
             first = here
-        t = length if t + 2 * rho >= length * (1 - 1e-15) else t + 2 * rho
+        t = length if t + 2 * rho >= length * (1 - END_ROUNDING) else t + 2 * rho
         w = start + direction * t
         after = dominant_factors(w, coefficients)
         total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])

@@ -25,6 +25,7 @@ from typing import NamedTuple
 
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients, Rod
+from ..exponents import LEAST_DIVISOR
 from ..parameter_path import Changes
 from ..value import branches, scaled_determinant
 from .box import eigenvalue_box, quiet_radius_of
@@ -33,22 +34,43 @@ from .dominance import dominated_stretch
 
 STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Zero changes along a path, for bounds of a single rod."""
-WIDTH_FACTOR = 4.0
-"""Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
-cheaper."""
-WIDTH_ADDED = 50.0
-"""Width added to the box, in 1/tau2, for the same reason."""
-LEAST_HEIGHT = 0.5
-"""Smallest height of the box, in units of the line's distance from the imaginary axis."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CountSettings:
+    """Settings for the contour of a count."""
+
+    width_factor: float = 4.0
+    """Factor on the width of the box: one exponential dominates far from the eigenvalues, so a wider box is
+    cheaper."""
+    width_added: float = 50.0
+    """Width added to the box, in 1/tau2, for the same reason."""
+    least_height: float = 0.5
+    """Smallest height of the box, in units of the line's distance from the imaginary axis."""
+    not_an_integer: float = 1e-3
+    """Distance of a winding number from the nearest integer beyond which the count fails."""
+
+
+COUNT = CountSettings()
+
 PATIENCE = 0.25
 """Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled after
 every failure."""
+BRANCH_DISTANCE = 3.0
+"""Distance to the nearest branch point in units of the radius of a disc, at least."""
+FACTOR_CHANGE = 0.4
+"""Largest relative change of z+- over a disc, so that its exponents change by order one."""
+NO_ROOT = 1e-3
+"""Modulus of z+- below which its root does not limit the radius of a disc."""
+LONGEST_STEP = 1.9
+"""Longest step tried in units of the reach of a node; beyond 1 the reach of the next node must cover the
+step."""
+WITHIN_REACH = 0.999
+"""Step in units of the reach of a node that lies within it whatever the rounding."""
 SMALLEST_REACH = 1e-13
 """Reach in units of |w| below which the line counts as running through a zero of D."""
 MAX_EDGE_NODES = 20_000
 """Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
-NOT_AN_INTEGER = 1e-3
-"""Distance of a winding number from the nearest integer beyond which the count fails."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,18 +97,18 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = branches(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
-    rho = abs(w) / 3
+    rho = abs(w) / BRANCH_DISTANCE
     if c2 * gamma3 > 0:
-        rho = min(rho, stiffness / (3 * c2 * gamma3))
-    rho = min(rho, (S + 1) / max(abs(L), 1e-300))
+        rho = min(rho, stiffness / (BRANCH_DISTANCE * c2 * gamma3))
+    rho = min(rho, (S + 1) / max(abs(L), LEAST_DIVISOR))
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)
         slack = S - root.real + 1
-        rho = min(rho, 0.4 * max(abs(z), 2.0) / max(abs(slope), 1e-300))
-        if abs(z) > 1e-3:
+        rho = min(rho, FACTOR_CHANGE * max(abs(z), 2.0) / max(abs(slope), LEAST_DIVISOR))
+        if abs(z) > NO_ROOT:
             rate = slope / (2 * root)
-            rho = min(rho, slack / max(abs(rate - L), 1e-300))
+            rho = min(rho, slack / max(abs(rate - L), LEAST_DIVISOR))
             rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
     return rho
 
@@ -158,14 +180,14 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
         if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MAX_EDGE_NODES:
             return 0.0, -nodes
         # The next node may lie beyond the reach of this node if its own reach covers the step.
-        ahead = min(1.9 * here.reach, length - t)
+        ahead = min(LONGEST_STEP * here.reach, length - t)
         while True:
             inside = ahead < here.reach
             there = node_at(start + direction * (t + ahead) if ahead < length - t else end, coefficients)
             nodes += 1
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
-            ahead = 0.999 * here.reach
+            ahead = WITHIN_REACH * here.reach
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
         t = length if there.w == end else t + ahead
@@ -213,13 +235,13 @@ def count_right_of(line: float, rod: Rod) -> Count:
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real = WIDTH_FACTOR * real + WIDTH_ADDED
-    imag = max(imag, LEAST_HEIGHT * abs(line))
+    real = COUNT.width_factor * real + COUNT.width_added
+    imag = max(imag, COUNT.least_height * abs(line))
     change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
         return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
     total += change
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > NOT_AN_INTEGER:
+    if abs(total / math.pi - number) > COUNT.not_an_integer:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number, nodes)

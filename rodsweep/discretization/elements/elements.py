@@ -11,8 +11,20 @@ from ...arrays import Array
 from .basis import interpolation
 from .quadrature import gauss_lobatto
 
-INSIDE = 1e-9
-"""Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElementSettings:
+    """Settings of the elements: samples inside an element, and numbers of meshes kept in memory."""
+
+    inside: float = 1e-9
+    """Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
+    meshes_kept: int = 64
+    """Number of meshes, and of matrices of one mesh, that are kept; a sweep uses some ten."""
+    pairs_kept: int = 256
+    """Number of pairs of meshes whose transfer is kept, and of lists of edges."""
+
+
+ELEMENTS = ElementSettings()
 
 
 @dataclass(frozen=True)
@@ -47,12 +59,17 @@ class Elements:
         return positions
 
     @cached_property
+    def element_nodes(self) -> NDArray[np.int64]:
+        """Indices of the nodes of every element, (elements, order + 1)."""
+        return np.arange(self.elements)[:, None] * self.order + np.arange(self.order + 1)
+
+    @cached_property
     def points_inside(self) -> Array:
         """u of the nodes of every element, with the outer nodes moved just inside, (elements, order + 1).
 
         At a jump between two elements each element therefore samples the coefficient on its own side.
         """
-        inner: Array = np.clip((gauss_lobatto(self.order)[0] + 1) / 2, INSIDE, 1 - INSIDE)
+        inner: Array = np.clip((gauss_lobatto(self.order)[0] + 1) / 2, ELEMENTS.inside, 1 - ELEMENTS.inside)
         starts: Array = np.array(self.edges[:-1])
         points: Array = starts[:, None] + self.lengths[:, None] * inner
         return points
@@ -63,6 +80,15 @@ class Elements:
         matrix = np.zeros((len(points), self.nodes + 1))
         for first, inside, local in self.by_element(points):
             matrix[inside, first : first + self.order + 1] = interpolation(nodes, local)
+        return matrix
+
+    def evaluation_by_element(self, points: Array) -> Array:
+        """Matrix from values at `element_nodes` to values at `points` in [0, 1], (points, element nodes)."""
+        nodes = gauss_lobatto(self.order)[0]
+        matrix = np.zeros((len(points), self.element_nodes.size))
+        for first, inside, local in self.by_element(points):
+            start = first + first // self.order
+            matrix[inside, start : start + self.order + 1] = interpolation(nodes, local)
         return matrix
 
     def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
@@ -76,7 +102,7 @@ class Elements:
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=ELEMENTS.pairs_kept)
 def equal_edges(elements: int) -> tuple[float, ...]:
     """Edges of `elements` equal elements on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))

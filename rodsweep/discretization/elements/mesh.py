@@ -12,12 +12,20 @@ import numpy as np
 
 from ...arrays import Array
 from .basis import differentiation, interpolation
-from .elements import Elements, equal_edges
+from .elements import ELEMENTS, Elements, equal_edges
 from .quadrature import gauss, gauss_lobatto
 
-EXTRA_POINTS = 10
-"""Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two radians in
-an element."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReconstructionSettings:
+    """Settings for the quadrature of the shape of a rod."""
+
+    extra_points: int = 10
+    """Gauss points of an element minus order, for integrals of shapes. Enough for theta to turn by two
+    radians in an element."""
+
+
+RECONSTRUCTION = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
@@ -56,7 +64,7 @@ def mesh(elements: int, order: int) -> Mesh:
     return mesh_on(equal_edges(elements), order)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     """The mesh of elements between `edges`, all of order `order`."""
     x, w = gauss_lobatto(order)
@@ -74,7 +82,7 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=ELEMENTS.pairs_kept)
 def transfer(source: Mesh, target: Mesh) -> Array:
     """Matrix from values at all nodes of `source` to values at all nodes of `target`.
 
@@ -84,17 +92,18 @@ def transfer(source: Mesh, target: Mesh) -> Array:
 
 
 def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
-    """(x, y, theta) at all nodes from strains (h1, h2, Pi), both (3, ..., nodes + 1).
+    """(x, y, theta) at all nodes, (3, ..., nodes + 1), from strains (h1, h2, Pi).
 
-    clamp: (x, y, theta) at u = 0, (3,).
+    strains: at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta) at u = 0,
+    (3,).
     """
     values, angles, integrals, ends = reconstruction(grid.order)
     p = grid.order
-    state = np.empty_like(strains)
+    state = np.empty((*strains.shape[:-1], grid.nodes + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, length in enumerate(grid.lengths):
         element = slice(e * p, (e + 1) * p + 1)
-        h1, h2, Pi = (strain[..., element] for strain in strains)
+        h1, h2, Pi = (strain[..., e * (p + 1) : (e + 1) * (p + 1)] for strain in strains)
         theta = start[2] + length * (Pi @ angles)
         cos = np.cos(theta)
         sin = np.sin(theta)
@@ -107,7 +116,7 @@ def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
     return state
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
     """Matrices (values, angles, integrals, ends) on an element [0, 1] with p + 1 nodes and m Gauss points.
 
@@ -117,7 +126,7 @@ def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
     the nodes, (p + 1, p + 1).
     """
     x = gauss_lobatto(order)[0]
-    g = gauss(order + EXTRA_POINTS)[0]
+    g = gauss(order + RECONSTRUCTION.extra_points)[0]
     return interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T
 
 

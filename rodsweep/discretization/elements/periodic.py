@@ -51,25 +51,34 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
     """
     nodes, columns = values.shape
     m = 2 * nodes if signs[0] != 0 else nodes
-    turns, cos, sin = _waves(m), np.empty(nodes), np.empty(nodes)
-    f, df, c = values.T.copy(), slopes.T.copy(), np.zeros((m + 1, columns), np.complex128)
+    turns = _waves(m)
+    cos = np.empty(nodes)
+    sin = np.empty(nodes)
+    f = values.T.copy()
+    df = slopes.T.copy()
+    c = np.zeros((m + 1, columns), np.complex128)
     for k in range(m + 1):
         at = 0
         for j in range(nodes):
-            cos[j], sin[j] = turns[0, at], turns[1, at]
+            cos[j] = turns[0, at]
+            sin[j] = turns[1, at]
             at += k if at + k < m else k - m
         for a in range(columns):
             # The second half of the period doubles or cancels a harmonic.
             factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
             if factor == 0:
                 continue
-            S, iS, D, iD = 0.0, 0.0, 0.0, 0.0
+            S = 0.0
+            iS = 0.0
+            D = 0.0
+            iD = 0.0
             for j in range(nodes):
                 S += cos[j] * f[a, j]
                 iS -= sin[j] * f[a, j]
                 D += cos[j] * df[a, j]
                 iD -= sin[j] * df[a, j]
-            share, by_slope = 1 - k / m, 1 / (2 * np.pi * m)
+            share = 1 - k / m
+            by_slope = 1 / (2 * np.pi * m)
             c[k, a] = complex(factor * (share * S + by_slope * iD), factor * (share * iS - by_slope * D))
     for a in range(columns):
         # The last harmonic is a sine, which only the slopes contain.
@@ -83,7 +92,8 @@ def _waves(count: int) -> Array:
     waves = np.empty((2, count))
     for i in range(count):
         turn = 2 * np.pi * i / count
-        waves[0, i], waves[1, i] = np.cos(turn), np.sin(turn)
+        waves[0, i] = np.cos(turn)
+        waves[1, i] = np.sin(turn)
     return waves
 
 
@@ -102,19 +112,28 @@ def sampled_columns(c: Complex, count: int) -> Array:
     """
     harmonics, columns = c.shape
     order = np.append(np.arange(0, harmonics, 2), np.arange(1, harmonics, 2))
-    odd, steps, at = (harmonics + 1) // 2, order % count, np.zeros(harmonics, np.int64)
-    turns, cos, sin = _waves(count), np.empty(harmonics), np.empty(harmonics)
-    real, imaginary = np.empty((columns, harmonics)), np.empty((columns, harmonics))
+    odd = (harmonics + 1) // 2
+    steps = order % count
+    at = np.zeros(harmonics, np.int64)
+    turns = _waves(count)
+    cos = np.empty(harmonics)
+    sin = np.empty(harmonics)
+    real = np.empty((columns, harmonics))
+    imaginary = np.empty((columns, harmonics))
     for a in range(columns):
         for k in range(harmonics):
-            real[a, k], imaginary[a, k] = c[order[k], a].real, c[order[k], a].imag
-    samples, later = np.empty((count, columns)), count // 2 if count % 2 == 0 else count
+            real[a, k] = c[order[k], a].real
+            imaginary[a, k] = c[order[k], a].imag
+    samples = np.empty((count, columns))
+    later = count // 2 if count % 2 == 0 else count
     for i in range(later):
         for k in range(harmonics):
-            cos[k], sin[k] = turns[0, at[k]], turns[1, at[k]]
+            cos[k] = turns[0, at[k]]
+            sin[k] = turns[1, at[k]]
             at[k] += steps[k] if at[k] + steps[k] < count else steps[k] - count
         for a in range(columns):
-            same, other = 0.0, 0.0
+            same = 0.0
+            other = 0.0
             for k in range(odd):
                 same += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
             for k in range(odd, harmonics):
@@ -177,10 +196,14 @@ def minima(c: Complex, samples: Array) -> Array:
 def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
     """Value, slope and curvature of Re sum_k c_k exp(2 pi i k t) at t, c of shape (harmonics,)."""
     turn = 2 * np.pi * t
-    step, wave = complex(np.cos(turn), np.sin(turn)), complex(1.0, 0.0)
-    value, slope, curvature = 0.0, 0.0, 0.0
+    step = complex(np.cos(turn), np.sin(turn))
+    wave = complex(1.0, 0.0)
+    value = 0.0
+    slope = 0.0
+    curvature = 0.0
     for k in range(len(c)):
-        term, w = c[k] * wave, 2 * np.pi * k
+        term = c[k] * wave
+        w = 2 * np.pi * k
         value += term.real
         slope -= w * term.imag
         curvature -= w * w * term.real

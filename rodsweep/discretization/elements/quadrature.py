@@ -1,5 +1,6 @@
 """Gauss and Gauss-Lobatto-Legendre nodes and weights on [-1, 1]."""
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -7,11 +8,19 @@ from numpy.polynomial import legendre
 
 from ...arrays import Array
 
-MAX_NODE_STEPS = 50
-"""Maximum Newton steps to the Lobatto nodes, for the rare case that rounding errors keep the steps above the
-tolerance."""
-NODE_TOLERANCE = 4e-16
-"""Newton step at which the Lobatto nodes have converged to rounding error."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LobattoSettings:
+    """Settings of Newton's method for the Lobatto nodes."""
+
+    max_steps: int = 50
+    """Maximum Newton steps to the Lobatto nodes, for the rare case that rounding errors keep the steps above
+    the tolerance."""
+    tolerance: float = 4e-16
+    """Newton step at which the Lobatto nodes have converged to rounding error."""
+
+
+LOBATTO = LobattoSettings()
 
 
 @cache
@@ -28,12 +37,12 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
     The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points.
     """
     x = -np.cos(np.pi * np.arange(p + 1) / p)
-    for _ in range(MAX_NODE_STEPS):
+    for _ in range(LOBATTO.max_steps):
         # (1 - x^2) P_p' = p (P_{p-1} - x P_p) and its derivative -p (p + 1) P_p.
         P, Q = _legendre_pair(p, x)
         step = (x * P - Q) / ((p + 1) * P)
         x = x - step
-        if np.abs(step).max() < NODE_TOLERANCE:
+        if np.abs(step).max() < LOBATTO.tolerance:
             break
     x = (x - x[::-1]) / 2
     x[0] = -1.0

@@ -6,17 +6,15 @@ solution is smooth within each element. The matrix is not affine in any paramete
 arm.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Complex
+from ...arrays import Array
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.elements import Elements
 from ..elements.quadrature import gauss, gauss_lobatto
-from .pencil import LEAST_ANGLE_WEIGHT, SHEAR_WEIGHT
+from .pencil import PENCIL_NORM, Matrices
 
 
 class ArmMesh(Elements):
@@ -26,18 +24,6 @@ class ArmMesh(Elements):
     def unknowns(self) -> int:
         """The total number of unknowns y, theta and s."""
         return 3 * self.nodes
-
-
-class Matrices(NamedTuple):
-    """The pencil of one arm.
-
-    A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
-    unknowns to y and theta at the nodes, (2, nodes).
-    """
-
-    A: Array
-    B: Array
-    scale: Array
 
 
 class ArmPencil:
@@ -70,10 +56,6 @@ class ArmPencil:
         """u of all nodes, both ends included, shape (nodes + 1,)."""
         return self.mesh.positions
 
-    def finite(self, rod: Rod) -> int:
-        """The number of finite eigenvalues; theta adds none without shear or without rotational drag."""
-        return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
-
     def matrices(self, rod: Rod) -> Matrices:
         """The pencil of an arm."""
         inside = rod.local(self._gauss_points)
@@ -97,30 +79,13 @@ class ArmPencil:
         lumped = self._w * self._h[:, None] / 2
         push = self._at_nodes(lumped * at_nodes.gamma2)
         turn = self._at_nodes(lumped * at_nodes.gamma3)
-        least = LEAST_ANGLE_WEIGHT**2 * self._at_nodes(lumped)
+        least = PENCIL_NORM.least_angle_weight**2 * self._at_nodes(lumped)
         angle = np.maximum(turn, least)
-        masses = np.concatenate([push, angle, weight.ravel() * SHEAR_WEIGHT**2])
+        masses = np.concatenate([push, angle, weight.ravel() * PENCIL_NORM.shear_weight**2])
         scale = 1 / np.sqrt(masses)
         B = np.concatenate([np.ones(self.nodes), turn / angle, np.zeros(self.nodes)])
         A = summed * scale[self.rows] * scale[self.columns]
         return Matrices(A, B, scale[: 2 * self.nodes].reshape(2, -1))
-
-    def dense(self, rod: Rod) -> tuple[Array, Array]:
-        """(A, diagonal of B) of the arm as dense arrays, shapes (unknowns, unknowns) and (unknowns,)."""
-        sparse = self.matrices(rod)
-        A = np.zeros((self.unknowns, self.unknowns))
-        A[self.rows, self.columns] = sparse.A
-        return A, sparse.B
-
-    def fields(self, vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k).
-
-        scale: `Matrices.scale`, (2, nodes).
-        """
-        clamp = np.zeros((1, vectors.shape[1]))
-        y = vectors[: self.nodes] * scale[0][:, None]
-        theta = vectors[self.nodes : 2 * self.nodes] * scale[1][:, None]
-        return np.vstack([clamp, y]), np.vstack([clamp, theta])
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""

@@ -1,5 +1,6 @@
 """Choice of the mesh of an arm: edges and order of the elements."""
 
+from dataclasses import dataclass
 from math import ceil, hypot, log, pi
 
 import numpy as np
@@ -8,31 +9,37 @@ from ...arrays import Array
 from ...model.dispersion import local_growth, sampled
 from ...model.rod import Rod
 from ..elements.elements import Elements
-from ..elements.resolution import LARGEST_ORDER, MODE_OFFSET, SMALLEST_ORDER, WAVE_FACTOR, required_order
+from ..elements.resolution import RESOLUTION, required_order
 from .arm_pencil import ArmMesh
 
-LARGEST_RATIO = 2.2
-"""Largest ratio of the radii at the ends of an element, for which order 12 gives eigenvalues to 1e-4."""
-FOR_PROFILES = 2
-"""Increase of the order for coefficients that vary within an element."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmResolutionSettings:
+    """Settings for the elements of an arm that varies along its length."""
+
+    largest_ratio: float = 2.2
+    """Largest ratio of the radii at the ends of an element, for which order 12 gives eigenvalues to 1e-4."""
+    for_profiles: int = 2
+    """Increase of the order for coefficients that vary within an element."""
+
+
+ARM_RESOLUTION = ArmResolutionSettings()
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """A mesh expected to give `modes` leading eigenvalues to the relative accuracy."""
     weights = sampled(rod).weights
     _, amplified = local_growth(rod)
-    at_rest = (modes - MODE_OFFSET) * pi * _local_share(rod)
-    waves = np.hypot(WAVE_FACTOR * amplified, at_rest)
-    elements = _resolving(rod, waves * weights, accuracy, LARGEST_ORDER)
+    at_rest = (modes - RESOLUTION.mode_offset) * pi * _local_share(rod)
+    waves = np.hypot(RESOLUTION.wave_factor * amplified, at_rest)
+    elements = _resolving(rod, waves * weights, accuracy, RESOLUTION.largest_order)
     return ArmMesh(elements.edges, elements.order)
 
 
-def arm_elements(
-    rod: Rod, wave_number: float, accuracy: float, largest_order: int = LARGEST_ORDER
-) -> Elements:
+def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: int | None = None) -> Elements:
     """Elements that resolve a field with the mean wave number `wave_number` to the relative accuracy."""
     waves = wave_number * _local_share(rod)
-    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order)
+    return _resolving(rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.largest_order)
 
 
 def _local_share(rod: Rod) -> Array:
@@ -51,22 +58,22 @@ def _resolving(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> E
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
         needed = _elements_for(float(share), accuracy, largest_order)
-        count = max(1, ceil(ratio / log(LARGEST_RATIO)), needed)
+        count = max(1, ceil(ratio / log(ARM_RESOLUTION.largest_ratio)), needed)
         edges += _edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
-    order = max(SMALLEST_ORDER, ceil(required_order(hypot(largest, 1.0), accuracy)))
-    return Elements(tuple(edges), order + (0 if rod.uniform else FOR_PROFILES))
+    order = max(RESOLUTION.smallest_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
+    return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.for_profiles))
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The next finer mesh: the order times 4/3, or twice as many elements of 2/3 of the order."""
-    order = ceil(mesh.order * 4 / 3)
-    if order <= LARGEST_ORDER:
+    order = ceil(mesh.order * RESOLUTION.refinement)
+    if order <= RESOLUTION.largest_order:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _edges(rod, start, stop, 2)
-    return ArmMesh(tuple(edges), ceil(2 / 3 * mesh.order))
+    return ArmMesh(tuple(edges), ceil(RESOLUTION.refinement / 2 * mesh.order))
 
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ..elements.elements import INSIDE, Elements
+from ..elements.elements import ELEMENTS, Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, shear_force, slope
+from .pencil import Pencil, fields_of, shear_force, slope
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of any arm."""
@@ -34,10 +34,7 @@ class DenseForm:
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
-        n = self.mesh.nodes
-        clamp = np.zeros((1, vectors.shape[1]))
-        y, theta = (vectors[i * n : (i + 1) * n] * self.scale[i][:, None] for i in range(2))
-        return np.vstack([clamp, y]), np.vstack([clamp, theta])
+        return fields_of(vectors, self.scale)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
         """(h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors at points, (2, k, points).
@@ -48,7 +45,7 @@ class DenseForm:
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, slope(self.mesh, self.fields(vectors)[1], points).T])
 
-    def averaged(self, pair: float, tip: float) -> Array:
+    def with_tip_terms(self, pair: float, tip: float) -> Array:
         """A plus the tip term pair (a theta - b y) - tip a y, with test functions (a, b), at u = 1."""
         A = self.A.copy()
         n = self.mesh.nodes
@@ -61,9 +58,10 @@ class DenseForm:
 
 def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
     """The dense eigenproblem of a rod on the mesh of a pencil."""
-    if isinstance(pencil, Pencil):
-        return DenseForm(rod, pencil, *pencil.dense(rod), pencil.scale(rod))
-    return DenseForm(rod, pencil.mesh, *pencil.dense(rod), pencil.matrices(rod).scale)
+    found = pencil.matrices(rod)
+    A = np.zeros((pencil.unknowns, pencil.unknowns))
+    A[pencil.rows, pencil.columns] = found.A
+    return DenseForm(rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.scale)
 
 
 def _inside(mesh: Elements, points: Array) -> Array:
@@ -71,6 +69,6 @@ def _inside(mesh: Elements, points: Array) -> Array:
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
-        share = np.clip((local + 1) / 2, INSIDE, 1 - INSIDE)
+        share = np.clip((local + 1) / 2, ELEMENTS.inside, 1 - ELEMENTS.inside)
         moved[inside] = mesh.edges[e] + mesh.lengths[e] * share
     return moved

@@ -21,6 +21,7 @@ from scipy.linalg.lapack import zgetrf, zgetrs
 from ...arrays import Array, Complex
 from ...model.balance import Values, ad, coad
 from ..elements.basis import differentiation
+from ..elements.elements import ELEMENTS
 from ..elements.quadrature import gauss_lobatto
 from ..state_layout import COMPONENTS
 from .mixed_form import MixedForm
@@ -51,7 +52,7 @@ class _Numbering:
     exists: NDArray[np.bool_]
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _numbering(elements: int, order: int, components: tuple[int, ...]) -> _Numbering:
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
@@ -250,7 +251,7 @@ def solved_with(factors: LU, right: Values, adjoint: bool = False) -> Complex:
     return x
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
     """(W D, W) on [-1, 1], (order + 1, order + 1) and (order + 1,); W D does not depend on the length."""
     x, w = gauss_lobatto(order)

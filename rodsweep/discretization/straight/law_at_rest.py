@@ -85,16 +85,20 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
         M113=bending_curvature * c1**2,
         M333=0 * ones,
     )
-    if len(nodal.jumps):
+    if found.nonlinear and len(nodal.jumps):
         _fill_jumps(found, law, nodal)
     return found
 
 
 def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
     """Fills in the derivatives at the nodes at which the material jumps."""
-    at, sides = nodal.jumps, nodal.sides
-    nu, c1, means = sides[..., 0], sides[..., 1], sides[..., 5]
-    shares, T = np.moveaxis(sides[..., 3:5], -1, 0), np.array([law.stiffness(nu), law.bending(nu)])
+    at = nodal.jumps
+    sides = nodal.sides
+    nu = sides[..., 0]
+    c1 = sides[..., 1]
+    means = sides[..., 5]
+    shares = np.moveaxis(sides[..., 3:5], -1, 0)
+    T = np.array([law.stiffness(nu), law.bending(nu)])
     slopes = np.array([law.stiffness_slope(nu), law.bending_slope(nu)])
     first, second, third = stress_at_rest(law, sides)
     moved = -c1 / T[0]
@@ -105,9 +109,13 @@ def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
         found.tangent[2 * component, at] = own
         found.change.tangent[2 * component, at] = change
     found.change.nu[at] = (means * moved).sum(axis=-1)
-    found.N11[at], found.N33[at], found.M13[at] = second[:, 0, 0, 0], second[:, 0, 1, 1], second[:, 1, 0, 1]
-    found.N111[at], found.N133[at] = third[:, 0, 0, 0, 0], third[:, 0, 0, 1, 1]
-    found.M113[at], found.M333[at] = third[:, 1, 0, 0, 1], third[:, 1, 1, 1, 1]
+    found.N11[at] = second[:, 0, 0, 0]
+    found.N33[at] = second[:, 0, 1, 1]
+    found.M13[at] = second[:, 1, 0, 1]
+    found.N111[at] = third[:, 0, 0, 0, 0]
+    found.N133[at] = third[:, 0, 0, 1, 1]
+    found.M113[at] = third[:, 1, 0, 0, 1]
+    found.M333[at] = third[:, 1, 1, 1, 1]
 
 
 Derivatives = tuple[Array, Array, Array]
@@ -116,7 +124,7 @@ on; the first index after the leading ones is the function's."""
 
 
 def stress_at_rest(law: Law, sides: Array) -> Derivatives:
-    """Derivatives of N and M at rest by the mean unknowns, at jumps; sides: (k, 2, 6).
+    """Derivatives of N and M at rest by the mean unknowns, at jumps; sides: (k, 2, 7).
 
     The unknowns of each side are functions of the stresses, and their mean is one: its inverse is the law.
     """
@@ -129,7 +137,8 @@ def stress_at_rest(law: Law, sides: Array) -> Derivatives:
 def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
     """Derivatives of N and M at rest where the material does not jump, from arrays of any shape."""
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
-    first[..., 0, 0], first[..., 1, 1] = law.stiffness(nu), law.bending(nu)
+    first[..., 0, 0] = law.stiffness(nu)
+    first[..., 1, 1] = law.bending(nu)
     second[..., 0, 0, 0] = law.stiffness_slope(nu) * c1
     second[..., 0, 1, 1] = law.bending_slope(nu) * c3
     second[..., 1, 0, 1] = second[..., 1, 1, 0] = law.bending_slope(nu) * c1
@@ -149,6 +158,7 @@ def inverse_derivatives(of: Derivatives) -> Derivatives:
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)
     inner = np.einsum("...ijkl,...jb,...kc,...ld->...ibcd", f3, g1, g1, g1)
     for places in ("bcd", "bdc", "cdb"):
-        pair, last = places[:2], places[2]
+        pair = places[:2]
+        last = places[2]
         inner = inner + np.einsum(f"...ijk,...j{pair},...k{last}->...ibcd", f2, g2, g1)
     return g1, g2, -np.einsum("...ai,...ibcd->...abcd", g1, inner)

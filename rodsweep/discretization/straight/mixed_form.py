@@ -65,7 +65,8 @@ class MixedForm:
     @cached_property
     def nodal(self) -> NodalRod:
         """Compliance, drag and strain at rest at all nodes, and the tip stress."""
-        kept, jumps = tuple(range(COMPONENTS)), jumps_on(self.rod, self.mesh)
+        kept = tuple(range(COMPONENTS))
+        jumps = jumps_on(self.rod, self.mesh)
         return nodal_rod(material_on(self.rod, self.mesh), self.mesh, kept, jumps=jumps)
 
     @cached_property
@@ -104,9 +105,9 @@ class MixedForm:
         S, V = self.fields(X)
         W = self.mesh.quadrature
         change = self.law.change
-        E = first_field(change.nu)
+        E = axial_field(change.nu)
         moved = self._along(change.tangent, S) * S
-        Sigma = first_field(-np.ones(len(W)))
+        Sigma = axial_field(-np.ones(len(W)))
         at_rest = self._along(self.nodal.rest, S)
         forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
@@ -193,7 +194,7 @@ class MixedForm:
         return matrix
 
 
-def first_field(values: Array) -> Array:
+def axial_field(values: Array) -> Array:
     """The field (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
     field = np.zeros((COMPONENTS, len(values)))
     field[0] = values

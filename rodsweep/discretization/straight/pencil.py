@@ -10,8 +10,8 @@ the shear force s in discontinuous P_{p-1} (Gauss nodes). With test functions (a
 which is Sec. VI with the shear force kept as an unknown. Only compliances appear, no stiffness, so
 k1, k2 = inf and gamma3 = 0 are allowed.
 
-Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by
-SHEAR_WEIGHT. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma
+Every unknown is scaled by the square root of its mass; theta is also scaled by sqrt(gamma3), s by a
+small weight. Krylov methods orthogonalise in the Euclidean norm, which is then the norm of the Gamma
 inner product (Sec. VI): the problem at F = 0 is symmetric, and s, which has no time derivative, has
 almost no weight. Without the scaling the fourth eigenvalue loses four digits.
 """
@@ -19,6 +19,7 @@ almost no weight. Without the scaling the fourth eigenvalue loses four digits.
 from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,15 +27,35 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
-from ..elements.elements import Elements, equal_edges
+from ..elements.elements import ELEMENTS, Elements, equal_edges
 from ..elements.quadrature import gauss, gauss_lobatto
 
-SHEAR_WEIGHT = 1e-9
-"""Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""
-LEAST_ANGLE_WEIGHT = 1e-4
-"""Smallest weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
-NO_TIP = 1e-10
-"""Smallest y(1), in units of the mode's largest value, for which a mode can be normalised to y(1) = 1."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PencilNormSettings:
+    """Settings of the norm of a pencil: weights of the unknowns, and normalisation at the tip."""
+
+    shear_weight: float = 1e-9
+    """Weight of s in the norm. Nearly crushed rods lose seven digits at a weight of 1e-3, none below 1e-8."""
+    least_angle_weight: float = 1e-4
+    """Smallest weight of theta in the norm, for gamma3 -> 0, where theta has no time derivative."""
+    no_tip: float = 1e-10
+    """Smallest y(1), in units of the mode's largest value, for which a mode can be normalised to y(1) = 1."""
+
+
+PENCIL_NORM = PencilNormSettings()
+
+
+class Matrices(NamedTuple):
+    """The pencil of one rod or arm.
+
+    A: entries in the order of the pattern, (nnz,). B: diagonal of B, (unknowns,). scale: factors from
+    unknowns to y and theta at the nodes, (2, nodes).
+    """
+
+    A: Array
+    B: Array
+    scale: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +77,6 @@ class Pencil(Elements):
     def unknowns(self) -> int:
         return 3 * self.nodes
 
-    def finite(self, rod: Rod) -> int:
-        """The number of finite eigenvalues; theta adds none without shear or without rotational drag."""
-        return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
-
     def coefficients(self, rod: Rod) -> Array:
         """Factors of the pieces for a rod, shape (6,)."""
         t = angle_weight(rod.rotational_drag)
@@ -75,11 +92,9 @@ class Pencil(Elements):
         whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
         return whole
 
-    def dense(self, rod: Rod) -> tuple[Array, Array]:
-        """(A, diagonal of B) of the rod as dense arrays, shapes (unknowns, unknowns) and (unknowns,)."""
-        A = np.zeros((self.unknowns, self.unknowns))
-        A[self.rows, self.columns] = self.stiffness(rod)
-        return A, self.inertia(rod)
+    def matrices(self, rod: Rod) -> Matrices:
+        """The pencil of one rod."""
+        return Matrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
 
     def inertia(self, rod: Rod) -> Array:
         """The diagonal of B, shape (unknowns,)."""
@@ -93,30 +108,38 @@ class Pencil(Elements):
         push = 1 / np.sqrt(self.mass)
         return np.stack([push, push / angle_weight(rod.rotational_drag)])
 
-    def fields(self, vectors: Complex, rod: Rod) -> tuple[NDArray, NDArray]:
-        """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k)."""
-        push, turn = self.scale(rod)[:, :, None]
-        clamp = np.zeros((1, vectors.shape[1]))
-        y = vectors[: self.nodes] * push
-        theta = vectors[self.nodes : 2 * self.nodes] * turn
-        return np.vstack([clamp, y]), np.vstack([clamp, theta])
+
+def finite_eigenvalues(rod: Rod, nodes: int) -> int:
+    """Number of finite eigenvalues on a mesh; theta adds none without shear or without rotational drag."""
+    return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
+
+
+def fields_of(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
+    """(y, theta) at all nodes, clamp included, (nodes + 1, k), of k eigenvectors, (unknowns, k).
+
+    scale: factors from unknowns to y and theta at the nodes, (2, nodes).
+    """
+    n = scale.shape[1]
+    clamp = np.zeros((1, vectors.shape[1]))
+    y, theta = (np.vstack([clamp, vectors[i * n : (i + 1) * n] * scale[i][:, None]]) for i in range(2))
+    return y, theta
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm: sqrt(gamma3), at least `LEAST_ANGLE_WEIGHT`."""
-    return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
+    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM.least_angle_weight`."""
+    return max(sqrt(gamma3), PENCIL_NORM.least_angle_weight)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
     """Factors, (k,), that normalise k modes, (nodes + 1, k), to y(1) = 1; NaN for a mode with y(1) = 0."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
+    return np.where(np.abs(y[-1]) > PENCIL_NORM.no_tip * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """s of k eigenvectors, (unknowns, k), interpolated from the Gauss nodes to points; shape (points, k)."""
     nodes, weights = gauss(mesh.order)
-    mass = (weights * mesh.lengths[:, None] / 2).ravel() * SHEAR_WEIGHT**2
+    mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM.shear_weight**2
     values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
     for first, inside, local in mesh.by_element(points):
@@ -135,7 +158,7 @@ def slope(mesh: Elements, values: Complex, points: Array) -> Complex:
     return result
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def assemble(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order
@@ -166,7 +189,7 @@ def assemble(elements: int, order: int) -> Pencil:
             (5, s, s, -np.diag(weight)),
         ]
     entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
-    masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * SHEAR_WEIGHT**2])
+    masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM.shear_weight**2])
     return _gather(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
 
 

@@ -5,6 +5,7 @@ is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the e
 error of d.
 """
 
+from dataclasses import dataclass
 from math import ceil, sqrt
 
 import numpy as np
@@ -15,12 +16,23 @@ from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.quadrature import gauss, gauss_lobatto
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlavingSettings:
+    """Settings for the elements of the tip layer."""
+
+    longest: float = 4.0
+    """Longest element in units of the layer's thickness; elements away from the tip may be longer."""
+    max_equal: int = 64
+    """Largest number of equal elements; thinner layers have elements that get shorter towards the tip."""
+    samples: int = 33
+    """Number of samples of each smooth piece of an arm from which the thickness of the layer is estimated."""
+
+
+SLAVING = SlavingSettings()
 ORDER = 16
-"""Order of the elements, which resolves exp(kappa u) over `LONGEST_IN_LAYER`/kappa to rounding."""
-LONGEST_IN_LAYER = 4.0
-"""Longest element in units of the layer's thickness; elements away from the tip may be longer."""
-MAX_EQUAL = 64
-"""Largest number of equal elements; thinner layers have elements that get shorter towards the tip."""
+"""Order of the elements, derived: it resolves exp(kappa u) over `SLAVING.longest`/kappa to rounding, since no
+error of T is stated. Half of it would leave 4e-11 of a numerical abscissa."""
 
 
 def slaving_of(rod: Rod) -> float:
@@ -46,7 +58,7 @@ def slaving_of(rod: Rod) -> float:
 
 
 def _at_right_end(K: Array, before: float) -> float:
-    """d/m at the right end of an element from d/m at the left end; K: stiffness, (ORDER + 1, ORDER + 1)."""
+    """d/m at the right end of an element from d/m at the left end; K: stiffness, (nodes, nodes)."""
     if before == 0:
         K = K[1:, 1:]
     else:
@@ -60,11 +72,12 @@ def _at_right_end(K: Array, before: float) -> float:
 def _edges(rod: Rod) -> Array:
     """Edges of elements: breaks, equal elements, and shorter elements towards the tip for a thin layer."""
     breaks = rod.build.breaks
-    middles = np.concatenate([np.linspace(a, b, 35)[1:-1] for a, b in zip(breaks, breaks[1:], strict=False)])
+    pieces = zip(breaks, breaks[1:], strict=False)
+    middles = np.concatenate([np.linspace(a, b, SLAVING.samples + 2)[1:-1] for a, b in pieces])
     local = rod.local(middles)
     waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
-    count = min(max(1, ceil(waves / LONGEST_IN_LAYER)), MAX_EQUAL)
+    count = min(max(1, ceil(waves / SLAVING.longest)), SLAVING.max_equal)
     equal = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / LONGEST_IN_LAYER / count, 1.0))))
+    halvings = max(0, ceil(np.log2(max(waves / SLAVING.longest / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
     return np.unique(np.concatenate([breaks, equal, towards_tip]))

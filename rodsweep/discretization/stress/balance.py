@@ -117,7 +117,8 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
     Components of V that are unknowns come from x.
     """
     size = len(m.weights)
-    E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
+    E = np.empty((g.dimension, size))
+    S = np.empty((g.dimension, size))
     fields(g, x, E, S, c)
     forces(g, E, S, V, c, m)
     for i in range(size):
@@ -133,7 +134,8 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the equations W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,)."""
     size = len(m.weights)
-    E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
+    E = np.empty((g.dimension, size))
+    S = np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
     fields(g, x, E, S, c)
     forces(g, E, S, force, c, m)
@@ -150,7 +152,8 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
 
     x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to a parameter.
     """
-    n, k = dS.shape[1] - 1, 0
+    n = dS.shape[1] - 1
+    k = 0
     for i in range(n + 1):
         q1, q3 = (x[stress_place(0, i, n)], x[stress_place(2, i, n)]) if i < n else (0.0, 0.0)
         if k < len(c.jumps) and c.jumps[k] == i:
@@ -173,7 +176,9 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     components of V are fixed.
     """
     size = len(m.weights)
-    E, S, dS = np.empty((g.dimension, size)), np.empty((g.dimension, size)), np.zeros((g.dimension, size))
+    E = np.empty((g.dimension, size))
+    S = np.empty((g.dimension, size))
+    dS = np.zeros((g.dimension, size))
     fields(g, x, E, S, c)
     if c.law != LINEAR_LAW:
         law_change(x, dS, change, c)
@@ -193,5 +198,7 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
         for a, b, o, sign in g.terms:
             rate[a] += sign * (dE[b] * V[o, i] + E[b, i] * dV[o])
         for a in g.components:
-            out[0, a, i], out[1, a, i], out[2, a, i] = force[a], dV[a], m.weights[i] * rate[a]
+            out[0, a, i] = force[a]
+            out[1, a, i] = dV[a]
+            out[2, a, i] = m.weights[i] * rate[a]
     add_weak_slope(g, out[1], out[2], m)

@@ -15,10 +15,19 @@ from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
 from ..state_layout import COMPONENTS, plane_layout
 
-LEAST_ELIMINATED_DRAG = 1e-5
-"""Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers their
-digits (errors of 2e-9 at 1e-6, of 2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an unknown
-takes 2.4 times as long."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StressFormSettings:
+    """Settings for the choice of the unknowns."""
+
+    least_eliminated_drag: float = 1e-5
+    """Rotational drag from which Omega is eliminated. Division by a smaller drag costs Floquet multipliers
+    their digits (errors of 2e-9 at 1e-6, of 2e-7 at 1e-8), and cycles of soft rods are not found. Omega as an
+    unknown takes 2.4 times as long."""
+
+
+STRESS_FORM = StressFormSettings()
+
 OMEGA = (2,)
 """Index of Omega among the components of V, as a tuple."""
 
@@ -35,7 +44,7 @@ class StressForm(RodOnMesh):
     @property
     def omega_unknown(self) -> bool:
         """Whether Omega is among the unknowns."""
-        return self.rod.least_rotational_drag < LEAST_ELIMINATED_DRAG
+        return self.rod.least_rotational_drag < STRESS_FORM.least_eliminated_drag
 
     @property
     def kept(self) -> tuple[int, ...]:
@@ -47,7 +56,7 @@ class StressForm(RodOnMesh):
     def states_on(self, grid: Mesh, x: Array) -> Array:
         """States x on another mesh, (..., unknowns there)."""
         E = transfer(self.mesh, grid)
-        if not len(self.nodal.jumps):
+        if self.smooth_stresses:
             return self.layout.carried(x, E)
         layout = plane_layout(grid.nodes, self.kept)
         V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))

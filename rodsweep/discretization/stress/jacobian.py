@@ -37,11 +37,13 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     the tip, then the balance of each unknown component of V. tip, (d, unknowns): derivative of the reaction.
     """
     size = len(m.weights)
-    E, S = np.empty((g.dimension, size)), np.empty((g.dimension, size))
+    E = np.empty((g.dimension, size))
+    S = np.empty((g.dimension, size))
     fields(g, x, E, S, c)
     _derivative(g, (E, S, V), J, tip, c.compliance, c, m)
     if c.law != LINEAR_LAW:
-        P, tip_P = np.empty(J.shape), np.empty(tip.shape)
+        P = np.empty(J.shape)
+        tip_P = np.empty(tip.shape)
         _derivative(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
         # Unknown velocities do not depend on the law, so their columns of P are not used.
         _by_law(x, J, P, c)
@@ -51,9 +53,11 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
 @compiled
 def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
     """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of a rod in the plane, at x."""
-    n, k = c.compliance.shape[1] - 1, 0
+    n = c.compliance.shape[1] - 1
+    k = 0
     for i in range(n):
-        p1, p3 = stress_place(0, i, n), stress_place(2, i, n)
+        p1 = stress_place(0, i, n)
+        p3 = stress_place(2, i, n)
         if k < len(c.jumps) and c.jumps[k] == i:
             T = tangent_at_jump(c.law, c.sides[k], x[p1], x[p3])
             k += 1
@@ -61,7 +65,8 @@ def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
             at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
             T = tangent(c.law, at, x[p1], x[p3])
         for r in range(len(J)):
-            by_pull, by_moment = P[r, p1], P[r, p3]
+            by_pull = P[r, p1]
+            by_moment = P[r, p3]
             J[r, p1] += by_pull * (T.N1 - 1) + by_moment * T.M1
             J[r, p3] += by_pull * T.N3 + by_moment * (T.M3 - 1)
 
@@ -132,7 +137,8 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
             for j in range(n):
                 rows[a][stress_place(a, j, n)] = c.second[a, i, j]
         for j in range(n):
-            weak, slope = m.weak[i, j], m.D[i, j]
+            weak = m.weak[i, j]
+            slope = m.D[i, j]
             for a, b in g.pairs:
                 back = weak * slopes[a, b, j] if g.backward[a][b] else 0.0
                 rows[a][stress_place(b, j, n)] = back + (ahead[a][b] * slope if g.forward[a][b] else 0.0)
@@ -157,7 +163,9 @@ def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
 
     E: (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
     """
-    size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
+    size = len(m.weights)
+    n = len(m.weights) - 1
+    of = c.kept[k]
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):
         rows = [J[stress_place(a, i, n)] if i < n else tip[a] for a in g.components]
@@ -180,11 +188,14 @@ def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
     m: NodeMatrices,
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity into J, (unknowns, unknowns)."""
-    size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
+    size = len(m.weights)
+    n = len(m.weights) - 1
+    of = c.kept[k]
     E, S, _ = at
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):
-        row, w = J[first + i], m.weights[i]
+        row = J[first + i]
+        w = m.weights[i]
         row[:] = 0.0
         for j in range(n):
             row[stress_place(of, j, n)] = w * m.D[i, j]

@@ -20,7 +20,9 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
     roots: square roots of C, positive, (d, nodes + 1).
     """
     d, size = c.drag.shape
-    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(len(z))
+    V = np.empty((d, size))
+    G = np.empty((d, size))
+    x = np.empty(len(z))
     _unscale(z, x, roots)
     balance(x, V, G, c, m)
     for a in range(d):
@@ -31,7 +33,8 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
 @compiled_for_vectors
 def _unscale(z: Array, x: Array, roots: Array) -> None:
     """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,)."""
-    d, n = roots.shape[0], roots.shape[1] - 1
+    d = roots.shape[0]
+    n = roots.shape[1] - 1
     for a in range(d):
         for i in range(n):
             at = stress_place(a, i, n)
@@ -44,13 +47,18 @@ def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatric
 
     z: (unknowns,). roots: square roots of C, positive, (d, nodes + 1).
     """
-    (d, size), unknowns = c.drag.shape, len(z)
-    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(unknowns)
-    J, tip = np.empty((unknowns, unknowns)), np.empty((d, unknowns))
+    d, size = c.drag.shape
+    unknowns = len(z)
+    V = np.empty((d, size))
+    G = np.empty((d, size))
+    x = np.empty(unknowns)
+    J = np.empty((unknowns, unknowns))
+    tip = np.empty((d, unknowns))
     _unscale(z, x, roots)
     balance(x, V, G, c, m)
     jacobian(x, V, J, tip, c, m)
-    scale, inverse = np.empty(unknowns), np.empty(unknowns)
+    scale = np.empty(unknowns)
+    inverse = np.empty(unknowns)
     for a in range(d):
         for i in range(size - 1):
             at = stress_place(a, i, size - 1)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
-from ..elements.elements import Elements
+from ..elements.elements import ELEMENTS, Elements
 from ..elements.mesh import reconstruction
 
 
@@ -31,7 +31,7 @@ class TipMatrices(NamedTuple):
     lengths: Array
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """`TipMatrices` of a mesh."""
     values, angles, integrals, ends = reconstruction(grid.order)
@@ -43,30 +43,45 @@ def tip_matrices(grid: Elements) -> TipMatrices:
 def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative into velocity.
 
-    strains: (h1, h2, Pi) at all nodes, (3, states, nodes + 1). rates: time derivatives of strains, same
-    shape. tip, velocity: (states, 3). The rod is clamped at the origin along e_x.
+    strains: (h1, h2, Pi) at the nodes of every element, (3, states, elements (p + 1)). rates: time
+    derivatives of strains, same shape. tip, velocity: (states, 3). The rod is clamped at the origin along
+    e_x.
     """
-    size, points = len(m.ends), len(m.weights)
+    size = len(m.ends)
+    points = len(m.weights)
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
     for k in range(strains.shape[1]):
-        x, y, theta, dx, dy, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        x = 0.0
+        y = 0.0
+        theta = 0.0
+        dx = 0.0
+        dy = 0.0
+        turn = 0.0
         for e in range(len(m.lengths)):
-            first, length = e * (size - 1), m.lengths[e]
+            first = e * size
+            length = m.lengths[e]
             here = slice(first, first + size)
             _to_points(strains[:, k, here], m, length, theta, fields[:3])
             _to_points(rates[:, k, here], m, length, turn, fields[3:])
             for g in range(points):
-                cos, sin, w = np.cos(fields[2, g]), np.sin(fields[2, g]), length * m.weights[g]
+                cos = np.cos(fields[2, g])
+                sin = np.sin(fields[2, g])
+                w = length * m.weights[g]
                 u = w * (cos * fields[0, g] - sin * fields[1, g])
                 v = w * (sin * fields[0, g] + cos * fields[1, g])
-                x, y = x + u, y + v
+                x = x + u
+                y = y + v
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
             for j in range(size):
                 theta += length * m.ends[j] * strains[2, k, first + j]
                 turn += length * m.ends[j] * rates[2, k, first + j]
-        tip[k, 0], tip[k, 1], tip[k, 2] = x, y, theta
-        velocity[k, 0], velocity[k, 1], velocity[k, 2] = dx, dy, turn
+        tip[k, 0] = x
+        tip[k, 1] = y
+        tip[k, 2] = theta
+        velocity[k, 0] = dx
+        velocity[k, 1] = dy
+        velocity[k, 2] = turn
 
 
 @compiled_for_vectors
@@ -78,7 +93,9 @@ def _to_points(nodal: Array, m: TipMatrices, length: float, start: float, fields
     fields[:2] = 0.0
     fields[2] = start
     for j in range(len(m.ends)):
-        h1, h2, Pi = nodal[0, j], nodal[1, j], nodal[2, j]
+        h1 = nodal[0, j]
+        h2 = nodal[1, j]
+        Pi = nodal[2, j]
         for g in range(len(m.weights)):
             fields[0, g] += h1 * m.values[j, g]
             fields[1, g] += h2 * m.values[j, g]

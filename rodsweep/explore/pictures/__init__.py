@@ -1,1 +1,2 @@
-"""The pictures of the page, one module each: a Bokeh figure, and how an answer fills it."""
+"""The pictures of the page, each in a module: a Bokeh figure, and the way from an answer to the figure's
+data."""

@@ -1,4 +1,4 @@
-"""The arm: beating, bent by its tip, and moving after it is let go; the browser moves solved shapes."""
+"""The arm: beating, bent by the tip, or moving after the release. The browser animates solved shapes."""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +16,7 @@ from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, senten
 SECONDS = 2.0
 """Duration of one period on the screen."""
 ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
-"""Ends of motions in words; a motion that ends otherwise has the sentence of its status."""
+"""Words for ends of motions; for all further ends the sentence of the status is shown."""
 SHAPE = ("x", "y", "number")
 """Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each."""
 
@@ -52,7 +52,7 @@ class BeatingPicture:
         return CustomJS(args=sources | {"period": SECONDS}, code=read("beating.js"))
 
     def on_drag(self, bend: Callable[[Tip], None], let_go: Callable[[Tip], None]) -> None:
-        """Calls what follows a drag of the tip, with its place in L."""
+        """Registers the function called after a drag of the tip, with the tip's place in L."""
 
         def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
             if len(new["x"]) == 1:
@@ -88,7 +88,7 @@ class BeatingPicture:
         self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
-        """Begins the motion of an arm that is let go, and names its end above the picture."""
+        """Begins the motion of a released arm, and names the end of the motion above the picture."""
         factor, step = self.length.factor, found["step"]
         x, y = found["x"] * factor, found["y"] * factor
         shape_x, shape_y = found["shape_x"] * factor, found["shape_y"] * factor

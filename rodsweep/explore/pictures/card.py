@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from html import escape
+from textwrap import fill
 from typing import Any
 
 from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Span
@@ -19,12 +20,14 @@ PLAIN_DIGITS = 7
 """Largest power of ten that labels show without an exponent."""
 NO_TITLE = "\u00a0"
 """A title without words: a picture that is drawn with an empty title shows no later one."""
+TITLE_WIDTH = 46
+"""Largest number of characters in a line of a title: the narrowest figure would cut a longer line."""
 HEIGHT = 300
 """Height of a picture in pixels."""
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """An empty figure that fills the width of its column."""
+    """An empty figure as wide as the column of the page."""
     made = figure(
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
@@ -82,8 +85,8 @@ class Card:
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
     def entitle(self, text: str) -> None:
-        """Writes a title, which may be empty."""
-        self.figure.title.text = text or NO_TITLE
+        """Writes a title, which may be empty, in lines that fit above the figure."""
+        self.figure.title.text = fill(text, TITLE_WIDTH) or NO_TITLE
 
     def say(self, sentence: str) -> None:
         """Shows a sentence instead of the figure."""

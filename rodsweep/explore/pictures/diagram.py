@@ -13,7 +13,7 @@ from ..solving.diagrams import CRUSHED, NOT_KNOWN
 from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure
 
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
-"""Colours of boundaries; all others are those of stable states."""
+"""Colours of boundaries; areas have the colours of stable states."""
 OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
 """Words, colour and dash of curves of special points of cycles."""
 DEEPEST = 6

@@ -7,7 +7,13 @@ from bokeh.models import HoverTool, Range1d, Span
 
 from ..scales import PictureAxis
 from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, vertical_line
+from .numbers import IN_SI
 
+NAMED = ("F_onset", "F_hopf", "F_restabilization")
+"""Thresholds named above the picture."""
+OF_ROD = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
+OF_ARM = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
+"""Words for `NAMED`, of a rod over F and of an arm over the pressure."""
 KINDS = {
     "onset": ("oscillates from F*", NEUTRAL),
     "hopf": ("flutters, Hopf point F**", UNSTABLE),
@@ -54,20 +60,20 @@ class GrowthPicture:
         self.card.figure.y_range.update(**ends(np.append(leading[np.isfinite(leading)], 0.0)))
         self.card.figure.x_range.update(start=F[0], end=F[-1])
         self.card.figure.xaxis.axis_label = load.label
+        self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"
         self.card.reveal()
 
     def show_thresholds(self, found: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the thresholds, and names F* and F** above the picture."""
+        """Draws the thresholds, and names the first of each kind above the picture."""
+        own = found.get(IN_SI["crossing_frequency"], found["crossing_frequency"])
         rows = [
             (F * load.factor, *KINDS[kind], frequency)
-            for F, kind, frequency in zip(
-                found["crossing_F"], found["kinds"], found["crossing_frequency"], strict=True
-            )
+            for F, kind, frequency in zip(found["crossing_F"], found["kinds"], own, strict=True)
             if kind in KINDS
         ]
         names = ("F", "kind", "colour", "frequency")
         self.lines.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
-        self.card.figure.title.text = named(found, load)
+        self.card.entitle(named(found, load))
 
     def move_point(self, F: float) -> None:
         """Moves the thick line that marks the page's force."""
@@ -75,11 +81,13 @@ class GrowthPicture:
 
 
 def named(found: dict[str, Any], load: PictureAxis) -> str:
-    """Labels of F*, F** and the restabilization, if they exist, in units of the load."""
+    """Words for the first threshold of each kind that exists, in units of the load."""
+    words = OF_ARM if IN_SI["F_hopf"] in found else OF_ROD
     parts = [
-        f"{symbol} = {load.factor * float(found[name]):.7g}"
-        for symbol, name in (("F*", "F_onset"), ("F**", "F_hopf"), ("stable from", "F_restabilization"))
+        word.format(load.factor * float(found[name]))
+        for word, name in zip(words, NAMED, strict=True)
         if np.isfinite(found[name])
     ]
     proved = "certified" if found["certified"] else "not certified"
-    return f"{', '.join(parts) or 'No threshold'} ({proved})"
+    text = f"{', '.join(parts) or 'no threshold'} ({proved})"
+    return text[0].upper() + text[1:]

@@ -32,7 +32,8 @@ TABLE_DIGITS = 8
 SHOWN_IN = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
 """(unit of the table, factor) by SI unit."""
 IN_SI = {
-    "growth_rate": "growth_rate_si", "frequency": "frequency_hz", "F_onset": "pressure_onset",
+    "growth_rate": "growth_rate_si", "frequency": "frequency_hz",
+    "crossing_frequency": "crossing_frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
     "F_restabilization": "pressure_restabilization", "hopf_frequency": "frequency_hopf_hz",
 }  # fmt: skip
@@ -47,7 +48,7 @@ class NumbersTable:
         self.found: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
-        """Fills the rows of a kind of question; empties them for None."""
+        """Fills the rows of a kind of question; None empties the rows."""
         if kind not in ROWS:
             return
         if found is None:

@@ -6,6 +6,7 @@ import numpy as np
 from bokeh.models import Range1d
 
 from .card import NEUTRAL, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, sentence_of, vertical_line
+from .numbers import IN_SI
 
 
 class SpectrumPicture:
@@ -25,8 +26,8 @@ class SpectrumPicture:
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws an answer of the task spectrum."""
-        growth = found["growth_rate"]
-        frequency = found["frequency"]
+        names = [IN_SI[name] if IN_SI[name] in found else name for name in ("growth_rate", "frequency")]
+        growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
         if not known.any():
             self.card.say(sentence_of(found))
@@ -38,7 +39,11 @@ class SpectrumPicture:
         figure = self.card.figure
         figure.x_range.update(**ends(np.append(growth, 0.0)))
         figure.y_range.update(**ends(frequency))
-        figure.title.text = count_of(found)
+        figure.xaxis.axis_label, figure.yaxis.axis_label = (
+            f"{word} ({found['units'][name]})"
+            for word, name in zip(("growth rate", "frequency"), names, strict=True)
+        )
+        self.card.entitle(count_of(found))
         self.card.reveal()
 
 

@@ -31,9 +31,9 @@ def pieces_of(at: Array, y: Array, stable: NDArray[np.integer]) -> list[Piece]:
 
 
 def straight_pieces(data: Dataset, stop: float) -> list[Piece]:
-    """The straight state from F = 0 to `stop`, in pieces between its Hopf points: F and y of shape (2,).
+    """The straight state from F = 0 to `stop`, in pieces between Hopf points: F and y of shape (2,).
 
-    data: of one rod.
+    data: results of a single rod.
     """
     hopf = words_of(data["special_kind"]) == "hopf"
     at = data["special_at"].values[hopf]

@@ -52,12 +52,17 @@ def diagram(state: PageState) -> dict[str, Any]:
 def cycle_diagram(state: PageState) -> dict[str, Any]:
     """The diagram with the curves of folds and torus points of cycles, of fewer rows."""
     state.subject()
-    if state.tab == "arm" or not uniform(state):
+    if not has_cycle_curves(state):
         raise InputError(
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
         )
     return _of_phases(state, with_cycles=True)
+
+
+def has_cycle_curves(state: PageState) -> bool:
+    """Whether folds and torus points of cycles can be followed in the diagram of a state."""
+    return state.tab == "rod" and uniform(state)
 
 
 def uniform(state: PageState) -> bool:
@@ -84,7 +89,7 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
     rows = span(state, SLOW_ROWS if with_cycles else ROWS)
     keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
     keywords |= {"cycles": True, "gamma1": state.parameters()["gamma1"]} if with_cycles else {}
-    data = sweep("phase_diagram", **keywords)
+    data = sweep("phase_diagram", progress=False, **keywords)
     return of_phases(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second)
 
 
@@ -131,7 +136,7 @@ def of_grid(data: Dataset, second: str) -> dict[str, Any]:
 def _of_thresholds(state: PageState) -> dict[str, Any]:
     keywords: dict[str, Any] = {**_fixed(state), state.second: span(state, SLOW_ROWS)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
-    data = sweep("thresholds", **keywords, F_max=state.largest_force())
+    data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
     return of_rows(data, span(state, SLOW_ROWS), "crossing_F", state.largest_force())
 
@@ -144,11 +149,19 @@ def _of_arm(state: PageState) -> dict[str, Any]:
     subject = state.subject()
     assert isinstance(subject, Arm)
     arms = given | {state.second: list(map(float, values))}
-    data = sweep("thresholds", arm=arms, F_max=state.largest_force())
+    data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
+    return of_arms(data, values, subject.si.pressure)
+
+
+def of_arms(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
+    """The diagram from a result of the task thresholds for arms, (rows,), over values of a quantity, (rows,).
+
+    It reaches to twice the pressure of the page, in Pa, or twice the least pressure of flutter.
+    """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
-    largest = 2 * max(subject.si.pressure or 0.0, known.min() if len(known) else 0.0)
+    largest = 2 * max(pressure or 0.0, known.min() if len(known) else 0.0)
     return of_rows(data, values, "crossing_pressure", largest or float(data["pressure_end"].max()))
 
 

@@ -1,10 +1,11 @@
-"""The arm bent by its tip, and its motion after it is let go."""
+"""The arm bent by the tip, and the motion after the release."""
 
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
+from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
@@ -27,14 +28,14 @@ def straight(state: PageState) -> dict[str, Any]:
 
 
 def motion(state: PageState, tip: Tip) -> dict[str, Any]:
-    """The motion from there, with the shapes of the cycle that it reaches: fields of `ReleasedMotion`.
+    """The motion after the release, with shapes of the cycle at its end: fields of `ReleasedMotion`.
 
-    frames: shapes per return of the tip. period: of the cycle, tau2; NaN without one.
-    shape_x, shape_y: (shapes, nodes) over a period; no shapes where the motion ends otherwise.
+    frames: shapes per return of the tip. period: period of the cycle, tau2; NaN without a cycle. shape_x,
+    shape_y: (shapes, nodes) over a period; no shapes where the motion ends otherwise.
     """
     found = released_motion(_job(state, shapes=48), tip)
     if found is None:
-        raise InputError("the motion from there could not be integrated")
+        raise InputError("the motion after the release could not be integrated")
     own = {"tip": tip, "frames": FRAMES, "period": float(found.cycle["period"])}
     return vars(found) | _shapes(found) | own
 
@@ -48,4 +49,5 @@ def _shapes(found: ReleasedMotion) -> dict[str, Any]:
 
 def _job(state: PageState, **options: int) -> Job:
     rod = dict(rod_of(state.subject()))
-    return PortraitRequest(parameters=rod, material=LAWS[state.law]).job("limit_cycle", options, rod.pop("F"))
+    request = PortraitRequest(rod=DescribedRod(parameters=rod, material=LAWS[state.law]))
+    return request.job("limit_cycle", options, rod["F"])

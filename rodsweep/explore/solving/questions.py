@@ -1,4 +1,7 @@
-"""Questions of the page and the answers of a solver process, as plain arrays without objects of solvers."""
+"""Questions of the page and the answers of a solver process, as plain arrays without objects of solvers.
+
+The page shows progress, so that no solve displays it on the terminal, which all solver processes share.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,6 +12,7 @@ import numpy as np
 
 from ...api.answers.answer import Answer
 from ...api.answers.picture import plot
+from ...api.arm import Arm
 from ...api.dataset import view_of
 from ...api.sweeping import sweep
 from ...config.axes import DEFAULTS
@@ -47,7 +51,8 @@ class Question:
 class Reply(NamedTuple):
     """Reply of a solver process.
 
-    outcome: "answer", "refused", "failed" or "cancelled"; "ready" is sent once, when the process has started.
+    outcome: "answer", "refused", "failed" or "cancelled"; "ready" is sent once, when the process has started,
+    and "progress" during a long solve, with `words` and `share` of a `SolvePosition` as content.
     content: variables of an answer by name; for other outcomes a sentence by the name `sentence`. seconds:
     time of the solve.
     """
@@ -68,34 +73,38 @@ def variables(answer: Answer) -> Found:
 
 def spectrum(state: PageState) -> Found:
     """Leading eigenvalues with their count, and the shapes of the modes."""
-    return variables(state.subject().spectrum(modes=MODES, vectors=True))
+    return variables(state.subject().spectrum(modes=MODES, vectors=True, progress=False))
 
 
 def thresholds(state: PageState) -> Found:
     """Forces at which stability changes; `kinds` are the words of `crossing_kind`."""
-    answer = state.subject().thresholds(F_max=state.largest_force())
+    answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
 
 
 def growth(state: PageState) -> Found:
-    """Growth rates of the leading modes along F."""
-    rod = rod_of(state.subject())
+    """Growth rates of the leading modes along F, in `unit`: 1/tau2 of a rod, 1/s of an arm."""
+    subject = state.subject()
+    tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
+    rod = rod_of(subject)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     F = np.linspace(0, min(state.largest_force(), BELOW_CRUSHING * crushing_force(rod)), GROWTH_FORCES)
-    data = sweep("spectrum", F=F, **keywords, certify=False)
-    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1)
-    return {"F": F, "growth_rate": rates, "unstable_count": data["unstable_count"].values.reshape(-1)}
+    data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
+    rates = data["growth_rate"].values.reshape(GROWTH_FORCES, -1) / tau2
+    unit = "1/s" if isinstance(subject, Arm) else "1/tau2"
+    count = data["unstable_count"].values.reshape(-1)
+    return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
 
 def cycle(state: PageState) -> Found:
     """The limit cycle, with the shapes of the arm over a period; x, y: the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPES)) | straight(state)
+    return variables(state.subject().cycle(shapes=SHAPES, progress=False)) | straight(state)
 
 
 def film(state: PageState) -> Found:
     """gif: the film that `rodsweep plot` makes of the limit cycle; empty for a rod without a cycle."""
-    answer = state.subject().cycle(shapes=SHAPES)
+    answer = state.subject().cycle(shapes=SHAPES, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
     return {"gif": plot(answer, what="animation").image}
@@ -107,7 +116,7 @@ def branch(state: PageState) -> Found:
     pieces: (F, y, stable) of each piece of a branch or of the straight state; stable is 1 or 0, -1 if not
     known. special: (F, y, kind, period) of each special point.
     """
-    answer = state.subject().branch(stop=state.largest_force())
+    answer = state.subject().branch(stop=state.largest_force(), progress=False)
     found = drawn_branches(curves_of(view_of(answer.whole, Path(answer.rod)), 0))
     found["pieces"] += straight_pieces(answer.data, state.largest_force())
     return found | {"status": str(answer.status), "sentence": answer.sentence}

@@ -1,4 +1,5 @@
-"""Solver processes: one for each group of questions. A new question of a kind replaces an older one."""
+"""Solver processes, each for a group of questions. A new question of a kind replaces an older question of the
+kind."""
 
 import os
 import signal
@@ -17,21 +18,27 @@ from ..state import PageState
 from .questions import Question, Reply
 
 Key = tuple[str, str]
-"""(session, kind): a new question replaces an older one of the same key."""
+"""(session, kind): a new question replaces an older question with an equal key."""
 Done = Callable[[Reply], None]
-"""Callback that receives the reply to a question."""
+"""Callback that receives the reply to a question, or its progress."""
+
+
+def not_shown(reply: Reply) -> None:
+    """Receives progress that nobody shows."""
+
+
 GROUPS = {
     "spectrum": "spectrum", "thresholds": "thresholds", "growth": "thresholds", "cycle": "cycle",
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
     "cycles": "diagram",
 }  # fmt: skip
-"""Process group of each kind of question, so that fast questions never wait for slow ones."""
+"""Process group of each kind of question, so that fast questions never wait for slow questions."""
 NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
 """Niceness of the process of each group: pictures that follow a slider have the highest priority."""
 INTERRUPT_RETRY = 0.1
-"""Seconds until a cancellation is repeated that came before the process was ready."""
+"""Seconds until a cancellation that came before the process was ready is repeated."""
 WARMED_UP = ("spectrum", "cycle", "thresholds")
-"""Kinds of questions solved once at the start, which starts their processes and loads compiled code."""
+"""Kinds of questions solved once at the start, to start the processes and load compiled code."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,11 +59,11 @@ class SolverProcess:
     def __init__(self, patience: Patience | None = None, niceness: int = 0):
         self.patience = patience or Patience()
         self.niceness = niceness
-        self.waiting: dict[Key, tuple[Question, Done]] = {}
-        self.asked: tuple[Key, Done] | None = None
+        self.waiting: dict[Key, tuple[Question, Done, Done]] = {}
+        self.asked: tuple[Key, Done, Done] | None = None
         self.number = 0
-        """Number of questions sent so far. Timers compare it, to act only on the question they were set
-        for."""
+        """Number of questions sent so far. A timer compares this number, to act only on the question for
+        which the timer was set."""
         self.since = 0.0
         self.starts = 0
         self.is_ready = False
@@ -70,10 +77,10 @@ class SolverProcess:
         """Process id; None if no process runs."""
         return None if self._process is None else self._process.pid
 
-    def ask(self, key: Key, question: Question, done: Done) -> None:
+    def ask(self, key: Key, question: Question, done: Done, progress: Done = not_shown) -> None:
         """Queues a question; an older question of the same key is dropped or, if being solved, cancelled."""
         self.waiting.pop(key, None)
-        self.waiting[key] = question, done
+        self.waiting[key] = question, done, progress
         if self.asked is None:
             self._send_next()
         elif self.asked[0] == key:
@@ -122,10 +129,10 @@ class SolverProcess:
         if not self.waiting:
             return
         key = next(iter(self.waiting))
-        question, done = self.waiting.pop(key)
+        question, done, progress = self.waiting.pop(key)
         self.start()
         assert self._connection is not None
-        self.asked = (key, done)
+        self.asked = (key, done, progress)
         self.since = time.monotonic()
         self.number += 1
         self._connection.send(question)
@@ -141,6 +148,10 @@ class SolverProcess:
             self.is_ready = True
             return
         asked = self.asked
+        if reply.outcome == "progress":
+            if asked is not None:
+                asked[2](reply)
+            return
         self.asked = None
         if asked is not None and reply.outcome != "cancelled":
             asked[1](reply)
@@ -148,7 +159,7 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `number` if it is still being solved and a newer question of its key waits."""
+        """Cancels question `number` if still being solved while a newer question with an equal key waits."""
         if number == self.number and key in self.waiting:
             self._interrupt(number)
 
@@ -186,13 +197,13 @@ class Solvers:
         self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Starts the processes of `WARMED_UP` with one question each, which loads compiled code."""
+        """Starts the processes of `WARMED_UP` with a question each, to load compiled code."""
         for kind in WARMED_UP:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
-    def ask(self, session: str, question: Question, done: Done) -> None:
-        """Queues a question of a session; `done` receives the reply."""
-        self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done)
+    def ask(self, session: str, question: Question, done: Done, progress: Done = not_shown) -> None:
+        """Queues a question of a session; `done` receives the reply, `progress` that of a long solve."""
+        self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
     def drop(self, session: str, kind: str) -> None:
         """Cancels a session's question of a kind."""

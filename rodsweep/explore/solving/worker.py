@@ -1,8 +1,7 @@
 """The process of one solver, which reads questions from a pipe and writes replies.
 
-SIGINT cancels the question that is being answered. The process ends when the pipe closes. A second pipe,
-whose other end only the page's process holds, ends the process even during a solve when the page's process
-ends.
+SIGINT cancels the question being answered. The process ends when the pipe closes. A second pipe, held open
+only by the page's process, ends the solver process when the page's process ends, even during a solve.
 """
 
 import os
@@ -10,26 +9,32 @@ import signal
 import sys
 import time
 import traceback
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 from threading import Thread
 from types import FrameType
 
 from ...errors import Refusal
+from ...sweep.listener import NoClaims, RankListener
+from ...sweep.stop import StopRequest
+from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
-IMPORT_RETRY = 0.05
-"""Seconds until a cancellation is repeated that came during an import."""
+RETRY = 0.05
+"""Seconds until a cancellation is repeated that came during an import, or while progress was sent."""
 
 
 class Cancellation:
     """Handler of SIGINT that interrupts only a solve.
 
-    An import in progress is not interrupted, because a partly imported module would stay broken. SIGALRM then
-    calls the handler again.
+    An import in progress is not interrupted, because a partly imported module would stay broken, nor is
+    progress that is being sent, because the page could not read half of it. SIGALRM then calls the handler
+    again.
     """
 
     def __init__(self) -> None:
         self.is_solving = False
+        self.is_sending = False
         self.is_due = False
         """Whether the question being solved was cancelled."""
 
@@ -37,8 +42,8 @@ class Cancellation:
         if not self.is_solving:
             return
         self.is_due = True
-        if is_importing(frame):
-            signal.setitimer(signal.ITIMER_REAL, IMPORT_RETRY)
+        if self.is_sending or is_importing(frame):
+            signal.setitimer(signal.ITIMER_REAL, RETRY)
             return
         self.is_solving = False
         raise KeyboardInterrupt
@@ -53,15 +58,27 @@ def is_importing(frame: FrameType | None) -> bool:
     return False
 
 
-def reply_to(question: Question, cancellation: Cancellation) -> Reply:
-    """The reply to one question; "failed" for an unexpected exception, printed on standard error."""
+def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Reply], None]) -> Reply:
+    """The reply to one question; "failed" for an unexpected exception, printed on standard error.
+
+    send: sends the progress of a long solve to the page, as replies with the outcome "progress".
+    """
+
+    def send_progress(place: SolvePosition) -> None:
+        cancellation.is_sending = True
+        try:
+            send(Reply("progress", place._asdict(), time.perf_counter() - started))
+        finally:
+            cancellation.is_sending = False
+
     started = time.perf_counter()
     cancellation.is_due = False
     try:
         try:
             cancellation.is_solving = True
             outcome = "answer"
-            content = answer_to(question)
+            with reporting_to(RankListener(NoClaims(send_progress), StopRequest())):
+                content = answer_to(question)
         finally:
             cancellation.is_solving = False
             signal.setitimer(signal.ITIMER_REAL, 0)  # a pending alarm would cancel the next question
@@ -83,7 +100,7 @@ def reply_to(question: Question, cancellation: Cancellation) -> Reply:
 
 
 def end_with_parent(descriptor: int) -> None:
-    """Ends this process when the other end of a pipe closes; nobody writes to the pipe."""
+    """Ends this process when the opposite end of a pipe closes; nothing is ever written to the pipe."""
     os.read(descriptor, 1)
     os._exit(0)
 
@@ -103,7 +120,7 @@ def main() -> None:
             question = connection.recv()
         except EOFError:
             return
-        connection.send(reply_to(question, cancellation))
+        connection.send(reply_to(question, cancellation, connection.send))
 
 
 if __name__ == "__main__":

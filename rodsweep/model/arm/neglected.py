@@ -177,11 +177,13 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
 def _frequency_of_phase(phase: float, logarithm: float) -> float:
     """The s at which `unsteady_phase` equals `phase` < pi/2, by sections of ln s."""
-    low, high = log(LEAST_S), 2 * logarithm  # there the real part of the mobility is -1/2
+    low = log(LEAST_S)  # there the real part of the mobility is -1/2
+    high = 2 * logarithm
     for _ in range(SECTIONINGS):
         edges = np.linspace(low, high, SECTIONS + 1)
         below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
-        low, high = float(edges[below]), float(edges[below + 1])
+        low = float(edges[below])
+        high = float(edges[below + 1])
     return exp(high)
 
 

@@ -129,7 +129,8 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
 def refuse_misfits(arm: "SlenderArm") -> None:
     """Raises InputError for an arm without mass or with over- or underflow, NotSlender for a short arm."""
     if arm.si.density_difference <= -arm.si.fluid_density:
-        given, least = arm.quoted("density_difference"), f"{-arm.si.fluid_density:.4g} kg/m^3"
+        given = arm.quoted("density_difference")
+        least = f"{-arm.si.fluid_density:.4g} kg/m^3"
         raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
     length = "segments: their length" if arm.length is None else arm.quoted("length")
     try:
@@ -154,7 +155,8 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     loaded = arm.load
     if loaded is None or arm.share_of_flutter is not None or CRUSHED_FROM * arm.crushing_force > arm.F:
         return
-    limit, si = arm.crushing_force * arm.load_scale, UNITS[loaded][0]
+    limit = arm.crushing_force * arm.load_scale
+    si = UNITS[loaded][0]
     unit = unit_of(getattr(arm, loaded), si)
     where = "the weakest section of" if arm.shape.varies else ""
     raise InputError(

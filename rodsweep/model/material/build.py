@@ -144,7 +144,7 @@ class Build:
     def relative_compliances(self, taper: float, u: Array) -> Array:
         """Compliances of stretching, shear and bending at points u, (points,), over those at the base.
 
-        Shape (3, points). They are known where a compliance is 0.
+        Shape (3, points). The ratio is also known for a rigid rod, whose compliance is 0.
         """
         factors = self._factors(taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])

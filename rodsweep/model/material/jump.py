@@ -9,17 +9,19 @@ where q has the mean strain: it is what a linear rod with the mean compliances w
 a = b = q. The shares are those of a compliance times the weights of the quadrature; they stay what they are
 in the limit of no compliance.
 
-The sides of a jump are an array, (2, 6), with the `COLUMNS`.
+The sides of a jump are an array, (2, 7), with the `COLUMNS`. Strains beside the jump follow from a and b with
+the compliances of each side; shear has one stress q2 on both sides.
 """
 
 from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import LocalSection, Stress, Tangent, stress, stress_change, tangent
+from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
-COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature")
-"""Numbers of each side: those of `LocalSection`, and the shares of this side in the mean of both."""
+COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
+"""Numbers of each side: those of `LocalSection`, the shares of this side in the mean of both, and c2."""
+SHEAR = COLUMNS.index("c2")
 MOST_ITERATIONS = 40
 CONVERGED = 1e-9
 """Relative step of Newton's method after which the next one would be below rounding."""
@@ -48,8 +50,9 @@ def _solved(T: Tangent, N: float, M: float) -> Unknowns:
 
 @compiled
 def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """The share of a step of q1 that keeps h1 above its least ratio."""
-    h, change = at.nu + at.c1 * q1, at.c1 * step
+    """Largest fraction, up to 1, of a step of q1 that keeps h1 above LEAST_STRETCH_KEPT times its value."""
+    h = at.nu + at.c1 * q1
+    change = at.c1 * step
     if h + change >= LEAST_STRETCH_KEPT * h:
         return 1.0
     return (LEAST_STRETCH_KEPT - 1) * h / change
@@ -62,14 +65,20 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """a of the mean unknowns q, by Newton's method; sides: (2, 6)."""
-    one, other = _section(sides[0]), _section(sides[1])
-    ratio1, ratio3 = sides[0, 3] / sides[1, 3], sides[0, 4] / sides[1, 4]
+    """a of the mean unknowns q, by Newton's method; sides: (2, 7)."""
+    if law == LINEAR_LAW:
+        return q
+    one = _section(sides[0])
+    other = _section(sides[1])
+    ratio1 = sides[0, 3] / sides[1, 3]
+    ratio3 = sides[0, 4] / sides[1, 4]
     a = q
     for _ in range(MOST_ITERATIONS):
         b = behind_jump(sides, q, a)
-        s, t = stress(law, one, a.q1, a.q3), stress(law, other, b.q1, b.q3)
-        S, T = tangent(law, one, a.q1, a.q3), tangent(law, other, b.q1, b.q3)
+        s = stress(law, one, a.q1, a.q3)
+        t = stress(law, other, b.q1, b.q3)
+        S = tangent(law, one, a.q1, a.q3)
+        T = tangent(law, other, b.q1, b.q3)
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solved(J, t.N - s.N, t.M - s.M)
         share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
@@ -81,13 +90,13 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """b of the mean unknowns q and of a; sides: (2, 6)."""
+    """b of the mean unknowns q and of a; sides: (2, 7)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
-    """The stresses beyond those at rest; sides: (2, 6)."""
+    """The stresses beyond those at rest; sides: (2, 7)."""
     a = before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
@@ -97,16 +106,29 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
     """Derivatives of the mean unknowns by the stresses, in the places of those of the stresses."""
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
-    s, t = S.N1 * S.M3 - S.N3 * S.M1, T.N1 * T.M3 - T.N3 * T.M1
-    (s1, s3), (t1, t3) = (sides[0, 3] / s, sides[0, 4] / s), (sides[1, 3] / t, sides[1, 4] / t)
+    s = S.N1 * S.M3 - S.N3 * S.M1
+    t = T.N1 * T.M3 - T.N3 * T.M1
+    (s1, s3) = (sides[0, 3] / s, sides[0, 4] / s)
+    (t1, t3) = (sides[1, 3] / t, sides[1, 4] / t)
     return Tangent(
         s1 * S.M3 + t1 * T.M3, -s1 * S.N3 - t1 * T.N3, -s3 * S.M1 - t3 * T.M1, s3 * S.N1 + t3 * T.N1
     )
 
 
 @compiled
+def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
+    """Changes of a and b with a change of the mean unknowns q; sides: (2, 7)."""
+    a = before_jump(law, sides, q)
+    b = behind_jump(sides, q, a)
+    stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
+    S = tangent(law, _section(sides[0]), a.q1, a.q3)
+    T = tangent(law, _section(sides[1]), b.q1, b.q3)
+    return _solved(S, stresses.q1, stresses.q3), _solved(T, stresses.q1, stresses.q3)
+
+
+@compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses by the mean unknowns; sides: (2, 6)."""
+    """Derivatives of the stresses by the mean unknowns; sides: (2, 7)."""
     q = Unknowns(q1, q3)
     a = before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, behind_jump(sides, q, a))
@@ -123,9 +145,11 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     q = Unknowns(q1, q3)
     a = before_jump(law, sides, q)
     b = behind_jump(sides, q, a)
-    moved1, moved3 = 0.0, 0.0
+    moved1 = 0.0
+    moved3 = 0.0
     for i in range(2):
-        at, x = _section(sides[i]), a if i == 0 else b
+        at = _section(sides[i])
+        x = a if i == 0 else b
         own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
         back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1

@@ -58,9 +58,8 @@ def _along(view: View, name: str) -> Figure:
     upper, lower = figure.subplots(2, 1, sharex=True)
     side, a, c = (view.by_point(key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real"))
     style.require(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
-    lower.set_yscale(
-        "symlog", linthresh=10.0 ** floor(log10(float(np.nanquantile(np.abs(c), LINEAR_FRACTION))))
-    )
+    small = float(np.nanquantile(np.abs(c), LINEAR_FRACTION))
+    lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(small)))
     for axes, values in ((upper, a), (lower, c)):
         handles = _mark(axes, x[keep], values, side)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
@@ -108,8 +107,11 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
 
 
 def _classes(side: Array) -> Array:
-    """Place in CLASSES of every rod from the criticality of its Hopf points, (ny, nx, crossings)."""
+    """Index in CLASSES of every rod, (ny, nx). side: -1 for a supercritical Hopf point, 1 for a subcritical
+    one, (ny, nx, crossings).
+    """
     first = side[..., 0]
     later = (side[..., 1:] == 1).any(axis=-1)
+    # The numbers are indices in CLASSES; a rod without a Hopf point has NaN and stays 0.
     classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
     return np.where((first == -1) & later, 2.0, classes)

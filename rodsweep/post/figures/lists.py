@@ -6,9 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES, ARM_UNITS
 from ...model.units import compact
 from ...results.file.view import View
+from ..summary.arm.arm import word
 
 BESIDE_POINTS = ("mode", "u", "crossing")
 """Coordinates of further dimensions, possibly as long as the list."""
@@ -28,16 +30,15 @@ def as_grid(view: View) -> View:
     values = {name: np.unique(column, return_inverse=True) for name, column in columns.items()}
     sizes = tuple(len(unique) for unique, _ in values.values())
     places = np.ravel_multi_index([place.ravel() for _, place in values.values()], sizes)
-    if np.prod(sizes) != count or len(np.unique(places)) != count or sum(n > 1 for n in sizes) > 2:
+    is_complete = np.prod(sizes) == count and len(np.unique(places)) == count
+    varied = sum(size > 1 for size in sizes)
+    if not is_complete or varied > 2:
         return view
     order = np.argsort(places)
-    variables = {
-        name: data[order].reshape(*sizes, *data.shape[1:])
-        if data.shape[:1] == (count,) and name not in BESIDE_POINTS
-        else data
-        for name, data in view.variables.items()
-        if name != "point"
-    }
+    variables = {name: data for name, data in view.variables.items() if name != "point"}
+    for name, data in variables.items():
+        if data.shape[:1] == (count,) and name not in BESIDE_POINTS:
+            variables[name] = data[order].reshape(*sizes, *data.shape[1:])
     variables |= {name: unique for name, (unique, _) in values.items()}
     return replace(view, variables=variables)
 
@@ -67,11 +68,19 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
     """(name with unit, value at each point) of an arm's quantities with several values."""
-    described = []
-    for name, values in view.quantities.items():
-        if name not in ARM_UNITS and np.ndim(values) and len(np.unique(values)) > 1:
-            unit = ALL_QUANTITIES[name].unit.replace("1", "")
-            factor, unit = compact(float(np.abs(values).max()), unit) if unit else (1.0, "")
-            heading = f"{name} ({unit})" if unit else f"{name}'s ratio"
-            described.append((heading, [f"{factor * value:.4g}" for value in values]))
-    return described
+    return [
+        _described(name, values)
+        for name, values in view.quantities.items()
+        if name not in ARM_UNITS and np.ndim(values) and len(np.unique(values)) > 1
+    ]
+
+
+def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
+    """(name with unit, texts of the values, (points,), in this unit); a drag is stored as an index in DRAGS."""
+    if name == "drag":
+        return word(name), [DRAGS[int(value)].replace("_", " ") for value in values]
+    unit = ALL_QUANTITIES[name].unit
+    if unit == "1":
+        return word(name), [f"{value:.4g}" for value in values]
+    factor, unit = compact(float(np.abs(values).max()), unit)
+    return f"{word(name)} ({unit})", [f"{factor * value:.4g}" for value in values]

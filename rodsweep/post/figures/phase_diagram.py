@@ -152,7 +152,9 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row; used if the rows are too few, or at infinity, to form a plane."""
+    """Figure with a bar for each row, used if there are too few rows for a plane, or if a row lies at
+    infinity.
+    """
     x = view.variables[line]
     y = view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")

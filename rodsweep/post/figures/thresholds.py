@@ -69,8 +69,8 @@ def _of_files(request: FigureRequest) -> str:
     for view in views:
         if view.task != views[0].task or not view.is_grid or style.long_axes(view) != along or along[1:]:
             raise InputError(
-                f"{view.path}: files of thresholds share a figure where all are grids with one and the same "
-                "axis of more than one value"
+                f"{view.path}: files of thresholds share a figure only if all are grids over one parameter, "
+                "the same in every file"
             )
     return request.write(*draw_lines_of_files(views, along[0], searched(*views)))
 

@@ -69,7 +69,7 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
 
 
 def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[Series]:
-    """Yields the values of a panel that lie within its frame; words: of the legend, by colour."""
+    """Yields the values of a panel that lie within its frame. words: words of the legend, by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
@@ -120,7 +120,9 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> Series:
 
 
 def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
-    """Yields the values of coloured cells, by the colour bar or by the legend."""
+    """Yields the places and texts of coloured cells. A text is the cell's value on the colour bar, or the
+    word of its colour in the legend.
+    """
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
@@ -199,7 +201,9 @@ def _series_name(label: object) -> str:
 
 
 def _texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
-    """Texts of points in units of the axes, (n, 2)."""
+    """Text shown at each point: name of the curve, and both coordinates. data: points in units of the axes,
+    (n, 2).
+    """
     return ["\n".join(filter(None, (series, _text(names, at)))) for at in data]
 
 

@@ -8,7 +8,7 @@ FORMULA = re.compile(r"\$(.+?)(?<!\\)\$")
 """A formula between dollars."""
 DERIVATIVE = re.compile(r"\\dot\s*(?:\{([^{}]*)\}|(\w))")
 WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}]*)\}|(\w))")
-"""A command whose argument is the text: upright letters, and marks above a letter."""
+"""A TeX command that is replaced by its argument: upright letters, and marks above a letter."""
 SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
 COMMAND = re.compile(r"\\([A-Za-z]+|.)")

@@ -38,8 +38,8 @@ class Pictures:
 def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[int]") -> Pictures:
     """Every kind of figure of the results, the one that `rodsweep plot` draws first.
 
-    shapes: solves the cycles of the first figure whose shapes are not stored. numbers: of the pictures of the
-    page.
+    shapes: solves the cycles of the first figure whose shapes are not stored. numbers: counter of the
+    pictures on the page.
     """
     # Without its folders, so that no sentence on the page names them.
     views = [replace(view, path=Path(view.path.name)) for view in views]

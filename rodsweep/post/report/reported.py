@@ -37,8 +37,8 @@ VERSIONS = {
 class Reported:
     """Contents of the page about one result.
 
-    name: of the file. title: of the config, or the file's name. config: as typed. complete: with all
-    defaults. versions: (word, value). pictures: figures.
+    name: name of the file. title: title of the config, or the file's name. config: as typed. complete: with
+    all defaults. versions: (word, value). pictures: figures.
     """
 
     name: str

@@ -35,7 +35,9 @@ class VectorPicture:
 
 
 def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
-    """The figure as SVG; number: of the picture on its page, caption: for readers who do not see it."""
+    """The figure as SVG. number: number of the picture on its page. caption: description for readers who do
+    not see the picture.
+    """
     written = BytesIO()
     # Pictures of a page must not share the names of their clipping paths.
     with matplotlib.rc_context({"svg.hashsalt": f"picture {number}", "svg.fonttype": "path"}):

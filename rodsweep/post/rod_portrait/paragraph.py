@@ -1,13 +1,14 @@
 """The portrait of a rod in words: thresholds, criticality, branches, coexistence, cycles, missing results."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from math import isfinite
 
 import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted
-from ..branch_curves import count_incomplete_branches, curves_of
+from ..branch_curves import Range, coexistence_is_decided, count_incomplete_branches, curves_of
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
 from ..summary.criticality import SIDES
@@ -21,7 +22,7 @@ EVENTS = {
     "onset": "it starts to oscillate at F = {F}",
     "hopf": "a pair of modes becomes unstable at F = {F}",
     "hopf_reverse": "a pair becomes stable at F = {F}, where other modes stay unstable",
-    "restabilization": "it is stable again from F = {F} on",
+    "restabilization": "it is stable again from F = {F}",
     "real_again": "it stops oscillating as it decays at F = {F}",
     "real_leads": "a real eigenvalue takes the lead at F = {F}",
     "pair_leads": "a complex pair takes the lead at F = {F}",
@@ -35,15 +36,32 @@ SUCCEEDED = "ok"
 
 def paragraph(results: RodResults) -> str:
     """Everything about the rod, in one paragraph."""
-    rod = ", ".join(f"{name} = {value:g}" for name, value in results.parameters.items() if name != "F")
     sentences = [
-        f"The rod with {rod} was searched up to F = {results.F_max:g}.",
+        *_rod(results),
         *_thresholds(results),
         *_branches(results),
         *_cycles(results),
         *_missing(results),
     ]
     return " ".join(sentences)
+
+
+def _rod(results: RodResults) -> Iterator[str]:
+    """Yields sentences on the rod, its units in SI and the searched range."""
+    end = float(results.views["thresholds"].of_point(0)["F_end"])
+    reached, wanted = f"{end:.6g}", f"{results.F_max:.6g}"
+    searched = f"was searched up to F = {reached}"
+    if not isfinite(end):
+        searched = "could not be searched"
+    elif reached != wanted:
+        searched += f", not to F = {wanted}: beyond it the rod is crushed, or its modes cannot be counted"
+    yield f"The rod with {results.rod.words} {searched}."
+    if scales := results.rod.scales:
+        force, pressure = scales["force_scale"], scales["pressure_scale"]
+        yield (
+            f"F = 1 stands for {force:.6g} N, or a pressure of {pressure:.6g} Pa on the face of its tip, "
+            f"and tau2 for {scales['tau2']:.6g} s."
+        )
 
 
 def _thresholds(results: RodResults) -> Iterator[str]:
@@ -106,13 +124,24 @@ def _branches(results: RodResults) -> Iterator[str]:
     yield f"{number} {verb} at its Hopf points, {end}."
     errors = errors_of(curves)
     stable = [piece for curve in curves for piece in curve.stable_ranges]
-    yield f"Stable cycles: {f'F = {listed(stable, errors)}' if stable else 'none'}."
+    is_decided = all(curve.is_decided for curve in curves)
+    no_cycle = "none" if is_decided and not hidden else "none is known"
+    yield f"Stable cycles: {f'F = {listed(stable, errors)}' if stable else no_cycle}."
     if not hidden:
-        beside = coexistence(view, 0)
-        where = f"at F = {listed(beside, errors)}" if beside else "nowhere in this range"
-        yield f"A stable cycle exists beside the stable straight rod {where}."
+        yield _beside(coexistence(view, 0), coexistence_is_decided(view, 0), errors)
         if pairs := two_cycles(view, 0):
             yield f"Two different cycles are stable at F = {listed(pairs, errors)}."
+
+
+def _beside(ranges: Sequence[Range], is_decided: bool, errors: Mapping[float, float]) -> str:
+    """Sentence on the ranges with a stable cycle and a stable straight rod. is_decided: whether all
+    stabilities are known. errors: of the ends of ranges, by their positions.
+    """
+    if ranges:
+        return f"A stable cycle exists beside the stable straight rod at F = {listed(ranges, errors)}."
+    if is_decided:
+        return "On these branches no stable cycle exists beside the stable straight rod."
+    return "It is not known whether a stable cycle exists beside the stable straight rod."
 
 
 def _special(view: View, kind: str) -> list[str]:
@@ -139,7 +168,10 @@ def _cycles(results: RodResults) -> Iterator[str]:
             rounded(float(v[name]), float(v[name] * v[error]))
             for name, error in (("period", "period_error"), ("tip_y_max", "amplitude_error"))
         )
-        clauses.append(f"at F = {F:.6g} its period is {period} tau2 and the largest y of its tip {y} L")
+        unstable = ", unstable," if word == "unstable" else ""
+        clauses.append(
+            f"at F = {F:.6g}{unstable} its period is {period} tau2 and the largest y of its tip {y} L"
+        )
     if clauses:
         yield f"Beating, {'; '.join(clauses)}."
 

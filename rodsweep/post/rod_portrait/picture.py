@@ -31,7 +31,7 @@ MODE_WIDTH = 0.65
 LINE_WIDTH = 162
 """Characters in a line of the paragraph."""
 PANEL_WIDTH = 26
-"""Characters in a line of a sentence in place of a mode or a cycle."""
+"""Characters in a line of the sentence that replaces the panel of a missing mode or cycle."""
 CYCLES = 3
 """Number of cycles of a portrait."""
 BESIDE_STRAIGHT = ("#009E73", "stable cycle beside a stable straight rod")

@@ -50,11 +50,10 @@ def portrait_page(results: RodResults) -> str:
     views = [*results.views.items()]
     views += [(f"modes at F = {F:.6g}", view) for F, view in results.modes.values()]
     views += [(f"limit cycle at F = {F:.6g}", view) for F, view in results.cycles]
-    rod = ", ".join(f"{name} = {value:g}" for name, value in results.parameters.items() if name != "F")
     return rendered(
         "portrait.html",
         [picture],
-        title=f"Rod with {rod}",
+        title=f"Rod with {results.rod.words}",
         paragraph=paragraph(results),
         pictures=Pictures((Captioned(CAPTION, picture),)),
         tables=[(name, [t for t in page_tables(view) if t.name not in HIDDEN]) for name, view in views],

@@ -1,16 +1,19 @@
 """Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and their errors."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...results.layouts.variables import ANGULAR
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
-from .ranges import rounded, span, to_error
-from .summary_lines import SummaryLines, completeness, in_brackets, region
+from .ranges import number_and_error, rounded, span
+from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
 from .thresholds import ended_early, not_known, not_known_beyond, not_stored
+
+Number = Callable[[Mapping[str, np.ndarray], int], tuple[float, float]]
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
@@ -25,9 +28,11 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         none = "its Hopf points are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
-        lines = list(_hopf_lines(view)) or [none]
-        lines[0] += not_known_beyond(view, float(v["F_end"].ravel()[0]))
-        return SummaryLines(lines, [_searched(view, done)], of_arm=crossings_of_arm(view))
+        flat = {name: values.ravel() for name, values in v.items()}
+        lines = list(_hopf_lines(flat)) or [none]
+        lines[0] += not_known_beyond(view, float(flat["F_end"][0]))
+        trust = [_searched(view, done)]
+        return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(flat))
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)
@@ -60,40 +65,65 @@ def _relative(v: Mapping[str, np.ndarray], name: str, done: np.ndarray) -> tuple
     return values, np.abs(values) * v[f"{name}_error"][done]
 
 
-def _hopf_lines(view: View) -> Iterator[str]:
-    """Yields lines about every Hopf point of the single rod of a file, each number with its error."""
-    v = {name: view.variables[name].ravel() for name in view.variables}
+def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """Yields a line about every Hopf point of the single rod of a file; v: its variables, flat."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
-        F = to_error(v["crossing_F"][i], v["crossing_error"][i])
-        frequency = to_error(v["crossing_frequency"][i], v["crossing_frequency_error"][i])
+        F = rounded(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
+        form = "its normal form is not known"
+        if np.isfinite(v["landau_error"][i]):
+            form = f"{SIDES[int(v['criticality'][i])]}, {_words(v, int(i))}"
         after = int(v["unstable_after"][i])
-        yield (
-            f"{kind} at F = {F}, frequency {frequency} rad/tau2; unstable modes above: "
-            f"{after if after >= 0 else 'not known'}"
-        )
-        if not np.isfinite(v["landau_error"][i]):
-            yield "  its normal form is not known"
-            continue
-        yield f"  {SIDES[int(v['criticality'][i])]}: {_words(v, int(i))}"
-        for name, symbol, unit in (
-            ("landau", "c", "1/(tau2 L^2)"),
-            ("growth_slope", "dw/dF", "L^2/(k3 tau2)"),
-        ):
-            value = complex(v[f"{name}_real"][i], v[f"{name}_imag"][i])
-            error = abs(value) * v[f"{name}_error"][i]
-            real = to_error(value.real, error)
-            imaginary = to_error(value.imag, error)
-            yield f"  Re {symbol} = {real}, Im {symbol} = {imaginary} {unit}"
-        for name, symbol, unit in (
-            ("amplitude_coefficient", "a", "L"),
-            ("frequency_slope", "b", "L^2/(k3 tau2)"),
-        ):
-            value = v[name][i]
-            yield f"  {symbol} = {to_error(value, abs(value) * v[f'{name}_error'][i])} {unit}"
+        modes = counted(after, "unstable mode") if after >= 0 else "number of unstable modes not known"
+        yield f"{kind} at F = {F}: {form}; {modes} above"
 
 
-def _words(v: dict[str, np.ndarray], i: int) -> str:
+def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
+    """Table of the Hopf points of the single rod of a file, a column for each; None without a Hopf point.
+
+    v: the variables of the file, flat.
+    """
+    at = np.flatnonzero(v["crossing_kind"] > 0)
+    columns = [
+        [cell for i in at for cell in number_and_error(*number(v, int(i)))] for number in NUMBERS.values()
+    ]
+    kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
+    headings = ("", *(head for kind in kinds for head in (kind, "+-")))
+    rows = zip(NUMBERS, columns, strict=True)
+    return TextTable(headings, tuple((words, *cells) for words, cells in rows)) if len(at) else None
+
+
+def _with_absolute(name: str) -> Number:
+    """Number of a crossing with its absolute error."""
+    error = "crossing_error" if name == "crossing_F" else f"{name}_error"
+    return lambda v, i: (float(v[name][i]), float(v[error][i]))
+
+
+def _with_relative(name: str, part: str = "") -> Number:
+    """Number of a normal form, whose stored error is relative to the modulus of the coefficient."""
+
+    def number(v: Mapping[str, np.ndarray], i: int) -> tuple[float, float]:
+        parts = [v[f"{name}_{each}"][i] for each in ("real", "imag")] if part else [v[name][i]]
+        value = v[f"{name}_{part}" if part else name][i]
+        return float(value), float(np.linalg.norm(parts) * v[f"{name}_error"][i])
+
+    return number
+
+
+NUMBERS: dict[str, Number] = {
+    "F, k3/L^2": _with_absolute("crossing_F"),
+    f"frequency, {ANGULAR}": _with_absolute("crossing_frequency"),
+    "Re c, 1/(tau2 L^2)": _with_relative("landau", "real"),
+    "Im c, 1/(tau2 L^2)": _with_relative("landau", "imag"),
+    "Re dw/dF, L^2/(k3 tau2)": _with_relative("growth_slope", "real"),
+    "Im dw/dF, L^2/(k3 tau2)": _with_relative("growth_slope", "imag"),
+    "a, L": _with_relative("amplitude_coefficient"),
+    "b, L^2/(k3 tau2)": _with_relative("frequency_slope"),
+}
+"""Functions to (number, absolute error) of a Hopf point, by words and unit."""
+
+
+def _words(v: Mapping[str, np.ndarray], i: int) -> str:
     """Clause on the cycles at the i-th Hopf point of the single rod: their side and their stability."""
     side = int(v["criticality"][i])
     if side == 0:

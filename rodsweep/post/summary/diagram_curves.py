@@ -5,7 +5,7 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.phase_diagram import BAUTIN_ENDS, CYCLE_CURVE_ENDS
+from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted
 from .ranges import error_text, span, to_error
 
@@ -73,6 +73,19 @@ def agreement_lines(view: View, line: str) -> list[str]:
             f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
             f"them, over {line}; {_on_none(int(v['cycle_curves_untraced']))}"
         )
+    return lines
+
+
+def cut_lines(view: View, line: str, row: str) -> list[str]:
+    """Lines about boundary curves that end inside the diagram, although their rods are not crushed there."""
+    v = view.variables
+    lines = []
+    for why in ("not_followed", "list_full"):
+        for i in np.flatnonzero(v["curve_end"] == list(CURVE_ENDS).index(why)):
+            what = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
+            where = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
+            number = int(v["curve_number"][i])
+            lines.append(f"curve {number}, of {what}, is not whole: at {where} {CURVE_ENDS[why]}")
     return lines
 
 

@@ -7,16 +7,25 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import SECOND_STATES
+from ...results.layouts.variables import ANGULAR
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .arm.arm import region_of_arms
-from .errors import span_of
-from .ranges import error_text, span, to_error
+from .errors import errors_of, span_of
+from .ranges import error_text, number_and_error, span
 from .stability import stability_lines
-from .summary_lines import SummaryLines, completeness, in_brackets, region, varied
+from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region, varied
 
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 """Words for outcomes; unlisted statuses are words already."""
+
+CYCLE_NUMBERS = (
+    ("period", "period", "tau2"),
+    ("frequency", "frequency", ANGULAR),
+    ("largest y of the tip", "tip_y_max", "L"),
+    ("largest Floquet multiplier", "multiplier", ""),
+)
+"""(words, variable, unit) of the numbers of a single cycle."""
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -31,16 +40,19 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
         of_arm.insert(0, outcome_line(view, done, region_of_arms))
     trust = _proof_lines(view)
     details = [_straight_line(v, done)]
+    numbers = None
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
         multipliers = span_of(v, "multiplier", on_torus)
         details.append(f"tori: the cycles inside have multipliers {multipliers}")
     if done.size == 1 and orbit.any():
-        answer[1:1] = orbit_lines(v, stable=bool(beats.any()))
+        answer.insert(1, orbit_line(v, stable=bool(beats.any())))
+        numbers = orbit_table(v)
     elif beats.any():
         answer[1:1] = _size_lines(v, beats)
         trust.insert(0, _error_line(v, beats))
-    return SummaryLines(answer, trust, [*details, *(_cycle_lines(v, beats) if beats.any() else [])], of_arm)
+    details += _cycle_lines(v, beats) if beats.any() else []
+    return SummaryLines(answer, trust, details, of_arm, numbers)
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
@@ -54,8 +66,9 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
     found = {OUTCOMES.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()}
     if len(found) == 1:
         word = next(iter(found))
-        alone = done.size == 1 and word in OUTCOMES.values()
-        return f"the rod {word}" if alone else f"{word} at all {whole}"
+        if done.size > 1:
+            return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the one point that is solved"
+        return f"the rod {word}" if word in OUTCOMES.values() else word
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {whole}: {', '.join(counts)}"
 
@@ -91,23 +104,23 @@ def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:
     return f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
 
 
-def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
-    """Lines about the single cycle of a file, with errors and stability.
-
-    v: the variables of the file, each of a shape that begins with (1, 1, 1, 1, 1) or, in a list, (1,).
-    """
-    period = float(v["period"].max())
-    y = float(v["tip_y_max"].max())
-    multiplier = to_error(v["multiplier"].max(), v["multiplier_error"].max())
-    verdict = "below 1: the cycle is stable in the plane" if stable else "above 1: the cycle is unstable"
-    stability = f"largest nontrivial Floquet multiplier: {multiplier}; {verdict}"
+def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
+    """Line on the stability of the single cycle of a file; v: the variables of the file, of any shape."""
     if np.isnan(v["multiplier"]).all():
-        stability = "the motion in time settles on the cycle; no Floquet multiplier is computed"
-    return [
-        f"period: {to_error(period, period * v['period_error'].max())} tau2",
-        f"largest y of the tip: {to_error(y, y * v['amplitude_error'].max())} L",
-        stability,
-    ]
+        return "the motion in time settles on the cycle; no Floquet multiplier is computed"
+    if stable:
+        return "the cycle is stable in the plane: its largest nontrivial Floquet multiplier is below 1"
+    return "the cycle is unstable: its largest nontrivial Floquet multiplier is above 1"
+
+
+def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
+    """Table of the single cycle of a file, with errors; v: the variables of the file, of any shape."""
+    rows = []
+    for words, name, unit in CYCLE_NUMBERS:
+        value = float(np.nanmax(v[name], initial=-np.inf))
+        if np.isfinite(value):
+            rows.append((words, *number_and_error(value, float(errors_of(v, name).max())), unit))
+    return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
 def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:

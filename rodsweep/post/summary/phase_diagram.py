@@ -11,7 +11,7 @@ from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
 from .arm.arm import loads_at
-from .diagram_curves import agreement_lines, criticality_lines, curve_lines
+from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import span
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
@@ -23,9 +23,9 @@ UNDECIDED = next(value for value, word in CLASSES if word == "undecided")
 BOTH = next(value for value, word in STABLE_STATES if word == "both")
 """Number of the stable states where straight rod and cycle are both stable."""
 STATES_UNDECIDED = next(value for value, word in STABLE_STATES if word == "undecided")
-"""Number of the undecided stable states."""
+"""Stored value of the state `undecided`."""
 STATES_NAMED = {"straight rod and cycle both stable": BOTH, "stable states undecided": STATES_UNDECIDED}
-"""Stable states whose places `show` states, by their words."""
+"""Stored values of the stable states for which `show` lists places, by the words of `show`."""
 CHANGES_OF_CYCLES = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
@@ -49,7 +49,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), saving_line(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
-        trust += agreement_lines(view, line)
+        trust += [*agreement_lines(view, line), *cut_lines(view, line, row)]
     if "curve_criticality" in v:
         details += criticality_lines(view)
     return SummaryLines(answer, trust, details, crossings_of_arms(view, done))
@@ -139,7 +139,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
             text += f", {row} = {span(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
-                text += f"; again on {least}{int(again.any(axis=-1).sum())}, {line} = {later}"
+                text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
             lines.append(text)
     undecided = (v["class"] == UNDECIDED) & done[..., np.newaxis]
     if undecided.any():

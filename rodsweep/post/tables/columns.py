@@ -46,6 +46,7 @@ class Column:
         """Some rows of the column, in the order of the indices; index -1 gives a missing value."""
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
+        # An appended row makes index -1 a missing value.
         nothing = np.zeros(1, self.values.dtype)
         values = np.append(self.values, nothing)[which]
         absent = np.append(self.absent, True)[which]
@@ -115,5 +116,6 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
 
 
 def tells_of_items(variable: Variable) -> bool:
-    """Whether values of a variable reveal missing items: its fill value must not be a valid value."""
+    """Whether a value of the variable reveals a missing item, because no valid value equals the fill
+    value."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

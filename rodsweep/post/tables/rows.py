@@ -73,7 +73,7 @@ def si_columns(
 ) -> Iterator[Column]:
     """Yields SI columns for the variables of a list that an arm's file stores without dimension only.
 
-    points: of the rows, (rows,); None for rows without points, which need the same arm at all points.
+    points: point of each row, (rows,); None for rows without points, which need the same arm at all points.
     """
     if not view.quantities:
         return

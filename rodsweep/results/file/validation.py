@@ -135,14 +135,14 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
     writer = f"{version}, commit {commit[:12]}"
     if found > FORMAT:
         raise InputError(
-            f"{path} has format {found}, written by rodsweep {writer}; this one ({__version__}) "
-            f"reads format {FORMAT}: update it"
+            f"{path} has format {found}, written by rodsweep {writer}; rodsweep {__version__} "
+            f"reads format {FORMAT}: update rodsweep"
         )
     if found < FORMAT:
         raise InputError(
-            f"{path} was written by an earlier rodsweep ({writer}) in format {found}, and this one reads "
-            f"format {FORMAT}: read it with that version, or compute it again, with --fresh or into another "
-            "file"
+            f"{path} was written by an earlier rodsweep ({writer}) in format {found}, and this rodsweep "
+            f"reads format {FORMAT}: read the file with that version, or compute it again, with --fresh or "
+            "into another file"
         )
 
 
@@ -156,7 +156,7 @@ def refuse_misfit(file: h5py.File, layout: Layout) -> None:
         if not isinstance(data, h5py.Dataset) or data.shape != extents or data.dtype != kind:
             raise ValueError(f"its variable {name} does not fit its config")
         if data.id.get_offset() is None or data.chunks or not data.id.get_storage_size():
-            raise ValueError(f"its variable {name} does not lie in one piece")
+            raise ValueError(f"its variable {name} is not stored in one contiguous piece")
 
 
 def is_ours(path: Path) -> bool:

@@ -71,7 +71,8 @@ EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in 
 BRANCH_FORCES = ("special_at", "special_error")
 """Forces along the branches of an arm; its branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Extra dimensions of variables stored in SI units as well; longer tables are not stored twice."""
+"""Variables with these extra dimensions are stored in SI units as well; longer tables are not stored
+twice."""
 
 EFFECTS = (
     "inertia_of_the_arm",
@@ -215,7 +216,9 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Quantities by name; along a grid over quantities each has its value at every point, (points,)."""
+    """Quantities by name. If the file is a grid over quantities, each is expanded to its value at every
+    point, (points,).
+    """
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

@@ -56,7 +56,7 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
         real(
             f"branch_{along}_error",
             "1",
-            f"estimate of the relative error of branch_{along}, at a given bending moment at the clamp",
+            f"estimate of the relative error of branch_{along}, at a given deflection at t = 0",
             ALONG,
         ),
         real("period", "tau2", "period of the cycle", ALONG),

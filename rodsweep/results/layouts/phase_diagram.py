@@ -30,6 +30,15 @@ CLASSES = (
 """Behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
 """Reasons for the end of a curve of generalised Hopf points; the file stores the place in this list."""
+CURVE_ENDS = {
+    "none": "the curve goes on",
+    "edge": "the curve leaves the diagram",
+    "crushed": "the rod is crushed beyond",
+    "closed": "the curve returns to its first point",
+    "not_followed": "no further point was found",
+    "list_full": "the curve has the maximum number of points",
+}
+"""Ends of a boundary curve; the file stores the place in this list."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """Kinds of boundary curves: double real eigenvalues, where oscillations set in or end, or Hopf points."""
 
@@ -167,6 +176,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in along),
         real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
+        word("curve_end", "reason for the end of the curve at the point", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
         word("fold_kind", kind, CURVE_KINDS, "fold"),
         word("fold_of", "parameter that has an extremum along the curve at the fold", along, "fold"),

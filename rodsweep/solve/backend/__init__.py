@@ -1,1 +1,1 @@
-"""PETSc, SLEPc and the BLAS themselves; nothing here knows the rod."""
+"""PETSc, SLEPc and the BLAS, without knowledge of the rod."""

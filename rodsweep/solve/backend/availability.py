@@ -1,4 +1,5 @@
-"""Check that PETSc can solve here, without starting PETSc: the start is collective over all ranks."""
+"""Check that PETSc can solve in this process, without starting PETSc: the start is collective over all
+ranks."""
 
 import os
 
@@ -7,7 +8,8 @@ from .debian import add_debian_modules, is_found
 
 
 def require_directory() -> None:
-    """EnvironmentIncomplete if the working directory was deleted: MPI and PETSc read it when they start."""
+    """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc need the directory to
+    start."""
     try:
         os.getcwd()
     except FileNotFoundError:

@@ -1,7 +1,7 @@
 """The BLAS libraries of this process, and the kernel of each.
 
-A library such as OpenBLAS has a kernel for every kind of processor and chooses one when it is loaded. Kernels
-add in different orders, so the results of two kernels agree within rounding only. PETSc and NumPy may use
+A library such as OpenBLAS has a kernel for every kind of processor, and chooses a kernel at start. Kernels
+sum in different orders, so results of two kernels agree only within rounding. PETSc and NumPy may use
 different libraries.
 """
 
@@ -12,11 +12,11 @@ from threadpoolctl import threadpool_info
 from . import petsc  # noqa: F401 - libraries are visible only once loaded
 
 NAMELESS = "unknown"
-"""Name reported for a library without a name, such as the reference BLAS."""
+"""Name reported for a library without a name, for example the reference BLAS."""
 
 
 def blas() -> str:
-    """Name, version and kernel of PETSc's BLAS, and of NumPy's if it is a different library, in one line."""
+    """Name, version and kernel of PETSc's BLAS, and of NumPy's BLAS if different, in a line."""
     found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":

@@ -1,6 +1,7 @@
-"""Compiled code and libpetsc: C functions made by numba, C functions that it may call, memory by address.
+"""Compiled code and libpetsc: C functions made by numba, C functions of PETSc for compiled code, memory by
+address.
 
-Nothing here knows the rod.
+The module has no knowledge of the rod.
 """
 
 import ctypes
@@ -32,7 +33,8 @@ LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the
 for _name in CALLED:
     binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
 
-POINTER, INT = types.intp, types.int32 if PETSc.IntType == np.int32 else types.int64
+POINTER = types.intp
+INT = types.int32 if PETSc.IntType == np.int32 else types.int64
 
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:
@@ -75,11 +77,12 @@ def integers(address: int, size: int) -> Any:
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
-    """The record with fields `dtype` at an address; assignments to its fields write to this memory."""
+    """The record with fields `dtype` at an address; an assignment to a field writes to the memory at this
+    address."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 
 def call(name: str, *arguments: int) -> None:
-    """Calls a function of libpetsc whose arguments are all pointers; raises RuntimeError if it fails."""
+    """Calls a function of libpetsc that takes only pointers; raises RuntimeError on failure."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"{name} failed")

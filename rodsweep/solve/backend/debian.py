@@ -26,7 +26,7 @@ def add_debian_modules(libraries: Path = LIBRARIES) -> None:
 
 
 def is_found(module: str) -> bool:
-    """Whether Python finds a module, which is not loaded."""
+    """Whether Python finds a module; the module is not loaded."""
     try:
         return find_spec(module) is not None
     except (ImportError, ValueError):  # a module that was set to None, as the tests do

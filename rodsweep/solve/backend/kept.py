@@ -10,7 +10,7 @@ from weakref import WeakSet
 
 
 class Destroyable(Protocol):
-    """An object that can free its memory."""
+    """An object with a `destroy` method that frees memory."""
 
     def destroy(self) -> None: ...
 
@@ -32,7 +32,7 @@ class LruPool(Generic[Key, Object]):
         return len(self._objects)
 
     def get(self, key: Key) -> Object:
-        """The object of a key, kept or new; a later call with another key may destroy it."""
+        """The object of a key, kept or new; a later call with a different key may destroy the object."""
         if key not in self._objects:
             while len(self._objects) >= self._limit:
                 self._objects.popitem(last=False)[1].destroy()
@@ -41,7 +41,7 @@ class LruPool(Generic[Key, Object]):
         return self._objects[key]
 
     def drop(self, key: Key) -> None:
-        """Destroys the object of a key, if it is kept."""
+        """Destroys the object of a key, if kept."""
         if key in self._objects:
             self._objects.pop(key).destroy()
 

@@ -29,7 +29,9 @@ def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
     n), with the row lengths of A, B and C.
     """
     plain = np.full(1, 78, np.uint8)  # "N"
-    no, e, f = plain.ctypes.data, extents.ctypes.data, factors.ctypes.data
+    no = plain.ctypes.data
+    e = extents.ctypes.data
+    f = factors.ctypes.data
     # BLAS stores matrices by columns, so it is called for C^T = B^T A^T.
     _dgemm(no, no, e + 4, e, e + 8, f, b, e + 16, a, e + 12, f + 8, c, e + 20)
 

@@ -21,10 +21,15 @@ WORK = 12
 def eigenvalues(A: Array) -> Complex:
     """Eigenvalues, (n,), of a finite matrix (n, n); nan if LAPACK does not converge."""
     n = len(A)
-    a, parts, work = A.copy(), np.empty((2, n)), np.empty(WORK * n)
+    a = A.copy()
+    parts = np.empty((2, n))
+    work = np.empty(WORK * n)
     extents = np.array([n, len(work), 0], np.int32)
     none = np.full(1, 78, np.uint8)  # "N"
-    no, e, v, w = none.ctypes.data, extents.ctypes.data, parts.ctypes.data, work.ctypes.data
+    no = none.ctypes.data
+    e = extents.ctypes.data
+    v = parts.ctypes.data
+    w = work.ctypes.data
     # LAPACK stores matrices by columns and sees A^T, which has the same eigenvalues.
     _dgeev(no, no, e, a.ctypes.data, e, v, v + 8 * n, w, e, w, e, w, e + 4, e + 8)
     values = np.empty(n, np.complex128)

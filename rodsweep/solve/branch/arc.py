@@ -17,7 +17,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
+from .bordered import BorderedMatrix, Condition, Scale, bordered, deflection_of, moved
 from .errors import BranchCalibration, Place
 
 ARC_STEPS = StepControl(
@@ -30,8 +30,8 @@ ARC_STEPS = StepControl(
     sharpest=0.45,
     growth=2.0,
 )
-"""Step lengths in units of the scale: a step of 0.1 changes the clamp's moment, the period or the parameter
-by at most a tenth."""
+"""Step lengths in units of the scale: a step of 0.1 changes the deflection, the period or the parameter by
+at most a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +46,9 @@ class PreviousCycle:
 class ArcPoint:
     """A cycle of a branch.
 
-    length: of the next step. before: the previous cycle. calibration: errors of the last measured cycle.
-    unmeasured: number of steps since the last measured cycle, 0 for a measured one. way: arc length since
-    then.
+    length: length of the next step. before: the previous cycle. calibration: errors of the last measured
+    cycle. unmeasured: number of steps since that measured cycle, 0 if this cycle is measured. way: arc length
+    since the measured cycle.
     """
 
     cycle: RefinedCycle
@@ -93,15 +93,15 @@ class ArcPoint:
         return self.place.rate
 
     @property
-    def moment(self) -> float:
-        """Bending moment at the clamp at t = 0."""
-        return moment_of(self.orbit)
+    def deflection(self) -> float:
+        """Deflection at t = 0, as in `Scale.place`."""
+        return deflection_of(self.orbit)
 
     @cached_property
-    def returns(self) -> Complex:
+    def partial_multipliers(self) -> Complex:
         """Nontrivial multipliers of the half-period map composed with the reflection, (rank - 1,); of the
         whole period for a cycle without symmetry."""
-        values = bordered(self.cycle.fine).returns
+        values = bordered(self.cycle.fine).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def condition(self, length: float) -> Condition:
@@ -158,7 +158,7 @@ def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
 
 
 def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
-    """The cycle at an arc length from `start`; its own next step has the same length.
+    """The cycle at an arc length from `start`, with an equal length for the next step.
 
     Raises Unsolvable.
     """
@@ -184,7 +184,7 @@ def cycle_ahead(
 ) -> ArcPoint:
     """A cycle at a length from `start`, its errors not measured.
 
-    tangent: of the branch at the new cycle, (N + 1,). ahead: length of the next step.
+    tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
     cycle = judged_by(start.calibration.known, found, accuracy)
     place = placed(found, start.scale, tangent)

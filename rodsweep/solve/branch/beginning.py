@@ -1,7 +1,7 @@
 """The first cycle of a branch, from the normal form of the Hopf point where the branch is born.
 
 The normal form relates the amplitude of a cycle to the parameter's distance from the Hopf point. Newton's
-method starts at the cycle predicted for a small amplitude and holds its bending moment at the clamp; this
+method starts at the cycle predicted for a small amplitude and holds its deflection; this
 system is regular at the Hopf point too.
 """
 
@@ -14,8 +14,9 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
-from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement_settings import REFINEMENT
+from ..cycle.hopf_start import HOPF_START, orbit_with
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -23,22 +24,22 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..point import Unsolvable
 from .arc import ArcPoint
-from .bordered import Condition, Scale, moment_of
+from .bordered import Condition, Scale, deflection_of
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeginningSettings:
-    """The first cycle of a branch, beside its Hopf point."""
+    """Settings for the first cycle of a branch, beside its Hopf point."""
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Largest tip y, in L, of the first cycle; tried in this order."""
     amplitude_share: float = 0.05
     """Largest tip y of the first cycle, in units of the amplitude coefficient. Beyond it the third-order
     normal form is too inaccurate."""
-    min_moment_amplitude: float = 0.1
-    """Tip y, in L, of the cycle whose clamp moment is the smallest unit of moments."""
+    min_deflection_amplitude: float = 0.1
+    """Tip y, in L, of the cycle whose deflection is the smallest unit of deflections."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency of a Hopf point, a root of D."""
 
@@ -46,16 +47,17 @@ class BeginningSettings:
 BEGINNING = BeginningSettings()
 
 
-MOMENT = np.array([1.0, 0.0, 0.0])
-"""Direction of `Scale.place` along the bending moment at the clamp."""
+DEFLECTION = np.array([1.0, 0.0, 0.0])
+"""Unit vector along the deflection, in the coordinates of `Scale.place`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBirth:
     """A Hopf point along a parameter, with the normal form of the cycles born there.
 
-    coordinate: of the parameter. slope: dw/d(coordinate). normal: normal form on a mesh fine enough to start
-    a branch. coefficients: from a finer mesh, with errors.
+    coordinate: coordinate of the parameter at the Hopf point. slope: dw/d(coordinate). normal: normal form on
+    a mesh fine enough to start a branch. coefficients: coefficients of the normal form from a finer mesh,
+    with errors.
     """
 
     crossing: Crossing
@@ -109,7 +111,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
     w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.variable(crossing.at))
-    normal = accurate_normal_form(at, w, NORMAL_FORM_ACCURACY)
+    normal = accurate_normal_form(at, w, HOPF_START.normal_form_accuracy)
     return HopfBirth(
         crossing=crossing,
         rod=at,
@@ -117,7 +119,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
         coordinate=path.variable(crossing.at),
         slope=complex(slope),
         normal=normal,
-        coefficients=hopf_coefficients(at, crossing, NORMAL_FORM_ACCURACY),
+        coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
     )
 
 
@@ -153,18 +155,19 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
 def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
     """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable."""
     start = predicted_cycle(hopf, amplitude)
-    scale = Scale.of(start, hopf.name, abs(moment_of(start)) * BEGINNING.min_moment_amplitude / amplitude)
-    border = np.sign(moment_of(start)) * MOMENT
+    least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
+    scale = Scale.of(start, hopf.name, least)
+    border = np.sign(deflection_of(start)) * DEFLECTION
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEARBY_TOLERANCE, workspace)
+    rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     if not 0.5 < y / amplitude < 2.0:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
-    aim = max(accuracy, FIRST_ACCURACY)
+    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    born = abs(moment_of(first.orbit)) / scale.moment
+    born = abs(deflection_of(first.orbit)) / scale.deflection
     return first_point(first, scale, border, born, accuracy)
 
 

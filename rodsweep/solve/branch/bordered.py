@@ -1,26 +1,36 @@
 """Newton's method for a cycle together with a parameter; a condition on the branch closes the system.
 
 The parameter does not distinguish cycles beside a fold. The condition prescribes a linear combination of
-three numbers that mean the same on every mesh: the clamp's bending moment at t = 0, in units of about its
-largest value over the cycle; the logarithm of the period; the parameter's scaled coordinate. Arc length is
-measured in these numbers too; at a Hopf point the moment passes through 0 and keeps it regular.
+three numbers that mean the same on every mesh: the deflection at t = 0, in units of about its largest value
+over the cycle; the logarithm of the period; the parameter's scaled coordinate. Arc length is measured in
+these numbers too; at a Hopf point the deflection passes through 0 and keeps it regular.
+
+The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; c is the bending
+compliance of the arm's profile. For small cycles of a rod without taper it is the tip's y. Without c it would
+depend on the mesh: at a jump of rubber m3, the moment of a linear rod with the same strain, differs between
+both sides, and a mesh has only the mean strain. A moment at one place of the rod may vanish on large cycles,
+as the clamp's does, and steps along a branch would become short there.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...discretization.arm_on_mesh import profile_compliance_on
+from ...discretization.elements.mesh import Mesh
+from ...discretization.state_layout import StateLayout
+from ...model.material.build import Build
 from ...watch import report
 from ..orbit.matrix.elimination import eliminate
 from ..orbit.matrix.linearisation import (
     change_along,
     jump_of,
     over_period,
+    partial_multipliers,
     reduced_residuals,
     reduced_variations,
-    returns_of,
 )
 from ..orbit.matrix.phase import phase, phase_change, phase_row
 from ..orbit.matrix.right_sides import right_sides
@@ -34,35 +44,47 @@ from ..point import Unsolvable
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Units of the clamp moment (at least `least`) and of the parameter's coordinate; name of the
-    parameter."""
+    """Units of the deflection (at least `least`) and of the parameter's coordinate; name of the parameter."""
 
     name: str
-    moment: float
+    deflection: float
     coordinate: float
     least: float
 
     @classmethod
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
         """The scale at an orbit."""
-        largest = float(np.abs(orbit.form.layout.at(orbit.points, "m3")).max())
+        largest = float(np.abs(orbit.points @ deflection_row(orbit)).max())
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
     def place(self, orbit: Orbit) -> Array:
-        """(clamp moment, log of the period, coordinate) in units of the scale, (3,)."""
-        moment = moment_of(orbit) / self.moment
+        """(deflection, log of the period, coordinate) in units of the scale, (3,)."""
+        deflection = deflection_of(orbit) / self.deflection
         at = orbit.form.rod.coordinate(self.name) / self.coordinate
-        return np.array([moment, np.log(orbit.period), at])
+        return np.array([deflection, np.log(orbit.period), at])
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
         """Change of `place`, (3,), for a change of an orbit and the coordinate, (N + 1,)."""
-        moment = change[orbit.form.layout.place("m3")] / self.moment
-        return np.array([moment, change[-2] / orbit.period, change[-1] / self.coordinate])
+        deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection
+        return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate])
 
 
-def moment_of(orbit: Orbit) -> float:
-    """Bending moment at the clamp at t = 0, when the tip's y is largest."""
-    return float(orbit.form.layout.at(orbit.start, "m3"))
+def deflection_of(orbit: Orbit) -> float:
+    """Deflection at t = 0, when the tip's y is largest."""
+    return float(deflection_row(orbit) @ orbit.start)
+
+
+def deflection_row(orbit: Orbit) -> Array:
+    """Row that gives the deflection of a state, (n,)."""
+    form = orbit.form
+    return _deflection_row(form.layout, form.mesh, form.rod.build)
+
+
+@lru_cache(maxsize=64)
+def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
+    """`deflection_row`, (n,), shared by all callers and not to be changed."""
+    weights = mesh.quadrature * profile_compliance_on(build, mesh)
+    return layout.row({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
 
 
 class BorderedMatrix:
@@ -132,13 +154,13 @@ class BorderedMatrix:
         return self._memory.propagator
 
     @cached_property
-    def returns(self) -> Complex:
+    def partial_multipliers(self) -> Complex:
         """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
-        return returns_of(self.propagator, self.orbit)
+        return partial_multipliers(self.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
-        return over_period(self.returns, self.orbit)
+        return over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Singular vector of the least singular value at a fixed parameter, (N + 1,), of any length and sign.
@@ -160,7 +182,7 @@ class BorderedMatrix:
         n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
-        matrix[-1, self.orbit.form.layout.place("m3")] = border[0] / self.scale.moment
+        matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
         matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
         return self._spread(np.linalg.solve(matrix, right), sides, share)
 
@@ -178,7 +200,7 @@ class BorderedMatrix:
 def bordered(found: Converged) -> BorderedMatrix:
     """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
     if not isinstance(found.matrix, BorderedMatrix):
-        raise TypeError("the matrix does not know the parameter")
+        raise TypeError("the orbit was solved without the parameter as an unknown")
     return found.matrix
 
 

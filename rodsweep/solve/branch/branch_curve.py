@@ -7,7 +7,7 @@ import numpy as np
 
 from ...model.floquet import least_outside
 from ..cycle.accuracy.cycle_errors import CycleErrors
-from ..cycle.accuracy.refinement import MULTIPLIER_FACTOR
+from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint
@@ -18,7 +18,7 @@ from .symmetry import Breaking
 class BranchPoint:
     """Numbers of one cycle of a branch.
 
-    at: value of the parameter. at_error: relative error of the parameter at an equal clamp moment. errors: at
+    at: value of the parameter. at_error: relative error of the parameter at an equal deflection. errors: at
     an equal parameter. multiplier: modulus of the largest nontrivial Floquet multiplier. unstable: number of
     multipliers outside the unit circle, -1 if one lies on the circle within its error.
     """
@@ -60,7 +60,7 @@ def _margin(point: ArcPoint) -> float:
     """
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + MULTIPLIER_FACTOR * cycle.trivial_error
+    return relative + REFINEMENT.multiplier_factor * cycle.trivial_error
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from .work import shares_of_branches
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesSettings:
-    """All branches of one rod, or of one row of a diagram."""
+    """Settings shared by all branches of a rod, or of a row of a diagram."""
 
     crushing_margin: float = 1e-4
     """Relative distance below the crushing force k1 at which a branch along F ends; nearer, the rod at rest
@@ -40,7 +40,7 @@ BRANCHES = BranchesSettings()
 
 
 class BranchStatus(PointStatus):
-    """Outcome for one rod: of the search for Hopf points, and of following the branches."""
+    """Outcome of the search for Hopf points of one rod and of following the branches."""
 
     ok = (
         0,
@@ -188,7 +188,8 @@ def _thinnest(rod: Rod, low: float, high: float) -> float:
 
 
 def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
-    """Branches from all Hopf points, then the asymmetric ones; a branch that connects two only once."""
+    """Branches from all Hopf points, then the asymmetric branches. A branch between two Hopf points occurs
+    only once."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
     left = limits.max_cycles

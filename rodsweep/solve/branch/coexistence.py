@@ -29,7 +29,7 @@ def _as(status: ThresholdStatus) -> tuple[int, str, bool]:
 
 
 class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles: of the stability changes first, then of the branches."""
+    """Outcome of a row with cycles: of the stability changes if they failed, else of the branches."""
 
     ok = _as(ThresholdStatus.ok)
     not_certified = _as(ThresholdStatus.not_certified)
@@ -65,7 +65,7 @@ class Stable(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
-    """A row: its stable states at each value, (values,), and the special points of all its branches."""
+    """A row: stable states at each value, (values,), and the special points of all branches."""
 
     row: DiagramRow
     stable_states: NDArray[np.int8]

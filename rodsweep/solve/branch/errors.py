@@ -3,7 +3,7 @@
 Two finer meshes, one in space and one in time, have the cycle at the same arc length, which is regular at a
 fold. The cycles on the finer meshes lie at slightly different values of the parameter; slid along the branch
 to the stored value, they give the errors of period, extrema and multiplier. The difference of the parameter
-at an equal clamp moment is the error of the parameter. It stays small beside a Hopf point and beside a fold,
+at an equal deflection is the error of the parameter. It stays small beside a Hopf point and beside a fold,
 where all other numbers vary steeply with the parameter.
 """
 
@@ -13,29 +13,30 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..cycle.accuracy.calibration import ERROR_FACTOR, MULTIPLIER, Calibration, calibration_of
-from ..cycle.accuracy.cycle_errors import ERROR_ROUNDING, MIN_CLAIM, CycleErrors
-from ..cycle.accuracy.finer_meshes import COMPARED_DISTANCE, finer_meshes
+from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
+from ..cycle.accuracy.calibration_settings import CALIBRATION
+from ..cycle.accuracy.cycle_errors import CYCLE_ERRORS, CycleErrors
+from ..cycle.accuracy.finer_meshes import COMPARISON, finer_meshes
 from ..cycle.along_parameter import carried
 from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
 from .bordered import Condition, Scale, moved
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchErrorSettings:
-    """Error estimates of the cycles of a branch."""
+    """Settings of the error estimates of the cycles of a branch."""
 
     steep_slope: float = 120.0
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p, above which errors at an equal p may
     exceed the accuracy in proportion, as beside a Hopf point or a fold: p itself has an error. It is a fifth
     above the promised 100, since slopes are taken between cycles."""
-    min_moment_share: float = 0.1
-    """Smallest derivative of the clamp's moment along the branch, in units of the parameter's derivative,
-    used for the parameter's error at an equal moment; where the moment is stationary that error is
+    min_deflection_share: float = 0.1
+    """Smallest derivative of the deflection along the branch, in units of the parameter's derivative, used
+    for the parameter's error at an equal deflection; where the deflection is stationary that error is
     undefined."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
@@ -86,8 +87,8 @@ class Place:
 class BranchCalibration:
     """Errors of a mesh at a cycle of a branch.
 
-    known: at an equal parameter. parameter: relative error of the parameter at an equal moment, in space and
-    in time, (2,). slope: |(p/y) dy/dp|.
+    known: at an equal parameter. parameter: relative error of the parameter at an equal deflection, in space
+    and in time, (2,). slope: |(p/y) dy/dp|.
     """
 
     known: Calibration
@@ -103,8 +104,12 @@ class BranchCalibration:
         return self.known.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
-        """Relative error of the parameter at an equal moment."""
-        return max(ERROR_FACTOR * float(self.parameter.sum()), MIN_CLAIM * accuracy, ERROR_ROUNDING)
+        """Relative error of the parameter at an equal deflection."""
+        return max(
+            CALIBRATION.safety * float(self.parameter.sum()),
+            CYCLE_ERRORS.min_claim * accuracy,
+            CYCLE_ERRORS.rounding,
+        )
 
     def largest(self, accuracy: float) -> float:
         """The error that must not exceed the accuracy."""
@@ -115,7 +120,7 @@ class BranchCalibration:
         return self._demanded.planned(accuracy)
 
     def planned_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh whose parameter at an equal moment is expected to have the accuracy."""
+        """The cheapest mesh whose parameter at an equal deflection is expected to have the accuracy."""
         return self._of_parameter.planned(accuracy)
 
     @cached_property
@@ -124,21 +129,21 @@ class BranchCalibration:
         steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
         parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
-            part[PERIOD] = max(part[PERIOD], own)
+            part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
         return replace(self.known, space=parts[0], time=parts[1])
 
     @cached_property
     def _of_parameter(self) -> Calibration:
-        """Calibration in which every error is the parameter's."""
-        numbers = [PERIOD, HEIGHT, OTHERS, APART]
+        """A calibration with the parameter's error in place of every error."""
+        numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.known.space.copy(), self.known.time.copy()]
         for part, own in zip(parts, self.parameter, strict=True):
             part[numbers] = own
         return replace(self.known, space=parts[0], time=parts[1])
 
     def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
-        """Errors of a cycle between two measured ones on one mesh. share: of the way to `other`; slope: at
-        the cycle.
+        """Errors of a cycle between two cycles with measured errors on one mesh. share: fraction of the way
+        to `other`; slope: slope at the cycle.
 
         Each error is interpolated geometrically and multiplied by BRANCH_ERRORS.interpolation_factor.
         """
@@ -175,7 +180,7 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARED_DISTANCE)
+        fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARISON.matrix_distance)
         part[:] = _difference(rough, multipliers, fine, place)
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
@@ -186,20 +191,20 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
     """Differences of a cycle from the same cycle on a finer mesh, (6,).
 
     The first five, as in `Calibration.space`, are at the rough mesh's value of the parameter; the last is
-    that of the parameter at an equal moment.
+    that of the parameter at an equal deflection.
     """
     orbit = rough.orbit
     scale = place.scale
-    moment, _, off = scale.place(orbit) - scale.place(fine.orbit)
+    deflection, _, off = scale.place(orbit) - scale.place(fine.orbit)
     length = place.slide(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried(orbit, place.tangent[:-1], target), place.tangent[-1])
     slid = moved(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
-    by_moment = abs(place.ahead[0])
+    by_deflection = abs(place.ahead[0])
     by_parameter = abs(place.rate)
-    apart = abs(off * place.ahead[0] - moment * place.rate)
-    own = apart / max(by_moment, BRANCH_ERRORS.min_moment_share * by_parameter)
+    apart = abs(off * place.ahead[0] - deflection * place.rate)
+    own = apart / max(by_deflection, BRANCH_ERRORS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 

@@ -1,4 +1,4 @@
-"""One branch of cycles, followed from its Hopf point or symmetry breaking to its end."""
+"""A branch of cycles, followed from a Hopf point or symmetry breaking to the end."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -36,8 +36,9 @@ ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 class BranchLimits:
     """Limits within which branches are followed, and known points where they may end.
 
-    hopfs: of the rod. ends: coordinates of the parameter; reasons: why branches end there. max_cycles: number
-    of stored cycles. workspace: memory of all matrices. breakings: known symmetry breakings of the rod.
+    hopfs: Hopf points of the rod. ends: coordinates of the parameter at which branches end. reasons: why they
+    end there. max_cycles: number of stored cycles. workspace: memory of all matrices. breakings: known
+    symmetry breakings of the rod.
     """
 
     hopfs: Sequence[HopfBirth]
@@ -58,7 +59,8 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 
 def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:
-    """The branch of asymmetric cycles from symmetry breaking `which` of the list, along a parameter."""
+    """The branch of asymmetric cycles along the parameter `name`, from symmetry breaking
+    `limits.breakings[which]`."""
     breaking = limits.breakings[which]
     curve = BranchCurve(hopf=-1, breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
@@ -188,9 +190,9 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         if shorter < ARC_STEPS.shortest:
             raise Unsolvable("the bending moments change sign within the shortest step")
         return replace(start, length=shorter)
-    # Near a Hopf point parameter and period are quadratic in the moment.
+    # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
-    share = start.moment / (2 * start.ahead[0] * start.scale.moment)
+    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(ENDINGS.min_place_tolerance, limits.accuracy)

@@ -18,7 +18,7 @@ from .errors import BranchCalibration, measured_errors, slope_at
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SettlingSettings:
-    """Choice of the meshes of a branch, and of the cycles at which errors are measured."""
+    """Settings for the choice of the meshes of a branch, and of the cycles at which errors are measured."""
 
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""

@@ -3,7 +3,7 @@
 A symmetric cycle equals its own mirror image half a period later. Where a multiplier of the half-period map
 composed with the reflection is -1, a branch of asymmetric cycles crosses. Its two sides are mirror images of
 each other, shifted by half a period; one side is followed, over the whole period. Near the crossing the
-clamp's moment at t = 0 is linear in the asymmetry, parameter and period are quadratic. A branch that returns
+deflection at t = 0 is linear in the asymmetry, parameter and period are quadratic. A branch that returns
 to such a crossing continues on its mirror image, as a branch does at a Hopf point.
 """
 
@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEARBY_TOLERANCE, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
@@ -22,15 +23,17 @@ from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..orbit.symmetry import NONE
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_between
-from .beginning import MOMENT
-from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from .beginning import DEFLECTION
+from .bordered import BorderedMatrix, Condition, Scale, deflection_of, moved
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndingSettings:
-    """Ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the parameter's range."""
+    """Settings for the ends of a branch: at a Hopf point, at a symmetry breaking, at an end of the
+    parameter's range.
+    """
 
     small_cycle: float = 0.06
     """Largest tip y, in L, of a cycle from which the branch may step across a Hopf point where it ends."""
@@ -41,7 +44,7 @@ class EndingSettings:
     """Asymmetry, in units of the largest moment, below which shorter steps identify the symmetric cycle no
     better."""
     lost_asymmetry: float = 0.1
-    """A step that reduces the asymmetry below this fraction has passed a symmetric cycle or reached one."""
+    """A step that reduces the asymmetry below this fraction has reached or passed a symmetric cycle."""
     asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Allowed range of the asymmetry found, in units of the predicted asymmetry."""
     place_share: float = 0.3
@@ -64,7 +67,7 @@ ENDINGS = EndingSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AsymmetricStartSettings:
-    """The first asymmetric cycle beside a symmetry breaking."""
+    """Settings for the first asymmetric cycle beside a symmetry breaking."""
 
     first_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
     """Relative change from the symmetric cycle to the first asymmetric cycle; tried in this order."""
@@ -132,30 +135,30 @@ def beginning_without_symmetry(
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
-            return _first_cycle(start, matrix, moment_of(start) - moment_of(whole), accuracy)
+            return _first_cycle(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the symmetry breaking: {why}") from why
 
 
 def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
-    """The cycle near a prediction; the branch goes on towards larger change of the moment. Raises Unsolvable.
+    """The cycle near a prediction; the branch goes on towards a larger deflection. Raises Unsolvable.
 
-    whole: matrix of the symmetric cycle. change: of the clamp's moment from that cycle.
+    whole: matrix of the symmetric cycle. change: change of the deflection from that cycle.
     """
     scale = whole.scale
-    border = np.sign(change) * MOMENT
+    border = np.sign(change) * DEFLECTION
     condition = Condition.at(scale, border, start)
-    rough = condition.solved(start, NEARBY_TOLERANCE, whole.workspace)
+    rough = condition.solved(start, REFINEMENT.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not ENDINGS.asymmetry_ratios[0] < found < ENDINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
-    aim = max(accuracy, FIRST_ACCURACY)
+    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
-    return first_point(first, scale, border, abs(change) / scale.moment, accuracy)
+    return first_point(first, scale, border, abs(change) / scale.deflection, accuracy)
 
 
 def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:
@@ -190,7 +193,7 @@ def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], acc
     if which >= 0 or _relative_asymmetry(start) <= ENDINGS.min_asymmetry:
         return which
     if arc_between(start, end) / 2 < ARC_STEPS.shortest:
-        raise Unsolvable("the motion becomes its mirror image within the shortest step")
+        raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 
 

@@ -19,10 +19,18 @@ from .path_problem import PathProblem, UniformPath, path_problem
 from .search_range import Reach
 from .unstable_modes import Counts, Crossing, Kind
 
-ANCHOR_DISTANCE = 1e-4
-"""Distance from a crossing, in units of the path, of an additional anchor at which the pair must lead."""
-MERGE_DISTANCE = 1e-5
-"""Relative distance below which open boxes are merged into one range."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TransitionSettings:
+    """Merging of the changes along a path."""
+
+    anchor_distance: float = 1e-4
+    """Distance from a crossing, in units of the path, of an additional anchor at which the pair must lead."""
+    merge_distance: float = 1e-5
+    """Relative distance below which open boxes are merged into one range."""
+
+
+TRANSITIONS = TransitionSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,7 +115,7 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
         if not missed:
             break
-        near = [(p + side * ANCHOR_DISTANCE * (high - low)) for p in missed for side in (-1, 1)]
+        near = [(p + side * TRANSITIONS.anchor_distance * (high - low)) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
         counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
@@ -221,7 +229,7 @@ def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter covered by the open boxes."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.variable(box.p_from), path.variable(box.p_to))) for box in left):
-        if gaps and a <= gaps[-1][1] * (1 + MERGE_DISTANCE):
+        if gaps and a <= gaps[-1][1] * (1 + TRANSITIONS.merge_distance):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:
             gaps.append((a, b))

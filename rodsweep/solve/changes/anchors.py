@@ -6,13 +6,21 @@ from functools import cached_property
 
 from ...arrays import Complex
 
-MIN_KNOWN_MODES = 4
-"""Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
-PLACE_ACCURACY = 1e-6
-"""Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
-EXPLAINED = 0.25
-"""Tolerance of the interpolation between two places: the interpolant stays above this fraction of the smaller
-end value, so that no zero hides, and the slopes explain the change but for this fraction."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnchorSettings:
+    """Interpolation between two places of a path."""
+
+    min_known_modes: int = 4
+    """Leading eigenvalues known at a place on a path of arms, at least; two more than are unstable."""
+    place_accuracy: float = 1e-6
+    """Relative accuracy of these eigenvalues; Newton's method on D does the rest."""
+    explained: float = 0.25
+    """Tolerance of the interpolation between two places: the interpolant stays above this fraction of the
+    smaller end value, so that no zero hides, and the slopes explain the change but for this fraction."""
+
+
+ANCHORS = AnchorSettings()
 
 
 @dataclass(frozen=True)
@@ -31,12 +39,12 @@ class Anchor:
 
     @cached_property
     def oscillates(self) -> bool:
-        """Whether a pair leads."""
+        """Whether the leading eigenvalues are a complex pair."""
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, its slope) of the two leading eigenvalues if both are real or a pair; else
-        None."""
+        """((w1 - w2)^2 time^2, slope of this value) of the two leading eigenvalues if both are real or a
+        pair; else None."""
         if self.oscillates:
             gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
             return -(gap**2), -2 * gap * slope
@@ -46,8 +54,8 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(lead of the real part over the first eigenvalue of the other kind, times time; its slope), or
-        None."""
+        """(lead in the real part over the first eigenvalue of the opposite kind, real or complex, times time;
+        slope of this lead), or None."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)
@@ -60,16 +68,23 @@ class Anchor:
 
 def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
     """(least value on [0, 1], its place) of the cubic with values a, b and slopes at the ends."""
-    square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
-    lowest, at = min(a, b), 0.5
+    square = 3 * (b - a) - 2 * slope_a - slope_b
+    cube = slope_a + slope_b - 2 * (b - a)
+    lowest = min(a, b)
+    at = 0.5
     spread = square * square - 3 * cube * slope_a
     if spread >= 0 and (square or cube):
         # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
         root = math.sqrt(spread)
-        t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
+        t = 0.5
+        if square + root > 0:
+            t = -slope_a / (square + root)
+        elif cube:
+            t = (root - square) / (3 * cube)
         value = a + t * (slope_a + t * (square + t * cube))
         if 0 < t < 1 and value < lowest:
-            lowest, at = value, t
+            lowest = value
+            at = t
     return lowest, at
 
 
@@ -91,8 +106,8 @@ def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
         lowest, share = lowest_between(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < EXPLAINED * smallest:
+        if a[0] * b[0] <= 0 or lowest < ANCHORS.explained * smallest:
             return share, True
-        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])):
+        if missed > ANCHORS.explained * max(smallest, abs(b[0] - a[0])):
             return 0.5, False
     return 0.0, False

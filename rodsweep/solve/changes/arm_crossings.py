@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import EXPLAINED, MIN_KNOWN_MODES, PLACE_ACCURACY, lowest_between
+from .anchors import ANCHORS, lowest_between
 from .path_problem import PathProblem
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
@@ -19,7 +19,7 @@ from .unstable_modes import Crossing, Kind
 MAX_KNOWN_MODES = 200
 """Largest number of leading eigenvalues known at a place."""
 SMALLEST_INTERVAL = 1e-6
-"""Length of an interval, in units of the path, that is not divided further: two crossings in it stay
+"""Length of an interval, in units of the path, that is not divided further: two crossings inside stay
 undecided."""
 COUNT_DISTANCE = 1e-5
 """Distance from a crossing, in units of the path, of the counts on both its sides."""
@@ -31,7 +31,7 @@ CONVERGED_STEP = 4.0
 
 @dataclass(frozen=True)
 class AxisPlace:
-    """A place p: its leading eigenvalues w, their slopes, (modes,) each, and the number of unstable modes."""
+    """A place p: leading eigenvalues w and their slopes, (modes,) each, and the number of unstable modes."""
 
     p: float
     w: Complex
@@ -50,7 +50,7 @@ class AxisPlace:
 
 
 class CrossingSearch:
-    """The search for crossings along one path.
+    """The search for crossings along a path.
 
     found: crossings by their p. gaps: intervals of p that may contain two undecided crossings.
     """
@@ -62,16 +62,18 @@ class CrossingSearch:
         self.gaps: list[tuple[float, float]] = []
 
     def place(self, p: float) -> AxisPlace:
-        """The place at p; raises Unsolvable if its eigenvalues or their count cannot be computed."""
+        """The place at p; raises Unsolvable if eigenvalues or count cannot be computed."""
         if p not in self.places:
             near = min(self.places.values(), key=lambda place: abs(place.p - p), default=None)
-            modes = MIN_KNOWN_MODES if near is None else max(MIN_KNOWN_MODES, 2 + near.unstable)
-            found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
+            modes = (
+                ANCHORS.min_known_modes if near is None else max(ANCHORS.min_known_modes, 2 + near.unstable)
+            )
+            found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
                 if self.certify and found.unstable_count < 0:
                     break  # a count that fails does not succeed with more modes
                 modes = _needed(found)
-                found = self.problem.spectrum(p, SpectrumRequest(modes, PLACE_ACCURACY, self.certify))
+                found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
             slopes = found.eigenvalues.copy()
@@ -121,15 +123,15 @@ class CrossingSearch:
     def _confirmed(
         self, crossing: Crossing, left: AxisPlace, right: AxisPlace, length: float
     ) -> tuple[float, float] | None:
-        """(p just before, p just behind) a crossing; None if the counts at these do not confirm the
-        crossing."""
+        """(p just before, p just behind) a crossing; None if the counts at these two places do not confirm
+        the crossing."""
         p = self.problem.path.variable(crossing.at)
         before, behind = max(left.p, p - COUNT_DISTANCE * length), min(right.p, p + COUNT_DISTANCE * length)
         change = self.place(behind).unstable - self.place(before).unstable
         return (before, behind) if change == right.unstable - left.unstable else None
 
     def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
-        """The crossing between two places whose counts differ by a pair; None if not found."""
+        """The crossing between two places with counts that differ by a pair; None if not found."""
         grows = right.unstable > left.unstable
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
@@ -173,7 +175,8 @@ def _needed(found: Spectrum) -> int:
 
 
 def hidden(left: AxisPlace, right: AxisPlace) -> float:
-    """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if none can."""
+    """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if no pair
+    can."""
     h = right.p - left.p
     for growing in (False, True):
         a, b = left.nearest(growing), right.nearest(growing)
@@ -186,6 +189,6 @@ def hidden(left: AxisPlace, right: AxisPlace) -> float:
                 return 0.5
             continue
         lowest, share = lowest_between(a[0], b[0], h * a[1], h * b[1])
-        if lowest < EXPLAINED * min(a[0], b[0]):
+        if lowest < ANCHORS.explained * min(a[0], b[0]):
             return share
     return 0.0

@@ -16,16 +16,27 @@ from ..continuation.boundaries import Boundaries, boundary_search
 from .boundary_curves import BoundaryCurve, trace
 from .unstable_modes import Kind
 
-SAME_COORDINATE = 1e-12
-"""Two scaled coordinates with a smaller difference are equal."""
-SAME_EIGENVALUE = 1e-3
-"""Relative difference of the eigenvalues below which a change may lie on a curve beside it."""
-MAX_BOUNDARY_SECANTS = 20
-"""Maximum number of secant steps to a point of a curve at a given height."""
-COINCIDENT_ENDS = 1e-6
-"""Two curves with ends at a smaller distance, eigenvalue included, are the same: curves do not cross."""
-CHANGE_DISTANCE = 1e-7
-"""A change at a smaller distance from a curve, in units of the axis, lies on the curve."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangeBoundarySettings:
+    """Changes of rows on curves of a plane."""
+
+    same_coordinate: float = 1e-12
+    """Two scaled coordinates with a smaller difference are equal."""
+    same_eigenvalue: float = 1e-3
+    """Relative difference of the eigenvalues below which a change may lie on a curve beside it."""
+    max_secants: int = 20
+    """Maximum number of secant steps to a point of a curve at a given height."""
+    coincident_ends: float = 1e-6
+    """Two curves with ends at a smaller distance, eigenvalue included, are the same: curves do not cross."""
+    change_distance: float = 1e-7
+    """A change at a smaller distance from a curve, in units of the axis, lies on the curve."""
+    beside: float = 0.1
+    """Distance beside the ends of a chord, in units of the axis, at which its curve may still have a point:
+    steps are shorter."""
+
+
+CHANGE_BOUNDARIES = ChangeBoundarySettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +51,7 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a change; None for an overtaking, which lies on no curve of either kind."""
+    """The seed of a change; None for an overtaking, because no curve is made of overtakings."""
     if kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (Kind.onset, Kind.real_again):
@@ -77,13 +88,16 @@ class _ChangeBoundaries:
         """Whether two curves share an end: beside a crushed rod a change may not be found on its own
         curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
-        return one.sign == other.sign and float(np.abs(ends).max(axis=-1).min()) < COINCIDENT_ENDS
+        return (
+            one.sign == other.sign
+            and float(np.abs(ends).max(axis=-1).min()) < CHANGE_BOUNDARIES.coincident_ends
+        )
 
 
 def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
     """Curves through all changes; each curve is followed once, and every change is then found on a curve."""
     problem = _ChangeBoundaries(plane, seeds)
-    return boundary_search(problem, range(len(seeds)), CHANGE_DISTANCE).boundaries
+    return boundary_search(problem, range(len(seeds)), CHANGE_BOUNDARIES.change_distance).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
@@ -94,16 +108,21 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
     side = points[:, 1] - y
-    side[np.abs(side) < SAME_COORDINATE] = 0.0
+    side[np.abs(side) < CHANGE_BOUNDARIES.same_coordinate] = 0.0
     if len(points) == 1:
-        return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_DISTANCE else math.inf
+        return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_BOUNDARIES.change_distance else math.inf
     best = math.inf
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
-        a, b = points[i], points[i + 1]
-        if not min(a[0], b[0]) - 0.1 <= x <= max(a[0], b[0]) + 0.1:
+        a = points[i]
+        b = points[i + 1]
+        beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
+        if beside > CHANGE_BOUNDARIES.beside:
             continue
         there = _at_height(Boundary(plane, curve.sign), a, b, y)
-        if there is not None and abs(there[2] - math.log(abs(seed.eigenvalue))) < SAME_EIGENVALUE:
+        if (
+            there is not None
+            and abs(there[2] - math.log(abs(seed.eigenvalue))) < CHANGE_BOUNDARIES.same_eigenvalue
+        ):
             best = min(best, float(abs(there[0] - x)))
     return best
 
@@ -114,7 +133,7 @@ def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None
     Newton's method starts from the chord; if this guess is too far, secants along the curve follow.
     """
     share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
-    for _ in range(MAX_BOUNDARY_SECANTS):
+    for _ in range(CHANGE_BOUNDARIES.max_secants):
         guess = a + share * (b - a)
         level = guess.copy()
         level[1] = y

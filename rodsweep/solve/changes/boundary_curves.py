@@ -8,6 +8,7 @@ axis.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.parameter_plane import Plane
 from ...watch import report
-from ..continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
+from ..continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
 from ..point import Unsolvable
 
 BOUNDARY_STEPS = StepControl(
@@ -24,15 +25,41 @@ BOUNDARY_STEPS = StepControl(
 )
 """Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
 curve."""
-BESIDE_AN_EDGE = 1e-9
-"""Largest distance beyond one edge of the plane for a point on another edge."""
-COINCIDENT_POINTS = 1e-9
-"""Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
-FOLD_ACCURACY = 1e-13
-"""Convergence tolerance at a fold: component of the tangent, and bracket as a fraction of the step."""
-HOPF_TANGENT, DOUBLE_TANGENT, ARM_TANGENT = 1e-12, 1e-11, 3e-10
-"""Error of a tangent: by rounding (Hopf), by differences in the Jacobian of D_w (double), by differences of D
-of arms, which deviate from the closed form by up to 8e-11 for uniform rods."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangeCurveSettings:
+    """Points, ends and folds of a boundary curve."""
+
+    beside_an_edge: float = 1e-9
+    """Largest distance beyond one edge of the plane for a point on another edge."""
+    coincident_points: float = 1e-9
+    """Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
+    fold_accuracy: float = 1e-13
+    """Convergence tolerance at a fold: component of the tangent, and bracket as a fraction of the step."""
+    hopf_tangent: float = 1e-12
+    """Error of the tangent to a curve of Hopf points, by rounding."""
+    double_tangent: float = 1e-11
+    """Error of the tangent to a curve of double eigenvalues, by differences in the Jacobian of D_w."""
+    arm_tangent: float = 3e-10
+    """Error of the tangent to a curve of arms, by differences of D, which deviate from the closed form by up
+    to 8e-11 for uniform rods."""
+    min_loop_points: int = 4
+    """Fewest points of a closed curve."""
+
+
+CHANGE_CURVES = ChangeCurveSettings()
+
+
+class BoundaryEnd(IntEnum):
+    """Reasons for the end of a boundary curve."""
+
+    none = 0
+    edge = 1
+    crushed = 2
+    closed = 3
+    not_followed = 4
+    list_full = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +79,7 @@ class BoundaryCurve:
     """A curve of Hopf points (sign 0) or of double real eigenvalues with a sign (-1 or 1).
 
     values: of both parameters, (points, 2). frequency, growth_rate: of the eigenvalue, in 1/tau2, (points,).
+    ends: reasons for the ends at the first and the last point.
     """
 
     sign: float
@@ -59,6 +87,7 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
+    ends: tuple[BoundaryEnd, BoundaryEnd]
     scaled: Array
     """Scaled coordinates and h = log|eigenvalue| of each point, (points, 3)."""
 
@@ -107,23 +136,49 @@ class _Trace:
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
-        """The point on the edge that a step crosses; None beyond another edge or for a crushed rod."""
+        """The point on the edge that a step crosses; None for a crushed rod, or if the point lies beyond a
+        second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)
         inner = behind[-1].v
         share = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
         found = self.boundary.corrected(inner + share * (outer.v - inner), np.eye(3)[axis])
-        if found is None or not -BESIDE_AN_EDGE <= found.v[1 - axis] <= 1 + BESIDE_AN_EDGE:
+        if (
+            found is None
+            or not -CHANGE_CURVES.beside_an_edge <= found.v[1 - axis] <= 1 + CHANGE_CURVES.beside_an_edge
+        ):
             return None
         return _CurvePoint.on(found, behind[-1].tangent)
 
     def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
         """Whether the curve returns to its first point within the step."""
-        first, last = behind[0], behind[-1]
+        first = behind[0]
+        last = behind[-1]
         step = float(np.linalg.norm(there.v - last.v))
         near = float(np.linalg.norm(there.v - first.v)) < step
-        return len(behind) > 3 and near and float(there.tangent @ first.tangent) > 0
+        return (
+            len(behind) >= CHANGE_CURVES.min_loop_points and near and float(there.tangent @ first.tangent) > 0
+        )
+
+    def end_of(self, followed: Curve[_CurvePoint]) -> BoundaryEnd:
+        """The reason for the end of a followed curve.
+
+        No solution is found beyond a point on an edge where a parameter cannot go further, as gamma3 below 0,
+        nor for a crushed rod, which may be closer than the shortest step.
+        """
+        if followed.end is CurveStop.closed:
+            return BoundaryEnd.closed
+        if followed.end is CurveStop.full:
+            return BoundaryEnd.list_full
+        if followed.end is CurveStop.margin:
+            return BoundaryEnd.crushed if followed.margin == CRUSHED_MARGIN else BoundaryEnd.edge
+        v, tangent = followed.solutions[-1]
+        if self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min() <= CHANGE_CURVES.beside_an_edge:
+            return BoundaryEnd.edge
+        beyond = _CurvePoint(v + 2 * BOUNDARY_STEPS.shortest * tangent, tangent)
+        is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
+        return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed
 
 
 CRUSHED_MARGIN = 4
@@ -135,25 +190,28 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
 
     The curve is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
     """
-    curve, guess = _Trace(Boundary(plane, sign)), np.array([*start, math.log(abs(eigenvalue))])
+    curve = _Trace(Boundary(plane, sign))
+    guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
         first = _CurvePoint.on(curve.near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
     ahead = follow(curve, first, BOUNDARY_STEPS, lambda _: report())
+    back = ahead
     passed = ahead.solutions
     if ahead.end is not CurveStop.closed:
         back = follow(curve, _CurvePoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > COINCIDENT_POINTS
-    return _curve(curve, points[np.append(apart, True)])
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > CHANGE_CURVES.coincident_points
+    return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
-def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
-    """The curve through points, (points, 3), with the folds between them."""
-    boundary, folds = curve.boundary, []
+def _curve(curve: _Trace, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]) -> BoundaryCurve:
+    """The curve through points, (points, 3), with the folds between them and the reasons for its ends."""
+    boundary = curve.boundary
+    folds = []
     if len(points) > 1:
         forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
         tangents = np.array([boundary.tangent(v) for v in points])
@@ -168,13 +226,15 @@ def _curve(curve: _Trace, points: Array) -> BoundaryCurve:
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
-    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), points)
+    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
 def _fold(curve: _Trace, a: _CurvePoint, b: _CurvePoint, axis: int) -> Fold | None:
     """The point between two where the tangent has no component along an axis; None if not found."""
-    boundary, noise = curve.boundary, _tangent_noise(curve.boundary)
-    chord, found = b.v - a.v, dict[float, OnBoundary]()
+    boundary = curve.boundary
+    noise = _tangent_noise(curve.boundary)
+    chord = b.v - a.v
+    found = dict[float, OnBoundary]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
@@ -183,7 +243,7 @@ def _fold(curve: _Trace, a: _CurvePoint, b: _CurvePoint, axis: int) -> Fold | No
 
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
-        length = zero_along(component, ends, size, FOLD_ACCURACY, FOLD_ACCURACY)
+        length = zero_along(component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy)
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None
@@ -193,8 +253,8 @@ def _fold(curve: _Trace, a: _CurvePoint, b: _CurvePoint, axis: int) -> Fold | No
 def _tangent_noise(boundary: Boundary) -> float:
     """Error of the tangents of a boundary."""
     if not boundary.plane.standard:
-        return ARM_TANGENT
-    return DOUBLE_TANGENT if boundary.sign else HOPF_TANGENT
+        return CHANGE_CURVES.arm_tangent
+    return CHANGE_CURVES.double_tangent if boundary.sign else CHANGE_CURVES.hopf_tangent
 
 
 def _as_fold(boundary: Boundary, there: OnBoundary, axis: int, along: float) -> Fold:

@@ -10,6 +10,7 @@ of them.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -23,16 +24,36 @@ from .unstable_modes import Crossing, Kind
 
 ANCHOR_MODES = 4
 """Number of leading eigenvalues at an anchor: two that lead, and their rivals."""
-ANCHOR_ACCURACY = 1e-6
-"""Accuracy requested from the spectrum solver; Newton's method on D refines the eigenvalues."""
-SMALLEST_ANCHOR_INTERVAL = 2e-4
-"""Distance of two anchors, in units of the path, below which no anchor is added between."""
-SMALLEST_HIDING_INTERVAL = 1e-9
-"""The same if two changes may hide between the anchors."""
-MAX_OVERTAKING_STEPS = 60
-"""Maximum number of Newton steps to an overtaking."""
-CARRYING_STEPS = 8
-"""Number of steps in which an eigenvalue is followed from an anchor to the middle of an interval."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeaderSettings:
+    """Anchors of the leading eigenvalue, and Newton steps between them."""
+
+    accuracy: float = 1e-6
+    """Accuracy requested from the spectrum solver; Newton's method on D refines the eigenvalues."""
+    smallest_interval: float = 2e-4
+    """Distance of two anchors, in units of the path, below which no anchor is added between."""
+    smallest_hiding_interval: float = 1e-9
+    """The same if two changes may hide between the anchors."""
+    max_overtaking_steps: int = 60
+    """Maximum number of Newton steps to an overtaking."""
+    carrying_steps: int = 8
+    """Number of steps in which an eigenvalue is followed from an anchor to the middle of an interval."""
+    same_errors: float = 10.0
+    """Largest distance of a refined eigenvalue from its first value, in units of the error estimate, that is
+    no jump to another one."""
+    same: float = 1e-12
+    """The same relative to the eigenvalue, where its error estimate is smaller: some thousand roundings."""
+    smallest_step: float = 1e-12
+    """Relative length of an interval without a place between its ends, up to some thousand roundings."""
+    rounding: float = 4e-16
+    """Relative rounding error of the path variable: two units in the last place."""
+    converged: float = 4.0
+    """Newton step, in units of the error, at which an overtaking has converged."""
+
+
+LEADER = LeaderSettings()
 
 
 class Meeting(NamedTuple):
@@ -45,10 +66,12 @@ class Meeting(NamedTuple):
 
 
 class Tracer:
-    """Follows the leading eigenvalue along one path; solved anchors are kept."""
+    """Follows the leading eigenvalue along a path; solved anchors are kept."""
 
     def __init__(self, problem: PathProblem, certify: bool):
-        self.problem, self.path, self.certify = problem, problem.path, certify
+        self.problem = problem
+        self.path = problem.path
+        self.certify = certify
         self.anchors: dict[float, Anchor] = {}
         self.proved = certify
         """Whether every anchor is certified and no eigenvalue lies right of any change."""
@@ -60,15 +83,18 @@ class Tracer:
         return self.anchors[p]
 
     def _solve(self, p: float) -> Anchor:
-        request = SpectrumRequest(ANCHOR_MODES, ANCHOR_ACCURACY, self.certify)
+        request = SpectrumRequest(ANCHOR_MODES, LEADER.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.at(p)}: {found.status.name} {found.message}".rstrip())
-        w, slope = found.eigenvalues.copy(), np.empty(ANCHOR_MODES, dtype=complex)
+        w = found.eigenvalues.copy()
+        slope = np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
+            if abs(polished - guess) <= max(
+                LEADER.same_errors * found.error_estimate[i], LEADER.same * abs(guess)
+            ):
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
@@ -93,7 +119,7 @@ class Tracer:
         share = 0.5
         if left.oscillates == right.oscillates:
             share, hides = unexplained(left, right)
-            smallest = SMALLEST_HIDING_INTERVAL if hides else SMALLEST_ANCHOR_INTERVAL
+            smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
             if share == 0.0:
                 return []
             if b - a <= smallest * intervals.length:
@@ -103,7 +129,7 @@ class Tracer:
             change = self._between(left, right)
             if change is not None:
                 return [change]
-            if b - a <= 1e-12 * max(abs(a), abs(b)):
+            if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
                 where = self.path.at(a)
                 raise Unsolvable(f"the change of the leading eigenvalue near {where} is not found")
         middle = a + share * (b - a)
@@ -111,13 +137,15 @@ class Tracer:
         return []
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
-        """The single change between two anchors of different kind; None unless it is found and proved to
-        lead."""
+        """The only change between two anchors of different kind; None unless found and proved to be of the
+        leading eigenvalue."""
         pair, real = (left, right) if left.oscillates else (right, left)
         if right.oscillates != self.path.inverse:
-            double, single = Kind.onset, Kind.pair_leads
+            double = Kind.onset
+            single = Kind.pair_leads
         else:
-            double, single = Kind.real_again, Kind.real_leads
+            double = Kind.real_again
+            single = Kind.real_leads
         for find, kind, meeting in ((self._double, double, 2), (self._overtaking, single, 3)):
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
@@ -133,7 +161,8 @@ class Tracer:
     def _double(self, pair: Anchor, real: Anchor) -> Meeting | None:
         """The double eigenvalue between an anchor with a leading pair and one with two real eigenvalues; or
         None."""
-        below, above = pair.partner(), real.partner()
+        below = pair.partner()
+        above = real.partner()
         width = abs(pair.p - real.p)
         if below is None or above is None:
             return None
@@ -148,24 +177,26 @@ class Tracer:
         or None."""
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
             return None  # no eigenvalue of the other kind is known
-        p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
+        p = (pair.p + real.p) / 2
+        ends = sorted((pair.p, real.p))
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
         w_real = self._carried(complex(real.w[0]), real.p, p)
         w_pair = self._carried(complex(pair.w[0]), pair.p, p)
-        for _ in range(MAX_OVERTAKING_STEPS):
+        for _ in range(LEADER.max_overtaking_steps):
             w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
             w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
             slope = s_real.real - s_pair.real
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
             step = -(w_real.real - w_pair.real) / slope
-            error = (e_real + e_pair) / abs(slope) + 4e-16 * abs(p)
+            error = (e_real + e_pair) / abs(slope) + LEADER.rounding * abs(p)
             p += step
             if not ends[0] <= p <= ends[1]:
                 return None
-            if abs(step) <= 4 * error:
+            if abs(step) <= LEADER.converged * error:
                 return Meeting(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
-            w_real, w_pair = w_real + step * s_real, w_pair + step * s_pair
+            w_real = w_real + step * s_real
+            w_pair = w_pair + step * s_pair
             if w_real.imag != 0:
                 w_real = complex(w_real.real, 0.0)
         return None
@@ -173,9 +204,10 @@ class Tracer:
     def _carried(self, w: complex, start: float, stop: float) -> complex:
         """Eigenvalue w followed from p = start to p = stop in small steps."""
         p = start
-        for i in range(1, CARRYING_STEPS + 1):
+        for i in range(1, LEADER.carrying_steps + 1):
             w, slope, _ = self.problem.eigenvalue(w, p)
-            following = start + (stop - start) * i / CARRYING_STEPS
+            following = start + (stop - start) * i / LEADER.carrying_steps
             ahead = w + slope * (following - p)
-            w, p = complex(ahead.real, 0.0) if w.imag == 0 else ahead, following
+            w = complex(ahead.real, 0.0) if w.imag == 0 else ahead
+            p = following
         return w

@@ -1,7 +1,7 @@
 """The transverse eigenvalue problem along a path of one parameter, for uniform rods and nonuniform arms."""
 
 from abc import ABC, abstractmethod
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,17 +15,25 @@ from ..spectrum.problem import ArmProblem
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 
-ARM_EDGES = 12
-"""Number of equal intervals into which a path of arms is first divided."""
-POINTS_BETWEEN = 4
-"""Steps in which eigenvalues are followed through each of these intervals."""
-FOLLOWED_MODES = 4
-"""Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
-SPARE_PAIR = 2
-"""Number of modes that are solved for beyond those requested of an arm with many unstable modes."""
-AMID = 0.25
-"""Distance of a counted place from the middle of an interval, in units of its length, up to which the count
-stands for one in the middle."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmPathSettings:
+    """Intervals of a path of arms."""
+
+    edges: int = 12
+    """Number of equal intervals into which a path of arms is first divided."""
+    points_between: int = 4
+    """Steps in which eigenvalues are followed through each of these intervals."""
+    followed_modes: int = 4
+    """Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
+    spare_pair: int = 2
+    """Number of modes solved for beyond those requested, of an arm with many unstable modes."""
+    amid: float = 0.25
+    """Largest distance of a counted place from the middle of an interval, in units of the interval's length,
+    at which the count stands for a count in the middle."""
+
+
+ARM_PATH = ArmPathSettings()
 
 
 class PathProblem(ABC):
@@ -87,15 +95,16 @@ class UniformPath(PathProblem):
         return count_right_of(line, self.path.at(p))
 
     def relaxation(self, p: float) -> tuple[float, float]:
-        here, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+        here = coefficients_at(p, self.path.origin, self.path.direction)
+        rate = self.path.direction
         time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
         return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3
 
 
 class ArmPath(PathProblem):
-    """Path of arms that vary along their length or have any law, with D from propagators.
+    """Path of arms that vary along the length or have a nonlinear law, with D from propagators.
 
-    The leading eigenvalues are followed along the path once, and from there to wherever they are asked for.
+    The leading eigenvalues are followed along the path once, and from the nearest step to every requested p.
     """
 
     def __init__(self, path: Path):
@@ -108,11 +117,11 @@ class ArmPath(PathProblem):
         self._along = ArmAlongPath(path, lambda p: self._followed.family(p) if self._followed else None)
 
     def edges(self, low: float, high: float) -> list[float]:
-        edges = np.linspace(low, high, ARM_EDGES + 1)
+        edges = np.linspace(low, high, ARM_PATH.edges + 1)
         if self._followed is None and low < high:
-            points = np.linspace(low, high, ARM_EDGES * POINTS_BETWEEN + 1)
-            points[::POINTS_BETWEEN] = edges
-            self._followed = FollowedArms(self.path, points, FOLLOWED_MODES)
+            points = np.linspace(low, high, ARM_PATH.edges * ARM_PATH.points_between + 1)
+            points[:: ARM_PATH.points_between] = edges
+            self._followed = FollowedArms(self.path, points, ARM_PATH.followed_modes)
         return edges.tolist()
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
@@ -132,7 +141,7 @@ class ArmPath(PathProblem):
         """
         earlier = self._solutions.get(p)
         if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
-            spare = SPARE_PAIR if request.modes > FOLLOWED_MODES else 0
+            spare = ARM_PATH.spare_pair if request.modes > ARM_PATH.followed_modes else 0
             earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
             if spare and earlier.status != SpectrumStatus.ok:
                 earlier = super().spectrum(p, request)
@@ -144,7 +153,7 @@ class ArmPath(PathProblem):
         )
 
     def counted_amid(self, low: float, high: float) -> int | None:
-        places = [p for p in self._counts if abs(p - (low + high) / 2) < AMID * (high - low)]
+        places = [p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.amid * (high - low)]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._counts[nearest]
 
@@ -155,13 +164,14 @@ class ArmPath(PathProblem):
         return self._along.double(x, p, reach)
 
     def count(self, line: float, p: float) -> Count:
-        found = self._followed.spectrum(p, FOLLOWED_MODES) if self._followed is not None else None
+        found = self._followed.spectrum(p, ARM_PATH.followed_modes) if self._followed is not None else None
         if found is not None:
-            w, error = found.eigenvalues, found.error_estimate
+            w = found.eigenvalues
+            error = found.error_estimate
             clear = (np.abs(w.real - line) > 2 * error).all()
             if clear and w[-1].real < line <= 0:
                 return Count(int((w.real > line).sum()), 0)
-            if clear and line == 0 and found.unstable_count < FOLLOWED_MODES:
+            if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
                 return Count(found.unstable_count, 0)
         return ArmProblem(self.path.at(p)).count(line)
 

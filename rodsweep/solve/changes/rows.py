@@ -17,11 +17,7 @@ from ...model.rod import Rod
 from ..point import solved
 from .along_path import Transitions, transitions
 from .thresholds import Thresholds, ThresholdStatus, judged, nothing_found
-from .unstable_modes import CRUSHING_MARGIN
-
-MEETS_K1 = 1e-12
-"""Relative rounding error of F against the force that crushes the rod: two axes in steps may meet exactly
-there."""
+from .unstable_modes import CHANGE_COUNTS
 
 
 class Motion(IntEnum):
@@ -84,26 +80,30 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row, searched between the first and the last rod that are not crushed."""
-    name, values = request.name, request.values
+    name = request.name
+    values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
     share = rod.build.crushing_share(rod.taper)
     crushing = k1 * share
-    alive = crushing * (1 - CRUSHING_MARGIN) > F
-    crushed = crushing * (1 - MEETS_K1) <= F
+    alive = crushing * (1 - CHANGE_COUNTS.crushing_margin) > F
+    crushed = crushing * (1 - CHANGE_COUNTS.meets_crushing) <= F
     if not alive.any():
         row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
         return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
-    start, stop = float(values[alive][0]), float(values[alive][-1])
+    start = float(values[alive][0])
+    stop = float(values[alive][-1])
     if name == "F" and not alive.all():
-        stop = rod.crushing_force * (1 - CRUSHING_MARGIN)
+        stop = rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin)
     if name == "k1" and not alive.all():
-        start = rod.F / (share * (1 - CRUSHING_MARGIN)) if rod.F > 0 else start
+        start = rod.F / (share * (1 - CHANGE_COUNTS.crushing_margin)) if rod.F > 0 else start
     found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
     motion, unstable = classes(found, values)
     # Nearly crushed rods lie outside the searched range.
-    motion[crushed], unstable[crushed] = Motion.crushed, -1
-    motion[~alive & ~crushed], unstable[~alive & ~crushed] = Motion.undecided, -1
+    motion[crushed] = Motion.crushed
+    unstable[crushed] = -1
+    motion[~alive & ~crushed] = Motion.undecided
+    unstable[~alive & ~crushed] = -1
     changes = judged(found, request.accuracy, request.certify, request.crossings)
     return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
 

@@ -8,7 +8,7 @@ from ...model.rod import Rod
 from ..point import solved
 from ..status import PointStatus
 from .along_path import Transitions, transitions
-from .unstable_modes import CRUSHING_MARGIN, Crossing, Kind
+from .unstable_modes import Crossing, Kind, end_below_crushing
 
 
 class ThresholdStatus(PointStatus):
@@ -73,7 +73,7 @@ class Thresholds:
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     """All changes of one rod along the force, from 0; a failure is a status, never an exception."""
-    end = min(request.F_max, rod.crushing_force * (1 - CRUSHING_MARGIN))
+    end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify)

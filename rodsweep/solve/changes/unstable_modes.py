@@ -9,17 +9,35 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
+from ...model.rod import Rod
+
 if TYPE_CHECKING:
     from .path_problem import PathProblem  # for annotations only: the module imports solvers
 
 
-CRUSHING_MARGIN = 1e-6
-"""Relative distance below the crushing force at which a search ends; at F = k1 the rod is crushed."""
-COUNT_PLACES = (0.5, 0.3, 0.7)
-"""Places between two crossings, as fractions, at which the unstable modes are counted until a count is
-decided."""
-TOO_CLOSE_TO_COUNT = 1e-3
-"""Relative distance of two crossings below which no count is made between: a pair is too near the axis."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangeCountSettings:
+    """Ends of a search, and places of counts between changes."""
+
+    crushing_margin: float = 1e-6
+    """Relative distance below the crushing force at which a search ends; at F = k1 the rod is crushed."""
+    meets_crushing: float = 1e-12
+    """Relative rounding error of F against the force that crushes the rod: two axes in steps may meet exactly
+    there."""
+    places: tuple[float, ...] = (0.5, 0.3, 0.7)
+    """Places between two crossings, as fractions, at which the unstable modes are counted until a count is
+    decided."""
+    too_close: float = 1e-3
+    """Relative distance of two crossings below which no count is made between: a pair is too near the
+    axis."""
+
+
+CHANGE_COUNTS = ChangeCountSettings()
+
+
+def end_below_crushing(rod: Rod, F: float) -> float:
+    """The force F, or the largest force of a search on a rod that a smaller force crushes."""
+    return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 
 class Kind(IntEnum):
@@ -69,7 +87,10 @@ class Counts:
     """
 
     def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
-        self.problem, self.path, self.gaps, self.certify = problem, problem.path, gaps, certify
+        self.problem = problem
+        self.path = problem.path
+        self.gaps = gaps
+        self.certify = certify
         self.doubts: list[str] = []
 
     def at(self, value: float) -> int:
@@ -78,11 +99,11 @@ class Counts:
         return -1 if number is None else number
 
     def amid(self, a: float, b: float) -> int:
-        """The winding number between two values; -1 if undecided at all of COUNT_PLACES."""
+        """The winding number between two values; -1 if undecided at all of CHANGE_COUNTS.places."""
         known = self.problem.counted_amid(*sorted((self.path.variable(a), self.path.variable(b))))
         if known is not None:
             return known
-        for share in COUNT_PLACES:
+        for share in CHANGE_COUNTS.places:
             number = self.at(a + share * (b - a))
             if number >= 0:
                 return number
@@ -121,7 +142,7 @@ class Counts:
             a = max(gap[1] for gap in inside)
         elif not self.certify:
             return unstable
-        if b - a <= TOO_CLOSE_TO_COUNT * abs(b):
+        if b - a <= CHANGE_COUNTS.too_close * abs(b):
             return -1 if inside else unstable
         counted = self.amid(a, b)
         if inside or unstable < 0:

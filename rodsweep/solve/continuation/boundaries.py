@@ -14,13 +14,13 @@ Curve = TypeVar("Curve")
 
 
 class BoundaryProblem(Protocol[Curve]):
-    """The curves through numbered points of rows, as the search needs them."""
+    """Interface to the curves through numbered points of rows, used by the search."""
 
     def next_seed(self, left: Sequence[int]) -> int:
         """Index of the point, among the points on no curve, from which the next curve starts."""
 
     def lacking(self, seed: int) -> list[int]:
-        """Units of work whose results the curve from a point still needs."""
+        """Units of work with results still needed for the curve from a point."""
 
     def curve(self, seed: int) -> Curve | None:
         """The curve from a point; None if not found."""
@@ -29,7 +29,7 @@ class BoundaryProblem(Protocol[Curve]):
         """Distance of a point from a curve, in units of the rows' length."""
 
     def same(self, one: Curve, other: Curve) -> bool:
-        """Whether two curves are the same."""
+        """Whether two curves are identical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +49,9 @@ class Boundaries(Generic[Curve]):
 class BoundarySearch(Generic[Curve]):
     """The curves through numbered points, as far as known.
 
-    agree: distance within which a point lies on a curve. distances: of each point from the nearest curve.
-    needed: units of work whose results the search lacks. left: other points on no curve so far.
+    agree: distance within which a point lies on a curve. distances: distance of each point from the nearest
+    curve. needed: units of work with results that the search lacks. left: further points that lie on no curve
+    so far.
     """
 
     agree: float

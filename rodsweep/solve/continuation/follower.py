@@ -25,7 +25,7 @@ Solution = TypeVar("Solution")
 class Stepped(NamedTuple, Generic[Solution]):
     """A solution at one step ahead.
 
-    off: relative distance from the prediction. cosine: of the angle by which the curve has turned.
+    off: relative distance from the prediction. cosine: cosine of the angle by which the curve has turned.
     """
 
     solution: Solution
@@ -34,7 +34,7 @@ class Stepped(NamedTuple, Generic[Solution]):
 
 
 class CurveProblem(Protocol[Solution]):
-    """A curve of solutions, as the follower needs it."""
+    """Interface to a curve of solutions, used by the follower."""
 
     def step(self, behind: Sequence[Solution], length: float) -> Stepped[Solution]:
         """The solution at a length ahead of `behind[-1]`; raises Unsolvable if no solution is near."""
@@ -55,10 +55,11 @@ class StepControl:
 
     first, longest, shortest: lengths; the curve ends if a step fails whose half is below `shortest`. aim:
     prediction error for which the next step is chosen. far: prediction error beyond which the solution may
-    belong to another curve. order: of the prediction, whose error grows as length**order; limited by the
-    number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest: largest
-    angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most: maximum number
-    of solutions; no curve has more. min_measured: smallest prediction error, or angle, distinguished from 0.
+    belong to another curve. order: order of the prediction, whose error grows as length**order; limited by
+    the number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest:
+    largest angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most:
+    maximum number of solutions; no curve has more. min_measured: smallest prediction error, or angle,
+    distinguished from 0. Raises ValueError unless steps may grow.
     """
 
     first: float
@@ -73,6 +74,10 @@ class StepControl:
     shrinkage: float = 0.5
     most: int = 5000
     min_measured: float = 1e-9
+
+    def __post_init__(self) -> None:
+        if not self.growth > 1:
+            raise ValueError(f"growth = {self.growth}, but steps must grow")
 
     def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
         """The next solution; raises Unsolvable if the solution may lie on another curve."""
@@ -91,7 +96,7 @@ class StepControl:
 
 
 def _angle(cosine: float) -> float:
-    """Angle in radians of a cosine that rounding may have moved beyond 1."""
+    """Angle in radians of a cosine, which may exceed 1 by rounding."""
     return acos(min(1.0, max(-1.0, cosine)))
 
 
@@ -120,11 +125,10 @@ class Curve(Generic[Solution]):
 def advance(
     step: Callable[[float], Stepped[Solution]], length: float, control: StepControl
 ) -> tuple[Stepped[Solution], float]:
-    """(the next solution of a curve, the length of the step to it); the given length is halved as long as it
-    fails.
+    """(the next solution of a curve, the length of the step); the given length is halved after every failure.
 
-    step: gives the solution at a length ahead, or raises one of FAILURES; so does `advance` if no step
-    succeeds.
+    step: returns the solution at a length ahead, or raises an error of FAILURES. `advance` raises the last
+    error if no step succeeds.
     """
     length = min(length, control.longest)
     while True:
@@ -169,6 +173,7 @@ def crossed(before: Array, after: Array) -> int:
     """Index of the margin, of (margins,), that is first to fall below 0 along a straight step; -1 for
     none."""
     falls = (after < 0) & (after < before)
+    # Linear interpolation gives the fraction of the step at which each falling margin is 0.
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
     first = int(np.argmin(share))
     return first if share[first] < inf else -1
@@ -190,6 +195,7 @@ def zero_along(
 
     def settled(at: float) -> float:
         here = known[at] if at in known else value(at)
+        # An exact 0 ends Brent's method, which would otherwise bisect rounding errors.
         return 0.0 if abs(here) <= enough else here
 
     return float(brentq(settled, 0.0, length, xtol=relative * length))

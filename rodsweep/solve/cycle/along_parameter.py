@@ -27,18 +27,29 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..point import Unsolvable
 
-PREDICTION_DISTANCE = 0.3
-"""Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PredictionSettings:
+    """Settings for the prediction of cycles along one parameter."""
+
+    max_distance: float = 0.3
+    """Largest relative distance of a cycle from its prediction: a farther cycle may lie on another branch."""
+    tangent_distance: float = 1e-2
+    """Largest relative distance between an orbit and a matrix whose tangent is accurate enough for a step."""
+    max_earlier_orbits: int = 4
+    """Maximum number of earlier orbits in the prediction."""
+    orbits_without_slope: int = 3
+    """Number of orbits from which the prediction is more accurate without the slope of an earlier orbit."""
+
+
+PREDICTION = PredictionSettings()
+
+
 PARAMETER_STEPS = StepControl(
     first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
 )
 """Step lengths as shares of the divided parameter change. Newton's method takes two matrices for a prediction
 error of `aim`. `near_prediction` rejects cycles far from the prediction; `far` is infinite."""
-TANGENT_DISTANCE = 1e-2
-"""Largest relative distance between an orbit and a matrix whose tangent is accurate enough for a step."""
-MAX_EARLIER_ORBITS, ORBITS_WITHOUT_SLOPE = 4, 3
-"""Maximum number of earlier orbits in the prediction, and the number of orbits from which the prediction is
-more accurate without the slope of an earlier orbit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,10 +109,10 @@ def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
 def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -> CyclePredictor:
     """The predictor at an orbit that was solved with its tangent. before: predictor at the previous orbit.
 
-    A tangent has the relative error of its orbit's prediction, a value far less. From ORBITS_WITHOUT_SLOPE
-    values on, a further slope therefore makes the prediction worse. From mesh to mesh the states differ by
-    far more than period and largest y, their slopes less: after a change of mesh only slopes enter. Raises
-    ValueError if the orbit has no tangent.
+    A tangent has the relative error of its orbit's prediction, a value far less. From
+    PREDICTION.orbits_without_slope values on, a further slope therefore makes the prediction worse. From mesh
+    to mesh the states differ by far more than period and largest y, their slopes less: after a change of mesh
+    only slopes enter. Raises ValueError if the orbit has no tangent.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -113,11 +124,11 @@ def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -
     last = before.on(mesh_of(orbit))
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
-    older = np.flatnonzero(before.orders == 0)[: MAX_EARLIER_ORBITS - 1]
+    older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
     places = [0.0, -step, *(before.places[older] - step)]
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < ORBITS_WITHOUT_SLOPE:
+    if 1 + len(older) < PREDICTION.orbits_without_slope:
         places.append(-step)
         data.append(before.tangent)
         orders.append(1.0)
@@ -126,14 +137,15 @@ def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -
 
 def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     """Difference of two rods' coordinates of a parameter, in units of the larger modulus."""
-    a, b = one.rod.coordinate(name), other.rod.coordinate(name)
+    a = one.rod.coordinate(name)
+    b = other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
 def near_prediction(predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str) -> Converged:
-    """The orbit near a prediction; raises Unsolvable if the two differ by more than PREDICTION_DISTANCE."""
+    """The orbit near a prediction; raises Unsolvable if they differ by more than PREDICTION.max_distance."""
     found = newton(predicted, tolerance, workspace, name)
-    if _distance(predicted, found) > PREDICTION_DISTANCE:
+    if _distance(predicted, found) > PREDICTION.max_distance:
         raise Unsolvable("the cycle is far from its prediction")
     return found
 
@@ -171,6 +183,8 @@ def in_steps(
         share += length
         if share >= 1.0:
             return ahead.solution
-        predictor = predictor_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), predictor, name)
+        predictor = predictor_from(
+            at_orbit(ahead.solution, PREDICTION.tangent_distance, name), predictor, name
+        )
         length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.order)
     raise Unsolvable(f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.most} steps")

@@ -61,9 +61,9 @@ class CycleRequest:
 class Cycle:
     """Outcome for one rod, with the numbers of its cycle; NaN or None where a number is not known.
 
-    linear_growth_rate, linear_frequency: of the leading mode of the straight rod, in 1/tau2. periods: returns
-    of the tip in the integrated motion. second_state: a SecondState; subcritical_F: force of the Hopf point
-    that makes a second state possible. multiplier: modulus of the largest nontrivial Floquet multiplier;
+    linear_growth_rate, linear_frequency: leading mode of the straight rod, in 1/tau2. periods: returns of the
+    tip in the integrated motion. second_state: a SecondState; subcritical_F: force of the Hopf point that
+    makes a second state possible. multiplier: modulus of the largest nontrivial Floquet multiplier;
     multipliers: the largest multipliers, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance
     of the trivial multiplier from 1. On a torus only the multipliers are known; they belong to the unstable
     cycle inside the torus.

@@ -23,7 +23,7 @@ from ..orbit.newton import at_orbit, newton
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
-from ..spectrum.candidates import BEHIND
+from ..spectrum.candidates import CANDIDATES
 from ..spectrum.problem import problem_of
 from ..spectrum.spectrum import SpectrumRequest
 from .along_parameter import in_steps, predictor_from
@@ -32,30 +32,43 @@ from .transient.motion_mesh import coarse_mesh
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 """Spectrum request for the leading eigenvalue, without a proof."""
-SCAN_RATIO = 0.93
-"""Ratio of successive forces at which the scan evaluates the leading growth rate."""
-MIN_FORCE = 1e-2
-"""Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
-HOPF_TOLERANCE = 1e-6
-"""Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
-MAX_HOPF_STEPS = 15
-"""Maximum number of Newton steps to a Hopf point."""
-CONVERGED_GROWTH = 4.0
-"""Growth rate, in units of its error, at which Newton's method for the Hopf point ends."""
-CONVERGED_FORCE_STEP = 1e-15
-"""Relative step of the force at which Newton's method for the Hopf point ends."""
-NORMAL_FORM_ACCURACY = 1e-3
-"""Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
-START_DISTANCES = (0.3, 0.12, 0.03, 0.006)
-"""Relative distances from the Hopf point at which the normal form starts Newton's method, tried in this
-order. In most rods the normal form's amplitude is off by a quarter at the first, by a tenth at the second."""
-DIRECT_DISTANCE = 1e-2
-"""Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for the
-rod itself: the amplitude is off by 1 percent there in most rods."""
-START_INTERVALS, START_STAGES = 8, 3
-"""Time intervals over half a period, and collocation stages, of the coarse mesh."""
-BRANCH_TOLERANCE = 3e-3
-"""Newton tolerance of the intermediate orbits on the branch, relative."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HopfStartSettings:
+    """Settings for finding the Hopf point below a force and starting Newton's method beside it."""
+
+    scan_step: float = 0.07
+    """Relative decrease of successive forces at which the scan evaluates the leading growth rate."""
+    min_force: float = 1e-2
+    """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of
+    pi^2."""
+    tolerance: float = 1e-6
+    """Convergence tolerance of the Hopf point: growth rate of the leading mode in units of its frequency."""
+    max_steps: int = 15
+    """Maximum number of Newton steps to a Hopf point."""
+    converged_growth: float = 4.0
+    """Growth rate, in units of its error, at which Newton's method for the Hopf point ends."""
+    converged_step: float = 1e-15
+    """Relative step of the force at which Newton's method for the Hopf point ends."""
+    normal_form_accuracy: float = 1e-3
+    """Relative accuracy of the normal form's coefficients, finer than its own error at any start."""
+    distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
+    """Relative distances from the Hopf point at which the normal form starts Newton's method, tried in this
+    order. In most rods the normal form's amplitude is off by a quarter at the first, by a tenth at the
+    second."""
+    direct_distance: float = 1e-2
+    """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for
+    the rod itself: the amplitude is off by 1 percent there in most rods."""
+    intervals: int = 8
+    """Time intervals over half a period of the coarse mesh."""
+    stages: int = 3
+    """Collocation stages of the coarse mesh."""
+    branch_tolerance: float = 3e-3
+    """Newton tolerance of the intermediate orbits on the branch, relative."""
+
+
+HOPF_START = HopfStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +94,8 @@ def hopf_point_below(rod: Rod) -> Onset | None:
     """The nearest Hopf point of the leading mode below the rod's force; None without a Hopf point."""
     F = rod.F
     above = leading_eigenvalue(rod)
-    while F > MIN_FORCE:
-        lower = F * SCAN_RATIO
+    while HOPF_START.min_force < F:
+        lower = F * (1 - HOPF_START.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _crossing(rod, (lower, below), (F, above))
@@ -99,12 +112,12 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     """
     problem = path_problem(Path(rod, "F"))
     (a, below), (b, above) = low, high
-    while b - a > HOPF_TOLERANCE * b:
+    while b - a > HOPF_START.tolerance * b:
         share = below.real / (below.real - above.real)
         found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
             w = leading_eigenvalue(replace(rod, F=found.F))
-            tolerance = HOPF_TOLERANCE * abs(w)
+            tolerance = HOPF_START.tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
                 return found
         middle = (a + b) / 2
@@ -120,12 +133,14 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
 
 def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]) -> Onset | None:
     """The force between `ends`, near F, at which the eigenvalue near a guess is imaginary; or None."""
-    for _ in range(MAX_HOPF_STEPS):
+    for _ in range(HOPF_START.max_steps):
         w, slope, error = problem.eigenvalue(guess, F)
         if not (slope.real and isfinite(slope.real)):
             return None
         step = -w.real / slope.real
-        if abs(w.real) <= CONVERGED_GROWTH * error or abs(step) <= CONVERGED_FORCE_STEP * abs(F):
+        if abs(w.real) <= HOPF_START.converged_growth * error or abs(step) <= HOPF_START.converged_step * abs(
+            F
+        ):
             return Onset(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
@@ -145,10 +160,10 @@ def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} leads to smaller forces")
-    if rod.F <= hopf.F * (1 + DIRECT_DISTANCE):
+    if hopf.F * (1 + HOPF_START.direct_distance) >= rod.F:
         return orbit_of(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh(rod))
-    for distance in START_DISTANCES:
+    for distance in HOPF_START.distances:
         try:
             return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
@@ -167,34 +182,36 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
-    if not w.real <= DIRECT_DISTANCE * rate:
+    if not w.real <= HOPF_START.direct_distance * rate:
         raise Unsolvable("no Hopf point is near")
     normal = _normal_form(form, w)
     if not normal.supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= DIRECT_DISTANCE * rate / -normal.c.real:
-        raise Unsolvable("the start is too large for the normal form")
-    if problem_of(form.rod).count(-BEHIND * abs(w)).number != 2:
-        raise Unsolvable("another mode may grow")
+    if not amplitude**2 <= HOPF_START.direct_distance * rate / -normal.c.real:
+        raise Unsolvable("the amplitude of the start is too large for the normal form")
+    if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
+        raise Unsolvable("a second mode may be unstable")
     return orbit_of(normal, replace(form, mesh=normal.form.mesh))
 
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
     """The normal form with the exact eigenvalue in place of the mesh's approximation."""
-    normal = accurate_normal_form(form.rod, w, NORMAL_FORM_ACCURACY)
+    normal = accurate_normal_form(form.rod, w, HOPF_START.normal_form_accuracy)
     return replace(normal, w=w)
 
 
 def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod, followed from the normal form's orbit at the force F; raises Unsolvable."""
     start = orbit_of(normal, replace(form, rod=replace(form.rod, F=F)))
-    found = at_orbit(newton(start, BRANCH_TOLERANCE, workspace, "F"), BRANCH_TOLERANCE, "F")
+    found = at_orbit(
+        newton(start, HOPF_START.branch_tolerance, workspace, "F"), HOPF_START.branch_tolerance, "F"
+    )
     squared = normal.cycle(F)[0]
     if not 0.3 < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < 3.0:
         raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
-    return in_steps(predictor_from(found, None, "F"), form, "F", BRANCH_TOLERANCE, workspace).orbit
+    return in_steps(predictor_from(found, None, "F"), form, "F", HOPF_START.branch_tolerance, workspace).orbit
 
 
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
@@ -205,8 +222,9 @@ def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
 
 def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
-    X = normal.motion(amplitude, np.pi * node_times(START_INTERVALS, START_STAGES))
+    X = normal.motion(amplitude, np.pi * node_times(HOPF_START.intervals, HOPF_START.stages))
     S, V = normal.form.fields(X)
-    source, target = normal.form.mesh, form.mesh
+    source = normal.form.mesh
+    target = form.mesh
     states = form.layout.state(carried(form.rod, S, source, target), V @ transfer(source, target).T)
-    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, START_STAGES)
+    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START.stages)

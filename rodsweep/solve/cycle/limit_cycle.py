@@ -31,7 +31,7 @@ from .second_state import second_state
 from .small_motion import decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
-from .transient.motion_mesh import MOTION_ACCURACY, motion_mesh
+from .transient.motion_mesh import MOTION_MESH, motion_mesh
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.trace import TipTrace
@@ -39,11 +39,15 @@ from .transient.transient import Transient, TransientOutcome
 
 __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "warm_up"]
 
-KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
+KNOWN_PERIOD = 0.04204870
 """Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
-displacement-form code, and the relative deviation accepted by `warm_up`."""
-STORED_MULTIPLIERS, MIN_STORED_MULTIPLIER = 6, 1e-6
-"""Number of stored Floquet multipliers, and the smallest modulus of a stored multiplier."""
+displacement-form code."""
+KNOWN_WITHIN = 1e-3
+"""Relative deviation from this period that `warm_up` accepts."""
+STORED_MULTIPLIERS = 6
+"""Number of stored Floquet multipliers."""
+MIN_STORED_MULTIPLIER = 1e-6
+"""Smallest modulus of a stored multiplier."""
 NO_MULTIPLIER = complex(nan, nan)
 """Stored for multipliers below MIN_STORED_MULTIPLIER."""
 
@@ -106,7 +110,7 @@ def _solve(
 ) -> Cycle:
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
-    form = StressForm(rod, motion_mesh(rod, MOTION_ACCURACY))
+    form = StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
     if request.start == "hopf":
         return _from_hopf(form, request, straight, stability, workspace)
     found = None
@@ -138,7 +142,7 @@ def _solve(
 def _after_motion(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome with the number of returns of the motion, its mesh, and what is stored of it."""
+    """The outcome with the number of returns of the motion, the mesh, and the stored part of the motion."""
     trace = transient.trace
     return replace(
         straight,

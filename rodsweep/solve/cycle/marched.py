@@ -30,13 +30,13 @@ from ..orbit.symmetry import NONE
 from ..point import solved
 from .accuracy.cycle_errors import CycleErrors
 from .cycle import Cycle, CycleRequest, measured
+from .marching_settings import MARCHING
 from .status import MarchedStatus
 from .straight_rod import straight_rod
 from .transient.from_motion import stressed
 from .transient.motion_mesh import motion_mesh, near_rod
 from .transient.returns import (
-    LONGEST_ORBIT,
-    STRAIGHT_SIZE,
+    RETURNS,
     angle_weights,
     early_end,
     repetition,
@@ -45,30 +45,12 @@ from .transient.returns import (
     why_not_settled,
 )
 
-LOCAL_TOLERANCE = 0.01
-"""Local tolerance of the integrator in units of the accuracy; a cycle's errors reach ten times as much."""
-TOLERANCE_RATIO, ORDERS_PER_REFINEMENT = 0.2, 2
-"""Tolerance of the second integration in units of the first one's, and additional orders of its mesh."""
-MAX_COMPARISONS = 3
-"""Maximum number of comparisons; the finer integration of a pair is the coarser one of the next."""
-SETTLED_DISTANCE = 0.1
-"""Relative distance from the cycle, in units of the accuracy, at which a motion has settled."""
-RETURN_NOISE = 10.0
-"""Distance of two returns, in units of the tolerance, that the integrator's error may cause."""
-TEST_RETURNS = 5
-"""Returns of the tip between two tests for repetition."""
-PAIR_FACTOR = 2.0
-"""Safety factor on the difference of two integrations."""
-LIMIT_DISTANCE_RATIO = 2.0
-"""Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
-proportion to the distance, so the cycles' difference is the error of the nearer approximation."""
-MEASURED_STAGES, MEASURED_INTERVALS = 3, 48
-"""Collocation stages of the measured orbit, and its intervals per return of the tip."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """A settled motion: its state z, (unknowns,), returns of the tip per period, and the last time step."""
+    """A settled motion. z: its state, (unknowns,). turns: returns of the tip per period. step: last time
+    step.
+    """
 
     z: Array
     turns: int
@@ -80,7 +62,8 @@ class _Ended(Exception):
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
         super().__init__(why)
-        self.status, self.why = status, why
+        self.status = status
+        self.why = why
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
@@ -97,10 +80,11 @@ class _Marching:
     """The motion of one rod, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
-        self.request, self.limit = request, rod
+        self.request = request
+        self.limit = rod
         self.rod = near_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        self.scheme = TimeScheme("arkimex", "5", tolerance=LOCAL_TOLERANCE * request.accuracy)
+        self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
         self.waited = 0
@@ -113,10 +97,11 @@ class _Marching:
             z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._settled(z)
             path = self._path(settled)
-            for _ in range(MAX_COMPARISONS):
+            for _ in range(MARCHING.max_comparisons):
                 settled = self._refined(settled)
-                before, path = path, self._path(settled)
-                errors = _errors(before, path, SETTLED_DISTANCE * self.request.accuracy)
+                before = path
+                path = self._path(settled)
+                errors = _errors(before, path, MARCHING.settled_distance * self.request.accuracy)
                 if errors.largest <= self.request.accuracy:
                     break
             if self.rod != self.limit:
@@ -131,40 +116,47 @@ class _Marching:
     def _refined(self, settled: _Settled) -> _Settled:
         """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
         before = self.beam
-        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + ORDERS_PER_REFINEMENT)
-        self.scheme = replace(self.scheme, tolerance=TOLERANCE_RATIO * self.scheme.tolerance)
+        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
+        self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
         self.beam = self._beam()
         z = self.beam.scaled(before.stresses_on(self.beam.mesh, settled.z))
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _Settled:
         """The settled motion that starts from z, (unknowns,); raises _Ended."""
-        past: deque[Array] = deque(maxlen=LONGEST_ORBIT + 1)
+        past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = angle_weights(self.beam)
         step = self.mode.period / 1000
-        last, rate = nan, 0.0
+        last = nan
+        rate = 0.0
         most = self.request.most_periods
         while self.waited < most:
             report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
-            run = self._run(z, 3 * TEST_RETURNS * self.mode.period, step, until_returns(row, z, TEST_RETURNS))
-            z, step = run.states[-1], float(run.times[-1] - run.times[-2])
+            run = self._run(
+                z,
+                3 * MARCHING.returns_per_test * self.mode.period,
+                step,
+                until_returns(row, z, MARCHING.returns_per_test),
+            )
+            z = run.states[-1]
+            step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
-            if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
+            if self.mode.w.real < 0 and np.linalg.norm(z) < RETURNS.straight_size:
                 raise _Ended(MarchedStatus.straight, "decayed to rounding")
-            if len(past) <= TEST_RETURNS:
+            if len(past) <= MARCHING.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            noise = RETURN_NOISE * self.scheme.tolerance
+            noise = MARCHING.return_noise * self.scheme.tolerance
             # Within the noise the quotient of two distances says nothing about the contraction per return.
             if last > noise:
-                rate = min(max(distance, noise) / last, 1.0) ** (turns / TEST_RETURNS)
+                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING.returns_per_test)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
             # A geometric sequence of distances has distance/(1 - rate) left to its limit.
-            if distance <= SETTLED_DISTANCE * self.request.accuracy * (1 - rate):
+            if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
                 return _Settled(z, turns, step)
         raise _Ended(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
 
@@ -205,15 +197,21 @@ class _Marching:
             raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
-        states = spline(times[0] + period * node_times(MEASURED_INTERVALS * settled.turns, MEASURED_STAGES))
+        states = spline(
+            times[0]
+            + period * node_times(MARCHING.measured_intervals * settled.turns, MARCHING.measured_stages)
+        )
         form = StressForm(self.rod, self.beam.mesh)
-        return CyclePath(Orbit.of(form, NONE, period, stressed(self.beam, form, states), MEASURED_STAGES))
+        return CyclePath(
+            Orbit.of(form, NONE, period, stressed(self.beam, form, states), MARCHING.measured_stages)
+        )
 
     def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """The errors plus the effect of integrating a rod near the limit instead of in it; raises _Ended."""
-        known, limit = path.orbit.form.rod, self.limit
+        known = path.orbit.form.rod
+        limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
-        coordinates = {name: LIMIT_DISTANCE_RATIO * known.coordinate(name) for name in in_limits}
+        coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relaxed(self.beam, settled.z, self.mode.period)
@@ -239,10 +237,11 @@ class _Marching:
 
 def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     """Errors by the difference of two integrations, plus `share`, the distance left of a settled motion."""
-    a, b = one.extrema, other.extrema
+    a = one.extrema
+    b = other.extrema
     size = abs(b["tip_y_max"])
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
     worst = max(abs(a[name] - b[name]) for name in a) / size
-    stated = [float(PAIR_FACTOR * difference + share) for difference in (period, height, worst)]
+    stated = [float(MARCHING.pair_factor * difference + share) for difference in (period, height, worst)]
     return CycleErrors(stated[0], stated[1], stated[2], nan)

@@ -33,11 +33,22 @@ from .accuracy.refinement import (
 )
 from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
 
-KEPT_MESH_ERROR = 0.9
-"""Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
-NEW_MESH_COST, CALIBRATED_MESH_COST = 0.8, 0.5
-"""Largest cost of a mesh that replaces the present mesh, in units of the present cost. The second share holds
-where the change loses a valid calibration, which costs as much as three cycles."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NeighbourSettings:
+    """Settings for the meshes of the cycles of a chain."""
+
+    kept_mesh_error: float = 0.9
+    """Largest error of a cycle, as a share of the accuracy, with which the next cycle keeps the mesh."""
+    new_mesh_cost: float = 0.8
+    """Largest cost of a mesh that replaces the present mesh, in units of the present cost."""
+    calibrated_mesh_cost: float = 0.5
+    """`new_mesh_cost` if the new mesh loses a valid calibration, which costs as much as three cycles."""
+
+
+NEIGHBOUR = NeighbourSettings()
+
+
 UNKNOWN_EIGENVALUE = complex(nan, nan)
 """Leading eigenvalue where it is not known."""
 Arrays = dict[str, Array]
@@ -106,7 +117,7 @@ def _next_mesh(
     """The mesh for the next cycle, and its calibration, outdated if the mesh has to be measured."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest <= KEPT_MESH_ERROR * accuracy
+    fits = found.errors.largest <= NEIGHBOUR.kept_mesh_error * accuracy
     if known.reach and not fits:
         # Extrapolated errors that are too large are measured on this mesh before another mesh is planned.
         return present, known.outdated
@@ -120,11 +131,13 @@ def _next_mesh(
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
     """Largest cost of a replacing mesh in units of the present mesh's cost; 0 to keep the present mesh."""
     if before is None:
-        return NEW_MESH_COST  # an orbit's tails chose the first mesh of a chain, not measured errors
+        return (
+            NEIGHBOUR.new_mesh_cost
+        )  # an orbit's tails chose the first mesh of a chain, not measured errors
     if not found.calibration.reach:
-        return CALIBRATED_MESH_COST
+        return NEIGHBOUR.calibrated_mesh_cost
     step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
-    return 0.0 if found.calibration.lasts(step) else NEW_MESH_COST
+    return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.new_mesh_cost
 
 
 def followed_cycle(

@@ -5,6 +5,8 @@ Where the cubic part of its growth rate is small compared with the linear part, 
 straight rod.
 """
 
+from dataclasses import dataclass
+
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import accurate_normal_form
@@ -14,10 +16,18 @@ from .accuracy.refinement import RefinedCycle, refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit
 from .status import CycleStatus
-from .transient.transient import NEUTRAL_DISTANCE
+from .transient.transient import TRANSIENT
 
-WEAK_BENDING = 0.02
-"""Cubic part of the growth rate, in units of the linear part, below which the linear part decides."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmallMotionSettings:
+    """Settings for motions beside a Hopf point."""
+
+    weak_bending: float = 0.02
+    """Cubic part of the growth rate, in units of the linear part, below which the linear part decides."""
+
+
+SMALL_MOTION = SmallMotionSettings()
 
 
 def small_cycle(
@@ -33,7 +43,7 @@ def small_cycle(
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= NEUTRAL_DISTANCE else None
+    return found if settled and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
 
 
 def decay(rod: Rod, w: complex, amplitude: float) -> str:
@@ -41,10 +51,10 @@ def decay(rod: Rod, w: complex, amplitude: float) -> str:
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, w, WEAK_BENDING)
+        normal = accurate_normal_form(rod, w, SMALL_MOTION.weak_bending)
     except Unsolvable:
         return ""
     share = abs(normal.c.real) * amplitude**2 / -w.real
-    if share >= WEAK_BENDING:
+    if share >= SMALL_MOTION.weak_bending:
         return ""
     return f"decays: at this amplitude the cubic part of the growth rate is {share:.0e} of the linear part"

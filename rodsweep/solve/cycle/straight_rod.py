@@ -14,9 +14,18 @@ from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 SPECTRUM = SpectrumRequest(1, 1e-9, True)
 """Spectrum request for the straight rod: the leading eigenvalue, proved to be the leading one."""
-ERRORS_FROM_AXIS = 4.0
-"""Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of the
-growth rate is certain. The spectrum uses the same criterion."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StraightRodSettings:
+    """Settings for the stability of the straight rod."""
+
+    errors_from_axis: float = 4.0
+    """Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of
+    the growth rate is certain. The spectrum uses the same criterion."""
+
+
+STRAIGHT_ROD = StraightRodSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +42,7 @@ class StraightRod:
     @property
     def stable(self) -> bool | None:
         """Whether all small motions decay; None if the error leaves this open."""
-        margin = max(ERRORS_FROM_AXIS * self.error, ON_THE_AXIS * abs(self.w))
+        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ON_THE_AXIS * abs(self.w))
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
@@ -60,7 +69,7 @@ class StraightRod:
 def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest = SPECTRUM) -> StraightRod:
     """The leading eigenvalue of a rod with its error.
 
-    near: leading eigenvalue of a similar rod, followed to this rod where possible.
+    near: leading eigenvalue of a similar rod, followed to this rod if possible.
     """
     followed = None
     if near is not None and rod.standard:

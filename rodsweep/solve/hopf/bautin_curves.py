@@ -101,8 +101,10 @@ class BautinSpace:
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
-        found_values, errors = np.empty(3), np.zeros(3)
-        found_values[free], errors[free] = point.values, point.errors
+        found_values = np.empty(3)
+        errors = np.zeros(3)
+        found_values[free] = point.values
+        errors[free] = point.errors
         found_values[held] = values[self.axes[held].name]
         found = BautinCurvePoint(
             values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
@@ -111,7 +113,8 @@ class BautinSpace:
 
     def step(self, behind: Sequence[_Place], length: float) -> Stepped[_Place]:
         """The next point, predicted along the chord of the last two points; raises Unsolvable."""
-        here, tangent = behind[-1].v, np.array([0.0, 0.0, self.side, 0.0])
+        here = behind[-1].v
+        tangent = np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
             chord = here - behind[-2].v
             tangent = chord / np.abs(chord[:3]).max()
@@ -148,14 +151,17 @@ class BautinSpace:
 
     def closes(self, behind: Sequence[_Place], there: _Place) -> bool:
         """Whether the curve is closed: its first point lies between the last point and the next."""
-        first, last, step = behind[0].v, behind[-1].v, float(np.linalg.norm(there.v - behind[-1].v))
+        first = behind[0].v
+        last = behind[-1].v
+        step = float(np.linalg.norm(there.v - behind[-1].v))
         near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
         return len(behind) > BAUTIN.min_loop_points and bool(near)
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The zero of Re c along a Hopf curve from a start, (3,), along `way`, (3,); raises Unsolvable."""
-        before, s = 0.0, BAUTIN.first_secant
+        before = 0.0
+        s = BAUTIN.first_secant
         last = hopf.at(start, way, hopf.accuracy).share
         for _ in range(BAUTIN.max_secants):
             here = hopf.at(start + s * way, way, hopf.accuracy)
@@ -168,7 +174,9 @@ class BautinSpace:
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN.tolerance, along):
                 return hopf.as_point(here, 0, way * (along + abs(step)))
-            last, before, s = here.share, s, s + step
+            last = here.share
+            before = s
+            s = s + step
         raise Unsolvable("no generalised Hopf point is found near")
 
 
@@ -222,7 +230,8 @@ def _report(places: Sequence[_Place]) -> None:
 
 def _asked_between(space: BautinSpace, here: _Place, there: _Place) -> list[_Place]:
     """Points at requested third values between two of a curve; raises Unsolvable or ValueError."""
-    a, b = here.v[2], there.v[2]
+    a = here.v[2]
+    b = there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]
     found = []
     for z in sorted(inner, reverse=bool(a > b)):

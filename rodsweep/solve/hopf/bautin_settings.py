@@ -13,7 +13,7 @@ BAUTIN_STEPS = StepControl(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinSettings:
-    """Corrections and ends of a curve of generalised Hopf points."""
+    """Settings for the corrections and ends of a curve of generalised Hopf points."""
 
     max_secants: int = 10
     """Maximum number of secant steps to a generalised Hopf point."""

@@ -21,7 +21,7 @@ from .normal_form import NORMAL_FORM, NormalForm, a_third_finer, elements_for, n
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoefficientSettings:
-    """Error estimate of the coefficient c, and the searches that are kept."""
+    """Settings for the error estimate of the coefficient c, and for the kept searches."""
 
     more_orders: int = 4
     """Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""

@@ -11,14 +11,14 @@ from functools import lru_cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import Transitions, pair_crossings
-from ..changes.unstable_modes import CRUSHING_MARGIN, Crossing
+from ..changes.unstable_modes import Crossing, end_below_crushing
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
 
 
 class CriticalityStatus(PointStatus):
-    """Outcome for one rod: of the search for Hopf points and of the coefficients."""
+    """Outcome of the search for Hopf points of one rod and of their coefficients."""
 
     ok = 0, "every Hopf point is found, with coefficients to the requested accuracy", True
     not_certified = (
@@ -88,7 +88,7 @@ class Criticality:
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     """All Hopf points of one rod with coefficients; the rod's force is ignored, failures become a status."""
-    end = min(request.F_max, rod.crushing_force * (1 - CRUSHING_MARGIN))
+    end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
         found = _hopf_points(Path(replace(rod.linear, F=0.0), "F"), end, request.certify)

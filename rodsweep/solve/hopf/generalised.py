@@ -25,7 +25,7 @@ from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GeneralisedHopfSettings:
-    """Location of generalised Hopf points on a Hopf curve."""
+    """Settings for the location of generalised Hopf points on a Hopf curve."""
 
     coarsest: float = 1e-10
     """Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import pair_crossings
-from ..changes.unstable_modes import CRUSHING_MARGIN
+from ..changes.unstable_modes import end_below_crushing
 from .coefficient_errors import hopf_coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfBesideSettings:
-    """Search for the subcritical Hopf point beside a cycle."""
+    """Settings for the search for the subcritical Hopf point beside a cycle."""
 
     farthest_force: float = 1.5
     """Hopf points are sought at forces from F / this ratio to F * this ratio."""
@@ -49,7 +49,7 @@ def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     Unsolvable if the search for Hopf points or a coefficient fails.
     """
     low = rod.F / HOPF_BESIDE.farthest_force
-    high = min(rod.F * HOPF_BESIDE.farthest_force, rod.crushing_force * (1 - CRUSHING_MARGIN))
+    high = end_below_crushing(rod, rod.F * HOPF_BESIDE.farthest_force)
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings

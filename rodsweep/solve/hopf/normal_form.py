@@ -21,11 +21,10 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.arm.determinant import arm_determinant
-from ...determinant.value import newton_correction
+from ...determinant.wave_number import wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halved
 from ...discretization.elements.mesh import mesh_on
-from ...discretization.elements.resolution import LARGEST_ORDER, resolution_for
+from ...discretization.elements.resolution import RESOLUTION, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...discretization.straight.mixed_form import MixedForm
@@ -36,7 +35,7 @@ from ..point import Unsolvable
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NormalFormSettings:
-    """The normal form of a Hopf point: mesh and inverse iteration."""
+    """Settings for the normal form of a Hopf point: mesh and inverse iteration."""
 
     shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
@@ -150,11 +149,10 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
     accuracy *= NORMAL_FORM.accuracy_share
+    waves = HARMONIC * wave_number(rod, w)
     if not rod.standard:
-        wave_number = arm_determinant(rod).wave_number(w)
-        return arm_elements(rod, HARMONIC * wave_number, accuracy, NORMAL_FORM.largest_order)
-    wave_number = newton_correction(w, rod.coefficients)[2]
-    resolution = resolution_for(HARMONIC * wave_number, accuracy, NORMAL_FORM.largest_order)
+        return arm_elements(rod, waves, accuracy, NORMAL_FORM.largest_order)
+    resolution = resolution_for(waves, accuracy, NORMAL_FORM.largest_order)
     return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
@@ -165,10 +163,10 @@ def of_odd_order(elements: Elements) -> Elements:
 
 def a_third_finer(elements: Elements) -> Elements:
     """Elements with a third more unknowns, of odd order."""
-    order = ceil(elements.order * 4 / 3)
-    if order <= LARGEST_ORDER:
+    order = ceil(elements.order * RESOLUTION.refinement)
+    if order <= RESOLUTION.largest_order:
         return of_odd_order(Elements(elements.edges, order))
-    return of_odd_order(Elements(halved(elements.edges), ceil(2 / 3 * elements.order)))
+    return of_odd_order(Elements(halved(elements.edges), ceil(RESOLUTION.refinement / 2 * elements.order)))
 
 
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:

@@ -6,19 +6,24 @@ eigenvalues, two meshes may agree by chance; the effect of rounding on the dista
 """
 
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, ulp
 
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...determinant.arm.determinant import arm_determinant
+from ...determinant.arm.roots import second_derivative
+from ...determinant.exponents import LEAST_DIVISOR
+from ...determinant.value import distance_to_next
 from ...discretization.elements.resolution import mesh_accuracy
+from ...discretization.straight.transverse_mesh import finer_mesh, mesh_for, pencil_on
+from ...model.rod import Rod
 from .inverse_iteration import Vectors, mode_vectors
-from .problem import ModesProblem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeMeshSettings:
-    """Meshes of the modes and their condition numbers."""
+    """Settings for the meshes of the modes and their condition numbers."""
 
     more_orders: int = 4
     """Increase of the order on the second mesh; it gains two orders of magnitude in the vectors."""
@@ -42,24 +47,23 @@ def vector_accuracy(accuracy: float) -> float:
 
 
 def converged_vectors(
-    problem: ModesProblem, eigenvalues: Complex, points: Array, wave: float, accuracy: float
+    rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> Vectors | None:
     """Mode vectors at `points`, (n,), on the best of a few meshes; None if even the first mesh is too
     large."""
-    rod = problem.rod
-    mesh = problem.mesh_for(wave, vector_accuracy(accuracy))
-    gaps = np.array([problem.gap(complex(w)) for w in eigenvalues])
-    coarse = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
+    mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
+    gaps = np.array([gap(rod, complex(w)) for w in eigenvalues])
+    coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best: Vectors | None = None
     least = inf
     for _ in range(MODE_MESH.max_meshes):
         if best is None:
-            mesh = problem.of_order(mesh, mesh.order + MODE_MESH.more_orders)
+            mesh = replace(mesh, order=mesh.order + MODE_MESH.more_orders)
         else:
-            mesh = problem.finer(mesh)
+            mesh = finer_mesh(rod, mesh)
         if mesh.unknowns > MODE_MESH.max_unknowns:
             break
-        fine = mode_vectors(rod, problem.pencil(mesh), eigenvalues, points)
+        fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
         error = max(result.errors().values())
         improved = error < least / 2
@@ -82,6 +86,18 @@ def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
         relative = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
         error = np.maximum(error, relative.max(axis=0))
     # For a normal operator, of condition number 1, rounding moves the eigenvalues but turns no vector.
-    turned = MODE_MESH.roundings * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, 1e-300)
+    turned = (
+        MODE_MESH.roundings * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, LEAST_DIVISOR)
+    )
     moved = np.abs(coarse.condition / fine.condition - 1)
     return replace(fine, mode_error=error, condition_error=moved + turned)
+
+
+def gap(rod: Rod, w: complex) -> float:
+    """Estimated distance of eigenvalue w from the nearest other one, 2 |D'/D''|; accurate if small."""
+    if rod.standard:
+        return distance_to_next(w, rod.coefficients)
+    determinant = arm_determinant(rod)
+    value = determinant.value(w)
+    second = abs(second_derivative(w, value.S, determinant))
+    return 2 * abs(value.D_w) / max(second, ulp(0.0))

@@ -20,7 +20,7 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeIterationSettings:
-    """Inverse iteration for the vectors of a mode."""
+    """Settings for the inverse iteration for the vectors of a mode."""
 
     iterations: int = 4
     """Number of inverse iterations; two suffice unless the eigenvalue is nearly double."""

@@ -15,21 +15,22 @@ from math import nan
 
 import numpy as np
 
+from ...determinant.wave_number import wave_number
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.resolution import Resolution
+from ...discretization.straight.transverse_mesh import mesh_for
 from ...model.rod import Rod
 from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
 from .inverse_iteration import Vectors, no_vectors
-from .problem import modes_problem
 from .transient_growth import Growth, growth_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeadingModeSettings:
-    """Choice of the modes that are computed."""
+    """Settings for the choice of the modes that are computed."""
 
     growth_wave_number: float = 24.0
     """Wave number of the eighth mode at rest: growth at short times needs more modes than the request."""
@@ -56,7 +57,7 @@ class ModesRequest:
 class Modes:
     """Leading modes of one rod, in the order defined in `rodsweep.model`.
 
-    status: of the spectrum, unless a vector or the growth failed or missed the requested accuracy.
+    status: status of the spectrum, unless a vector or the growth failed or missed the requested accuracy.
     """
 
     status: SpectrumStatus
@@ -113,21 +114,24 @@ def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
 def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     """The outcome with vectors and, if requested, growth; the largest error determines the status."""
     spectrum = outcome.spectrum
-    problem = modes_problem(rod)
-    wave = max(problem.wave_number(complex(w)) for w in spectrum.eigenvalues)
+    wave = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.nodes)
-    vectors = converged_vectors(problem, spectrum.eigenvalues, points, wave, request.accuracy)
+    vectors = converged_vectors(rod, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
-        return replace(outcome, status=SpectrumStatus.failed, message="no dense mesh resolves the modes")
+        return replace(
+            outcome,
+            status=SpectrumStatus.failed,
+            message="no mesh small enough for dense matrices resolves the modes",
+        )
     result = replace(outcome, vectors=vectors)
     errors = vectors.errors()
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
-        mesh = problem.mesh_for(max(wave, LEADING_MODES.growth_wave_number), request.accuracy)
+        mesh = mesh_for(rod, max(wave, LEADING_MODES.growth_wave_number), request.accuracy)
         grows = (spectrum.eigenvalues.real > LEADING_MODES.significant_errors * spectrum.error_estimate).any()
         known = spectrum.status != SpectrumStatus.undecided
         stable = False if grows or spectrum.unstable_count > 0 else (True if known else None)
-        growth = growth_of(problem, mesh, request.accuracy, stable, rate)
+        growth = growth_of(rod, mesh, request.accuracy, stable, rate)
         errors |= growth.errors(rate)
         result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))
     culprit, error = max(errors.items(), key=lambda item: item[1])

@@ -20,7 +20,7 @@ from .propagator import Propagator
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NormMaximumSettings:
-    """Search for the largest norm over all times."""
+    """Settings for the search for the largest norm over all times."""
 
     start_ratio: float = 2**0.25
     """Ratio of neighbouring times of the first grid."""
@@ -98,7 +98,8 @@ def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) ->
 
 def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """(|exp(L t)|, t) at the sign change of its derivative between low and high: Illinois regula falsi."""
-    (at_low, rate_low), (at_high, rate_high) = propagator.norm(low), propagator.norm(high)
+    at_low, rate_low = propagator.norm(low)
+    at_high, rate_high = propagator.norm(high)
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)

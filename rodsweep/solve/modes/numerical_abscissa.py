@@ -16,13 +16,14 @@ from .propagator import shifted_inverse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbscissaSettings:
-    """Shifts above the numerical abscissa."""
+    """Settings for the shifts above the numerical abscissa."""
 
     max_shifts: int = 60
     """Maximum number of shifts tried to exceed the numerical abscissa if no bound is known; each doubles the
     last."""
     close_shift: float = 0.05
-    """Relative distance of a shift above the abscissa that costs no digits."""
+    """Relative distance of the last shift above the abscissa. A shift this close loses no digits to
+    cancellation."""
     positive: float = 1e-9
     """Relative size above which an eigenvalue of the shifted inverse is positive, not rounding."""
 
@@ -37,7 +38,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above it, which is possible only for a rod without rotational drag and with g < 0.
     """
     form = dense_form(rod, pencil)
-    A = form.averaged(*hermitian_tip(rod.F, slaving_of(rod)))
+    A = form.with_tip_terms(*hermitian_tip(rod.F, slaving_of(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     shift = bound + 1 if bound < inf else rod.F**2 + 1

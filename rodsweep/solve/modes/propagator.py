@@ -16,7 +16,7 @@ from ...arrays import Array, Complex
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PropagatorSettings:
-    """The propagator exp(L t) in the space of the modes."""
+    """Settings for the propagator exp(L t) in the space of the modes."""
 
     infinite: float = 1e-12
     """Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""

@@ -11,21 +11,20 @@ if bending dominates, and occurs early; below the accuracy it is reported as S =
 
 from dataclasses import dataclass, replace
 from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
-from typing import Any
 
 import numpy as np
 
 from ...discretization.straight.dense_form import AnyPencil, dense_form
+from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
 from .norm_maximum import NORM_MAXIMUM, highest
 from .numerical_abscissa import numerical_abscissa
-from .problem import ModesProblem
 from .propagator import Propagator, shifted_inverse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GrowthSettings:
-    """Modes and meshes of the largest transient growth."""
+    """Settings for the modes and meshes of the largest transient growth."""
 
     min_modes: int = 8
     """Number of modes that first represent exp(L t)."""
@@ -84,23 +83,22 @@ UNBOUNDED = Growth(growth_error=inf)
 """Placeholder for an unknown growth."""
 
 
-def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | None, rate: float) -> Growth:
+def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> Growth:
     """Abscissa and growth on `mesh` and finer meshes. rate: modulus of the leading eigenvalue.
 
     stable: False gives unlimited growth; None, if stability is unknown, gives growth nan.
     """
     best = UNBOUNDED
     least = inf
-    rod = problem.rod
-    abscissa = numerical_abscissa(rod, problem.pencil(mesh))
+    abscissa = numerical_abscissa(rod, pencil_on(mesh))
     coarse = None
     for step in range(GROWTH.max_meshes):
         order = mesh.order + GROWTH.first_more_orders if step == 0 else ceil(GROWTH.order_factor * mesh.order)
         last = mesh
-        mesh = problem.of_order(mesh, order)
+        mesh = replace(mesh, order=order)
         if step and mesh.unknowns > GROWTH.max_unknowns:
             break
-        pencil = problem.pencil(mesh)
+        pencil = pencil_on(mesh)
         before = abscissa
         abscissa = numerical_abscissa(rod, pencil)
         change = abs(abscissa - before)
@@ -108,7 +106,7 @@ def growth_of(problem: ModesProblem, mesh: Any, accuracy: float, stable: bool | 
         if found is None and abscissa + change <= 0:
             found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if found is None:
-            coarse = coarse or propagator_of(rod, problem.pencil(last))
+            coarse = coarse or propagator_of(rod, pencil_on(last))
             fine = propagator_of(rod, pencil)
             found = transient_growth(coarse, fine, abscissa + change, accuracy)
             coarse = fine

@@ -25,16 +25,17 @@ FIRST_ANGLE = 0.8
 FIRST_STEP, LEAST_STEP = 0.1, 1e-3
 """Length of the first step as a share of the path, and the length at which the path is given up."""
 MOST_ITERATIONS, PLACED = 12, 1e-10
-"""Newton iterations of a step, and the distance of the tip from its place, in L, at which they end."""
+"""Maximum Newton iterations of a step, and the distance of the tip from its target, in L, at which iterations
+end."""
 MOST_TURNED = 1.0
-"""Change of the angle by one Newton step, rad, beyond which the step leads to another shape."""
+"""Change of the angle by a Newton step, in rad, beyond which the step may lead to a different shape."""
 
 
 def held_by_tip(beam: Beam, x: float, y: float) -> Array:
-    """The state z, (unknowns,), of the rod bent so that its tip is at (x, y) in L.
+    """The state z, (unknowns,), of the rod bent until the tip is at (x, y) in L.
 
-    A place beyond `REACH` is drawn towards the clamp. Where the path cannot be followed to its end, the state
-    is that of its last place.
+    A target beyond `REACH` is moved towards the clamp. If the tip cannot be moved to the target, the last
+    state on the way is returned.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
@@ -51,26 +52,32 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
             step /= 2
         else:
             reached, (Pi, force) = share, found
-    return beam.unknown(np.stack([*beam.strains(np.zeros(beam.unknowns))[:2], Pi]))
+    return bending.state(Pi)
 
 
 class _Bending:
-    """A rod that bends only: places of its tip and their derivatives. length: of the straight rod, in L."""
+    """A rod that only bends: place of the tip, and its derivatives. length: length of the straight rod, in
+    L."""
 
     def __init__(self, beam: Beam) -> None:
         self.mesh = beam.mesh
+        self._beam = beam
         self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
         size = beam.mesh.nodes + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
-        unit = np.zeros((3, size, size))
-        unit[2] = np.eye(size)
+        unit = np.zeros((3, size, self.mesh.element_nodes.size))
+        unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
         self.angles = configuration(beam.mesh, unit, np.zeros(3))[2].T
-        """Matrix from Pi to theta, both at all nodes."""
+        """Matrix from Pi to theta, both at all nodes; at a jump of the material from the mean Pi."""
 
     def tip(self, Pi: Array) -> Array:
         """(x, y) of the tip, (2,), for curvatures at all nodes, (nodes + 1,)."""
-        end: Array = configuration(self.mesh, np.stack([self.h1, self.h2, Pi]), np.zeros(3))[:2, -1]
+        end: Array = self._beam.tip(self.state(Pi))[:2]
         return end
+
+    def state(self, Pi: Array) -> Array:
+        """The state z, (unknowns,), for curvatures at all nodes, (nodes + 1,)."""
+        return self._beam.unknown(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
         """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""

@@ -85,7 +85,7 @@ UNLIMITED = RunLimit()
 
 
 class Integrator:
-    """A TS for one mesh and one scheme; `run` may be called any number of times, for any rod."""
+    """A TS for a mesh and a scheme; `run` may be called any number of times, for any rod."""
 
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme

@@ -5,11 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...discretization.element_strains import write_element_rates, write_element_strains
 from ...discretization.elements.periodic import hermite_columns, maxima, minima, sampled_columns
+from ...discretization.nodal_rod import NodalRod
 from ...discretization.plane import balance
 from ...discretization.state_layout import stress_place
 from ...discretization.stress.tip_motion import TipMatrices, tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
+from ...model.material.jump import Unknowns, before_jump, behind_jump
 from .semidiscrete import Semidiscrete
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -21,12 +24,13 @@ OVERSAMPLING = 4
 class TipPath(NamedTuple):
     """Path of the tip, and strains, from the states at the time nodes.
 
-    nodes: (h1, h2, Pi) at all nodes of the rod, and their derivatives by the time in periods, for the solved
-    states, (2, 3, K, nodes + 1). For (x, y, theta) of the tip over the period: coefficients, (count, 3);
-    samples at equidistant times, (OVERSAMPLING (count - 1), 3); smallest and largest values, (3,) each.
+    strains: (h1, h2, Pi) at the nodes of every element, and their derivatives by the time in periods, for the
+    solved states, (2, 3, K, elements (order + 1)). For (x, y, theta) of the tip over the period:
+    coefficients, (count, 3); samples at equidistant times, (OVERSAMPLING (count - 1), 3); smallest and
+    largest values, (3,) each.
     """
 
-    nodes: Array
+    strains: Array
     coefficients: Complex
     samples: Array
     least: Array
@@ -46,27 +50,31 @@ class Means(NamedTuple):
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
     """The path from equidistant states, (K, n), over half the period for a symmetric orbit."""
-    nodes = np.empty((2, 3, len(states), len(p.matrices.weights)))
+    size, order = len(p.matrices.weights), len(m.ends) - 1
+    strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
     tip, velocity = np.empty((len(states), 3)), np.empty((len(states), 3))
-    node_strains(states, p, nodes[0])
-    strain_rates(states, nodes[1], p)
-    nodes[1] *= period
-    tip_motion(nodes[0], nodes[1], m, tip, velocity)
+    S = np.empty((3, len(states), size))
+    rates = np.empty((3, len(states), size))
+    node_stresses(states, S)
+    strain_rates(states, rates, p)
+    rates *= period
+    write_element_strains(S, p.rod, order, strains[0])
+    write_element_rates(S, rates, p.rod, order, strains[1])
+    tip_motion(strains[0], strains[1], m, tip, velocity)
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
     samples = sampled_columns(c, OVERSAMPLING * (len(c) - 1))
-    return TipPath(nodes, c, samples, minima(c, samples), maxima(c, samples))
+    return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
 
 
 @compiled_for_vectors
-def node_strains(states: Array, p: Semidiscrete, out: Array) -> None:
-    """(h1, h2, Pi) at all nodes of states (K, n) into out, (3, K, nodes + 1)."""
-    c, n = p.rod, len(p.matrices.weights) - 1
+def node_stresses(states: Array, out: Array) -> None:
+    """S at all nodes of states (K, n) into out, (3, K, nodes + 1)."""
+    n = out.shape[2] - 1
     for a in range(len(out)):
         for k in range(len(states)):
             for i in range(n):
-                stress = states[k, stress_place(a, i, n)]
-                out[a, k, i] = c.rest[a, i] + c.compliance[a, i] * stress
-            out[a, k, n] = c.rest[a, n]
+                out[a, k, i] = states[k, stress_place(a, i, n)]
+            out[a, k, n] = 0.0
 
 
 @compiled_for_vectors
@@ -100,7 +108,19 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
         for j in range(nodes):
             pull = flat[i, stress_place(0, j, nodes)]
             stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
+        for j in range(len(p.rod.jumps)):
+            stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.sides[j], p.rod))
     return Means(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
+
+
+@compiled_for_vectors
+def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> float:
+    """The smaller h1 beside a jump; state: (n,), sides: (2, 7)."""
+    n = rod.rest.shape[1] - 1
+    q = Unknowns(state[stress_place(0, node, n)], state[stress_place(2, node, n)])
+    a = before_jump(rod.law, sides, q)
+    b = behind_jump(sides, q, a)
+    return min(sides[0, 0] + sides[0, 1] * a.q1, sides[1, 0] + sides[1, 1] * b.q1)
 
 
 @compiled_for_vectors

@@ -64,17 +64,20 @@ class CyclePath:
 
     @cached_property
     def strain_coefficients(self) -> Complex:
-        """Coefficients of (h1, h2, Pi) at all nodes, shape (count, 3, nodes + 1)."""
-        K, size = self._path.nodes.shape[2:]
-        values, slopes = self._path.nodes.swapaxes(1, 2).reshape(2, K, 3 * size)
+        """Coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, elements (order + 1))."""
+        K, size = self._path.strains.shape[2:]
+        values, slopes = self._path.strains.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.symmetric else np.zeros(3), size)
         c: Complex = hermite_columns(values, slopes, signs)
         return c.reshape(len(c), 3, size)
 
     @cached_property
     def bending_harmonics(self) -> Array:
-        """Sizes of Pi's harmonics from the first, root sums of squares over all nodes, shape (count - 1,)."""
-        values, slopes = self._path.nodes[:, 2]
+        """Sizes of Pi's harmonics from the first, (count - 1,).
+
+        A size is the root sum of squares over the nodes of every element.
+        """
+        values, slopes = self._path.strains[:, 2]
         sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.symmetric)
         return sizes
 

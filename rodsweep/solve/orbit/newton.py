@@ -15,7 +15,7 @@ from .orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitNewtonSettings:
-    """Newton's method for a periodic orbit, with or without a parameter."""
+    """Settings of Newton's method for a periodic orbit, with or without a parameter."""
 
     new_matrix_ratio: float = 0.1
     """Ratio of successive Newton steps above which a new matrix is made."""
@@ -78,12 +78,15 @@ def newton(
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
         if iteration > 1 and change > max(last, ORBIT_NEWTON.longest_step):
             raise Unsolvable("there is no orbit near the start of Newton's method")
+        # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         share = min(1.0, ORBIT_NEWTON.longest_step / change) if change > 0 else 1.0
         orbit = orbit.moved(step, share)
         distance += share * change
         if not orbit.period > 0:
             raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
         fresh = distance == share * change
+        # Expected error after this step: quadratic for a matrix at the iterate, else linear at the rate of
+        # the last two steps.
         left = ORBIT_NEWTON.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
         if left <= tolerance:
             return Converged(orbit, matrix, distance)

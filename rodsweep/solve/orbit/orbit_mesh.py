@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.elements.elements import halved
 from ...discretization.elements.mesh import Mesh, mesh_on
-from ...discretization.elements.resolution import LARGEST_ORDER
+from ...discretization.elements.resolution import RESOLUTION
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
 from .tails import tails_of
@@ -19,7 +19,7 @@ from .tails import tails_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitMeshSettings:
-    """Choice of the mesh of an orbit in space and time."""
+    """Settings for the choice of the mesh of an orbit in space and time."""
 
     space_factor: float = 5.0
     """Largest stated error of period and extrema in units of the squared tail in space, as predicted from a
@@ -75,6 +75,11 @@ class OrbitMesh:
         return len(self.edges) - 1
 
     @property
+    def full_intervals(self) -> int:
+        """The period in units of a full interval: the last two intervals have half its length."""
+        return self.intervals - 1
+
+    @property
     def grid(self) -> Mesh:
         return mesh_on(self.edges, self.order)
 
@@ -109,7 +114,7 @@ class OrbitMesh:
     @property
     def finer_in_space(self) -> "OrbitMesh":
         """Mesh of a higher order, or of twice as many elements where the order is the largest."""
-        if self.order + 2 <= LARGEST_ORDER:
+        if self.order + 2 <= RESOLUTION.largest_order:
             return replace(self, order=self.order + 2)
         return replace(self, edges=halved(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order))
 
@@ -147,7 +152,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     aim_time = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.time_factor) ** 0.5
     order = present.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / present.elements)
     edges = present.edges
-    while order > LARGEST_ORDER:
+    while order > RESOLUTION.largest_order:
         order = ceil(ORBIT_MESH.halved_order * order)
         edges = halved(edges)
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.

@@ -8,15 +8,16 @@ from ...model.rod import Rod
 from .measures import CyclePath
 from .orbit import Orbit
 
-PERIOD, HEIGHT, OTHERS, APART = range(4)
-"""Indices of the differences."""
+PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
+"""Indices of the result of `path_differences`."""
 
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
     """Differences of the period, the largest y, the worst extremum, and the whole paths, (4,).
 
-    The period's difference is relative; the other three are in units of the largest y. On a followed branch
-    the rods may differ as well, and their difference counts as one of the period.
+    The period's difference is relative; the other three are in units of the largest y. On a branch the two
+    rods may differ, too; the relative difference of their parameters then counts as a difference of the
+    period.
     """
     apart = np.abs(fine.tip_samples - rough.resampled_tip(len(fine.tip_samples))).max()
     extrema = fine.extrema

@@ -10,8 +10,8 @@ from ...discretization.nodal_rod import NodalRod
 class Semidiscrete(NamedTuple):
     """The rod on its mesh, the method in time, and the closing condition x(T/p) = S x(0) of an orbit.
 
-    mass: (n,). differentiation: (s, s + 1). lengths: of the intervals, with sum 1, (K,). symmetry: S, (n, n).
-    parts: p, 1 or 2.
+    mass: (n,). differentiation: (s, s + 1). lengths: lengths of the intervals, with sum 1, (K,). symmetry: S,
+    (n, n). parts: p, 1 or 2.
     """
 
     rod: NodalRod

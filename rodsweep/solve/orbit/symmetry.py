@@ -17,9 +17,8 @@ from ...model.balance import Values
 
 @dataclass(frozen=True, eq=False)
 class Symmetry:
-    """S by its orthogonal matrix for the components of a stress, (d, d), and p.
-
-    The same matrix applies to velocities.
+    """The symmetry S of an orbit, and the number p of its parts. S is stored as an orthogonal matrix, (d, d),
+    for the components of a stress; the matrix also applies to velocities.
     """
 
     turn: Array

@@ -63,7 +63,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
     """Largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
     grid = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.states[:, -1])
-    if len(orbit.form.nodal.jumps):
+    if not orbit.form.smooth_stresses:
         c = np.abs(_by_elements(orbit, ends) @ _analysis_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
@@ -103,7 +103,7 @@ def lasting_tails(orbit: Orbit) -> Array:
     A single last coefficient may vanish, so in space LAST_COEFFICIENTS coefficients at all points are used.
     """
     grid = orbit.form.mesh
-    if len(orbit.form.nodal.jumps):
+    if not orbit.form.smooth_stresses:
         fields = _by_elements(orbit, orbit.points)
         ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
         in_space = float((ends / np.maximum(np.abs(fields).max(axis=(1, 2, 3)), 1e-300)).max())

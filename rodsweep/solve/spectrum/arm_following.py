@@ -4,7 +4,6 @@ As `rodsweep.solve.spectrum.following`, with D from the interpolated propagators
 that of `rodsweep.determinant.arm.completeness` and needs nothing but the eigenvalues of the point itself.
 """
 
-import cmath
 import math
 
 import numpy as np
@@ -15,24 +14,23 @@ from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_
 from ...determinant.arm.family import CONVERGED, ArmFamily, propagators_at
 from ...determinant.arm.hull import Hull, Hulls, hull_at
 from ...determinant.arm.value import chain_along, chain_value
-from ...determinant.newton import REAL_BELOW
-from ...determinant.roots import sort_descending
-from ...determinant.value import ROUND_OFF, SECOND_STEP
+from ...determinant.roots import roots_of_parabola, sort_descending
+from ...determinant.value import SECOND_STEP, second_difference
 from ...model.compiled.compilation import compiled
 from .candidates import BELOW, CLOSE_BELOW
 from .following import (
-    FOLLOWED_ACCURACY,
     MAX_EIGENVALUE_CORRECTIONS,
-    ROUNDING_STEP,
     Corrected,
     crowding_of,
     distinct_roots,
+    keep,
     newton_step,
+    settled_error,
 )
 from .prediction import Track, guess_at, mates_of, place_two
 
 Level = tuple[float, Array, Array]
-"""(W, propagators, their derivatives by p), the latter of the shape (elements, terms, 16)."""
+"""(W, propagators, derivatives of the propagators by p), arrays of shape (elements, terms, 16)."""
 
 
 @compiled
@@ -44,37 +42,35 @@ def corrected_of_arm(w: complex, level: Level) -> Corrected:
 
 @compiled
 def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tuple[Corrected, float]:
-    """(the last correction, error): Newton's method until what is left of it, crowding step^2, is small."""
+    """(the last correction, error): Newton's method until the remaining error, crowding step^2, is small."""
     here = first
     for _ in range(MAX_EIGENVALUE_CORRECTIONS):
-        left = crowding * here.step * here.step
-        allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWED_ACCURACY * abs(here.w)
-        if left <= allowed or here.step <= ROUNDING_STEP * here.blur:
-            return here, max(here.blur, min(left, here.step))
+        error = settled_error(here, crowding, exact)
+        if error < math.inf:
+            return here, error
         here = corrected_of_arm(here.w, level)
     return here, math.inf
 
 
 @compiled
 def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
-    """The two roots near a real `middle` by the quadratic that D is about it."""
+    """The two roots near a real `middle`, from the quadratic Taylor polynomial of D."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
     h = SECOND_STEP * abs(middle)
-    after, before = (
-        chain_value(middle + h, level[0], level[1]),
-        chain_value(middle - h, level[0], level[1]),
-    )
-    second = (after.D_w.real * math.exp(after.S - S) - before.D_w.real * math.exp(before.S - S)) / (2 * h)
-    if second == 0:
-        return middle, middle
-    root = cmath.sqrt(complex(D_w.real**2 - 2 * D.real * second, 0.0))
-    return middle + (root - D_w.real) / second, middle - (root + D_w.real) / second
+    after = chain_value(middle + h, level[0], level[1])
+    before = chain_value(middle - h, level[0], level[1])
+    second = second_difference(after, before, S, h)
+    return roots_of_parabola(middle, complex(D.real, 0.0), complex(D_w.real, 0.0), complex(second.real, 0.0))
 
 
 @compiled
 def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
-    """Makes roots of the guesses for point i, at p, into the track; whether all did, and pairs are pairs."""
-    w, slope, error, order = track.w[i], track.slope[i], track.error[i], track.order[i]
+    """Refines the guesses for point i, at p, and writes the roots to the track. True if all converged and
+    every pair stayed a pair.
+    """
+    w = track.w[i]
+    error = track.error[i]
+    order = track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
     mates_of(guess, mate)
@@ -90,22 +86,19 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _settled(first, crowding_of(w, k), rank <= modes, level)
-            w[k], slope[k] = last.w, last.slope
-            error[k] += CONVERGED * (abs(w[k]) + abs(p * slope[k]))
-            if mate[k] >= 0:
-                if not w[k].imag > REAL_BELOW * abs(w[k]):
-                    return False
-                j = mate[k]
-                w[j], slope[j], error[j] = w[k].conjugate(), slope[k].conjugate(), error[k]
+            error[k] += CONVERGED * (abs(last.w) + abs(p * last.slope))
+            if not keep(track, i, k, mate[k], last):
+                return False
     sort_descending(w, order)
     return distinct_roots(w, error) and np.abs(w).max() <= level[0]
 
 
 @compiled
 def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level) -> int:
-    """How many of the leading eigenvalues of point i are all right of a line <= 0; 0 where it is not proved.
+    """Number of leading eigenvalues of point i that are proved to be all eigenvalues right of a line <= 0; 0
+    without a proof.
 
-    They include the wanted `modes`, and with them all unstable ones.
+    The line lies left of the wanted `modes`, so that the proof includes all unstable eigenvalues.
     """
     w, error = track.w[i], track.error[i]
     k = track.order[i, modes - 1]
@@ -126,10 +119,10 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 
 @compiled
 def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
-    """How many points, from the first, the eigenvalues can be followed to; fills the track as far.
+    """Follows eigenvalues from the first point on and fills the track; returns the number of points reached.
 
-    track: with w and order of the first point; p: (points,), the points' path variables, inside the family.
-    hulls: of all arms of the family. known: (points,), filled with `all_right_of_line`.
+    track: w and order of the first point are set; p: (points,), path variable of each point, inside the
+    family. hulls: regions of all arms of the family. known: (points,), filled with `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)

@@ -3,17 +3,16 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil, Matrices
+from ...arrays import Complex
+from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil
+from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import Loaded, ShiftInvertSolver
-
-ARM_SOLVERS_KEPT = 8
-"""Number of solvers kept for later points on equal meshes."""
+from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
-    """Krylov-Schur for one mesh."""
+    """Krylov-Schur for the arms on one mesh."""
 
     matrices: Matrices
     """Matrices of the last solved arm."""
@@ -27,7 +26,7 @@ class ArmSolver(ShiftInvertSolver):
     def load(self, rod: Rod, shift: float) -> Loaded:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
-            raise FloatingPointError("the parameters overflow the matrix entries")
+            raise FloatingPointError("matrix entries overflow with these parameters")
         self.B.setValuesCSR(self.line, self.line[:-1], found.B)
         self.B.assemble()
         values = found.A.copy()
@@ -38,17 +37,16 @@ class ArmSolver(ShiftInvertSolver):
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return Loaded(self.pencil.finite(rod), shift)
+        return Loaded(finite_eigenvalues(rod, self.nodes), shift)
+
+    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+        return fields_of(vectors, self.matrices.scale)
 
 
-_kept = LruPool(ArmSolver, ARM_SOLVERS_KEPT)
+_kept = LruPool(ArmSolver, KRYLOV.arm_solvers_kept)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
     """The solver for a mesh; kept for later points."""
     return _kept.get(mesh)
-
-
-def forget_arm_solvers() -> None:
-    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
-    _kept.clear()

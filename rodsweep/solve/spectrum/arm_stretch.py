@@ -1,8 +1,8 @@
-"""Spectra of arms at neighbouring points along one parameter: followed, and proved complete one by one.
+"""Spectra of arms at neighbouring points along a parameter: followed, and proved complete at each point.
 
-Krylov-Schur solves the first point for more modes than wanted: the known ones beyond the line make the proof
-easy. The propagators of all arms come from a few (`rodsweep.determinant.arm.family`), on as much of the
-interval as they are smooth polynomials on.
+Krylov-Schur solves the first point for more modes than wanted: known modes beyond the line make the proof
+easy. The propagators of all arms are interpolated from a few arms (`rodsweep.determinant.arm.family`), on an
+interval short enough for smooth polynomials.
 """
 
 from collections.abc import Iterator
@@ -19,36 +19,37 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of
 from ...determinant.arm.hull import Hulls, hull_at, hulls_along
 from ...determinant.parameter_path import Path
+from ..backend.kept import forget_all
 from ..point import FAILURES
 from .arm_following import follow_arms
 from .candidates import lines
 from .carried_count import judge_points, leading
-from .prediction import Track, part
-from .problem import forget_solvers
+from .prediction import Track, part, track_from
 from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
 
 FURTHER_ARM_MODES = (3, 9)
-"""Numbers of modes that are followed beyond those wanted: the more for arms whose hull is wide."""
+"""Numbers of modes followed in addition to the wanted modes; the larger number is tried if too few points are
+proved."""
 PROVED_ENOUGH = 0.5
-"""Share of the points that must be proved complete, or else more modes are followed."""
+"""Fraction of points that must be proved complete; below this fraction more modes are followed."""
 HEADROOM = 2.0
-"""Largest |w| for which propagators are made, in units of the largest at the first point."""
+"""Largest |w| of the propagators, in units of the largest |w| of the first point."""
 REUSED_HEADROOM = 1.25
-"""The same for the propagators of an earlier interval that serve again."""
+"""`HEADROOM` of the propagators of an earlier interval that serve again."""
 MORE_ARMS = 2
-"""Largest number of points for which a family is tried, in units of those inside the family before."""
+"""Largest number of points for which a family is tried, in units of those inside the previous family."""
 FEWEST = 4
-"""Fewest points for which a family of arms is made."""
+"""Minimum number of points of a family of arms."""
 ACCURACY = 1e-8
 """Relative accuracy of eigenvalues along a path."""
 MODES_BEYOND_GROWING = 2
 """Number of modes beyond the growing ones that a search for crossings asks for."""
 STEPS_FROM_NEAREST = (1, 4)
-"""Numbers of steps in which a point is reached from the nearest one of a path."""
+"""Numbers of steps tried from the nearest point of the path to a point between."""
 HULL_ARMS = 7
-"""Arms of an interval from which the hulls of those between are made."""
+"""Number of arms of an interval from which the hulls of all arms between are interpolated."""
 
 
 class Interval(NamedTuple):
@@ -67,12 +68,13 @@ class Interval(NamedTuple):
     further: int
 
     def proved(self, modes: int) -> int:
-        """The number of points at which so many leading modes are proved complete."""
+        """Number of points at which `modes` leading modes are proved complete."""
         return int((self.known >= modes).sum())
 
 
 def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | None:
-    """The points p, (n,), as far as eigenvalues can be followed from the first; None where none can be."""
+    """Spectra at the points p, (n,), up to the last point reached from the first; None if no point is
+    reached."""
     found = _interval(path, p, request)
     if found is None:
         return None
@@ -86,10 +88,10 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | N
 def _interval(
     path: Path, p: Array, request: SpectrumRequest, before: Interval | None = None
 ) -> Interval | None:
-    """The points p, (n,), as far as one family of arms and following reach; None if not beyond the first.
+    """The points of p, (n,), that are reached with one family of arms; None if following fails at the first.
 
-    Where too few eigenvalues beyond the wanted ones are known for a proof, more are followed. before: the
-    previous interval of the path, whose family serves again where it contains enough of the points.
+    If too few points are proved, more eigenvalues are followed. before: the previous interval of the path,
+    whose family serves again where it contains enough of the points.
     """
     best: Interval | None = None
     for further in (number for number in FURTHER_ARM_MODES if before is None or number >= before.further):
@@ -104,7 +106,7 @@ def _interval(
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: Interval | None
 ) -> Interval | None:
-    """`_interval` with so many modes beyond the wanted ones."""
+    """`_interval` with `further` modes in addition to the wanted modes."""
     first, n, made = first_eigenvalues(path, float(p[0]), request, further), len(p), None
     if first is not None and before is not None:
         inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
@@ -118,7 +120,7 @@ def _followed(
     if first is None or made is None:
         return None
     family, hulls = made
-    track, known = _empty_track(first, n), np.zeros(n, np.int64)
+    track, known = track_from(first, n), np.zeros(n, np.int64)
     reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
@@ -126,20 +128,11 @@ def _followed(
     return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls, arms, further)
 
 
-def _empty_track(first: Complex, points: int) -> Track:
-    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
-    shape = (points, len(first))
-    order = np.zeros(shape, np.int64)
-    order[0] = np.arange(len(first))
-    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
-    track.w[0] = first
-    return track
-
-
 def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, Hulls] | None:
-    """The family of the arms at points p, (n,), in order, and their hulls; None where there is no family.
+    """The family of the arms at points p, (n,), in order, and the hulls of the arms; None if no family
+    exists.
 
-    first: eigenvalues at the first point, (m,), leading ones first.
+    first: eigenvalues at the first point, (m,), leading first.
     """
     low, high = float(p.min()), float(p.max())
     if not low < high:
@@ -159,14 +152,14 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
 
 
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues to follow from p on, (m,), pairs whole; None where they cannot be had."""
+    """Eigenvalues to follow from p on, (m,), pairs unsplit; None if the solve fails."""
     try:
         modes = request.modes + further
         search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:
-        forget_solvers()
+        forget_all()
         return None
     if search.best is None:
         return None
@@ -175,13 +168,14 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: i
 
 
 class FollowedArms:
-    """Leading eigenvalues along a path, followed once from point to point, and from these to any other.
+    """Leading eigenvalues along a path, followed once from point to point; any p between is reached from the
+    nearest point.
 
-    Where following ends at a point it starts anew from there.
+    After a point at which following ends, a new interval starts.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
-        """p: points in order, (n,); modes: leading eigenvalues that are to be proved complete at each."""
+        """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
         self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
         self.intervals: list[Interval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
@@ -199,7 +193,7 @@ class FollowedArms:
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The leading eigenvalues at p; None where they are not followed, accurate and proved complete."""
+        """The leading eigenvalues at p; None unless followed, accurate and proved complete."""
         judged = self._judged.setdefault(p, [])
         if not any(modes <= one.asked for one in judged):
             judged += self._judge(p, modes)
@@ -239,7 +233,7 @@ class FollowedArms:
         start = float(one.p[i])
         for steps in STEPS_FROM_NEAREST:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track, known = _empty_track(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
+            track, known = track_from(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
             if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
                 return part(track, len(grid) - 1, len(grid)), int(known[-1])
@@ -274,7 +268,8 @@ class JudgedPlace(NamedTuple):
 
 
 def _counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
-    """How many of the eigenvalues at p a count finds to be all there are right of a line; 0 for none.
+    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
+    unconfirmed.
 
     here: track of this point alone.
     """

@@ -1,7 +1,7 @@
 """One attempt at the leading eigenvalues of a rod, and its verdict.
 
-A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether one is
-missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
+A mesh gives eigenvalues, Newton's method on D refines them, and the winding number of D shows whether an
+eigenvalue is missing. `rodsweep.solve.spectrum.search` decides on the next attempt.
 """
 
 from dataclasses import dataclass
@@ -13,35 +13,53 @@ import numpy as np
 from ...arrays import Complex
 from ...determinant.certificate.winding_number import Count
 from ...determinant.roots import Roots
+from ...discretization.straight.transverse_mesh import AnyMesh
+from ..backend.kept import forget_all
 from ..backend.petsc import PETSC_ERRORS
 from ..point import cause_of
-from .problem import Mesh, TransverseProblem, forget_solvers
+from .problem import TransverseProblem
 
-MAX_WAVES_PER_NODE = 2.0
-"""Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
-WIDE_GAP, WIDE_GAP_OF_FLUTTER = 0.2, 0.05
-"""Relative gap between two real parts that is wide enough for the line of a count, for a stable rod and for
-an unstable one. A count in a wider gap is cheaper; but if modes grow, eigenvalues far to the left converge
-last and need a finer mesh."""
-BEHIND = 0.05
-"""Distance of the last line behind the last eigenvalue found, in units of its modulus."""
-NO_GAP = 1e-6
-"""Relative gap below which two real parts count as equal."""
-BELOW, CLOSE_BELOW = 3.0, 1e-9
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CandidateSettings:
+    """Settings for the eigenvalues of a mesh, and for the lines used to count them."""
+
+    max_waves_per_node: float = 2.0
+    """Largest |q| of an eigenvalue that a mesh can represent, in units of the number of nodes."""
+    wide_gap: float = 0.2
+    """Relative gap between two real parts of a stable rod that is wide enough for the line of a count; a
+    count in a wider gap is cheaper."""
+    wide_gap_of_flutter: float = 0.05
+    """`wide_gap` of an unstable rod: smaller, because eigenvalues far to the left converge last and need a
+    finer mesh."""
+    behind: float = 0.05
+    """Distance of the last line behind the last eigenvalue found, in units of its modulus."""
+    far_behind: float = 0.5
+    """Distance behind a followed leading eigenvalue of the first line for its count, in units of the modulus.
+    A distant line takes fewer nodes; `behind` follows, in case another eigenvalue lies between."""
+    no_gap: float = 1e-6
+    """Relative gap below which two real parts count as equal."""
+    lines_tried: int = 3
+    """Number of lines tried before the count is given up."""
+
+
+CANDIDATES = CandidateSettings()
+
+BELOW = 3.0
+CLOSE_BELOW = 1e-9
 """Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its error and
 of its modulus."""
-LINES_TRIED = 3
-"""Number of lines tried before the count is given up."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
     """Result of one attempt: k roots of D, sorted as defined in `rodsweep.model`.
 
-    vectors: of the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty.
+    vectors: eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or
+    empty.
     """
 
-    mesh: Mesh
+    mesh: AnyMesh
     roots: Roots
     vectors: Complex | None
     failure: str = ""
@@ -67,7 +85,7 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
+def attempt(problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
     """Eigenvalues nearest the shift of the problem, at least `wanted` if enough converge, without spurious
     ones.
 
@@ -76,21 +94,23 @@ def attempt(problem: TransverseProblem, mesh: Mesh, wanted: int, vectors: bool, 
     succeed.
     """
     raw: Complex = np.empty(0, complex)
-    kept, failure = None, ""
+    kept = None
+    failure = ""
     try:
         solver = problem.solver(mesh)
         raw = solver.solve(problem.rod, problem.shift, wanted, tight)
         kept = solver.vectors(len(raw)) if vectors else None
     except PETSC_ERRORS as error:
-        forget_solvers()
+        forget_all()
         failure = cause_of(error)
-    kept_roots = problem.roots(raw, MAX_WAVES_PER_NODE * mesh.elements * mesh.order)
+    kept_roots = problem.roots(raw, CANDIDATES.max_waves_per_node * mesh.elements * mesh.order)
     kept = kept[:, kept_roots.chosen] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)
 
 
 def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
-    """Counts the eigenvalues right of a line that lies left of the last wanted and of every unstable mode."""
+    """Counts the eigenvalues right of a line, and compares with those found. The line lies left of all wanted
+    and all unstable eigenvalues."""
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     last = w[modes - 1]
@@ -117,15 +137,15 @@ def lines(w: list[complex], modes: int) -> list[float]:
 
     The last line lies behind all eigenvalues found, where the count may include further eigenvalues.
     """
-    wide = WIDE_GAP_OF_FLUTTER if w[0].real > 0 else WIDE_GAP
+    wide = CANDIDATES.wide_gap_of_flutter if w[0].real > 0 else CANDIDATES.wide_gap
     target = min(w[modes - 1].real, 0.0)
     below = [target] + [value.real for value in w if value.real < target]
     gaps = []
     for right, left in zip(below[:-1], below[1:], strict=True):
         width = (right - left) / abs(left)
-        if width > NO_GAP:
+        if width > CANDIDATES.no_gap:
             gaps.append((min(width, wide), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last = below[-1]
-    behind = last - BEHIND * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: LINES_TRIED - 1]), behind]
+    behind = last - CANDIDATES.behind * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
+    return [*(middle for _, middle in gaps[: CANDIDATES.lines_tried - 1]), behind]

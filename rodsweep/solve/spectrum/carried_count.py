@@ -15,11 +15,12 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from .prediction import Track
 
-RECTANGLES, RECTANGLES_PER_POINT = 60, 20
+RECTANGLES = 60
+RECTANGLES_PER_POINT = 20
 """Number of rectangles after which a proof is given up: the first number plus the second per point; a count
 at a point costs as much as twenty rectangles."""
 WIDE_ENOUGH = 0.2
-"""Relative half width above which all gaps are equally good; the last of these is taken."""
+"""Relative half width above which all gaps are equally good; the last wide gap is taken."""
 NARROWEST_GAP = 1e-6
 """Relative half width below which a gap is not used."""
 
@@ -27,7 +28,8 @@ NARROWEST_GAP = 1e-6
 @compiled
 def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
     """(middle of the gap behind the first `gap` eigenvalues of point i, half its relative width)."""
-    right, left = track.w[i, track.order[i, gap - 1]].real, track.w[i, track.order[i, gap]].real
+    right = track.w[i, track.order[i, gap - 1]].real
+    left = track.w[i, track.order[i, gap]].real
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
@@ -37,11 +39,13 @@ def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
 @compiled
 def best_gap(track: Track, i: int, modes: int) -> int:
     """The gap for a count at point i, behind at least `modes` eigenvalues and left of the axis; 0 if none."""
-    best, widest = 0, NARROWEST_GAP
+    best = 0
+    widest = NARROWEST_GAP
     for gap in range(modes, track.w.shape[1]):
         width = line_in(track, i, gap)[1]
         if width >= widest:
-            best, widest = gap, width
+            best = gap
+            widest = width
     return best
 
 
@@ -64,11 +68,14 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 @compiled
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
     """The widest gap among the first `known` that stays open between two points; 0 without an open gap."""
-    best, widest = 0, NARROWEST_GAP
+    best = 0
+    widest = NARROWEST_GAP
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
-        (here, wide), (there, wide_there) = line_in(track, ends[0], gap), line_in(track, ends[1], gap)
+        here, wide = line_in(track, ends[0], gap)
+        there, wide_there = line_in(track, ends[1], gap)
         if min(wide, wide_there) >= widest and _stays_open(track, ends, gap, (here, there), p):
-            best, widest = gap, min(wide, wide_there)
+            best = gap
+            widest = min(wide, wide_there)
     return best
 
 
@@ -87,19 +94,22 @@ def carry(
     coefficients: (points, 4). p: (points,). known: number of leading eigenvalues that are all right of a
     line, (points,); given at the first point, filled here.
     """
-    i, last = 0, len(p) - 1
+    i = 0
+    last = len(p) - 1
     ahead = last
     while i < last:
         j = min(i + ahead, last)
         gap = _gap_between(track, (i, j), modes, known[i], p)
         proved = False
         if gap > 0:
-            first, end = _end(track, i, gap, p, coefficients), _end(track, j, gap, p, coefficients)
+            first = _end(track, i, gap, p, coefficients)
+            end = _end(track, j, gap, p, coefficients)
             most = RECTANGLES + RECTANGLES_PER_POINT * (j - i)
             proved, _ = none_crosses(first, end, direction, most)
         if proved:
             known[i + 1 : j + 1] = gap
-            i, ahead = j, 2 * ahead
+            i = j
+            ahead = 2 * ahead
         elif j == i + 1:
             return i
         else:
@@ -116,12 +126,14 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
     eigenvalue.
     """
     n = len(known)
-    good, unstable = np.empty(n, np.bool_), np.zeros(n, np.int64)
+    good = np.empty(n, np.bool_)
+    unstable = np.zeros(n, np.int64)
     for s in range(n):
         good[s] = known[s] >= modes
         for rank in range(known[s]):
             k = track.order[s, rank]
-            w, error = track.w[s, k], track.error[s, k]
+            w = track.w[s, k]
+            error = track.error[s, k]
             if abs(w.real) <= max(4 * error, ON_THE_AXIS * abs(w)):
                 good[s] = False
             if rank < modes and not error <= min(BLURRED, accuracy / 2) * abs(w):
@@ -134,9 +146,11 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
 def leading(track: Track, modes: int) -> tuple[Complex, Array]:
     """The leading `modes` eigenvalues and their errors, (points, modes) each."""
     n = track.w.shape[0]
-    w, error = np.empty((n, modes), np.complex128), np.empty((n, modes))
+    w = np.empty((n, modes), np.complex128)
+    error = np.empty((n, modes))
     for s in range(n):
         for rank in range(modes):
             k = track.order[s, rank]
-            w[s, rank], error[s, rank] = track.w[s, k], track.error[s, k]
+            w[s, rank] = track.w[s, k]
+            error[s, rank] = track.error[s, k]
     return w, error

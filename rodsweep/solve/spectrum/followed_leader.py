@@ -1,4 +1,4 @@
-"""The leading eigenvalue of a rod from that of a neighbouring rod, without a mesh.
+"""The leading eigenvalue of a rod from the leading eigenvalue of a neighbouring rod, without a mesh.
 
 Newton's method on D follows the eigenvalue; the winding number proves that it still leads.
 """
@@ -7,11 +7,7 @@ from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.newton import refined
 from ...determinant.roots import root_error
 from ...model.rod import Rod
-from .candidates import BEHIND
-
-FAR_BEHIND = 0.5
-"""Distance behind the eigenvalue of the first line for a count, in units of the modulus. A distant line takes
-fewer nodes; BEHIND follows, in case another eigenvalue lies between."""
+from .candidates import CANDIDATES
 
 
 def followed_leader(rod: Rod, near: complex, accuracy: float) -> complex | None:
@@ -24,5 +20,6 @@ def followed_leader(rod: Rod, near: complex, accuracy: float) -> complex | None:
     if not error <= accuracy * abs(w) or w.imag < 0 or (w.imag == 0) != (near.imag == 0):
         return None
     number = 2 if w.imag else 1
-    leads = any(count_right_of(w.real - far * abs(w), rod).number == number for far in (FAR_BEHIND, BEHIND))
+    lines = (w.real - far * abs(w) for far in (CANDIDATES.far_behind, CANDIDATES.behind))
+    leads = any(count_right_of(line, rod).number == number for line in lines)
     return w if leads else None

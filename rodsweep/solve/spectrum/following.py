@@ -47,13 +47,15 @@ def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -
 
 @compiled
 def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, noise: float) -> Corrected:
-    """One Newton step from D, its derivatives by w and p, and its rounding error; real w stays real."""
+    """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
     size = abs(D_w)
     if not size > 0:
         return Corrected(w, 0j, math.inf, math.inf)
-    step, slope = D / D_w, -D_p / D_w
+    step = D / D_w
+    slope = -D_p / D_w
     if w.imag == 0:
-        step, slope = complex(step.real, 0.0), complex(slope.real, 0.0)
+        step = complex(step.real, 0.0)
+        slope = complex(slope.real, 0.0)
     return Corrected(w - step, slope, abs(step), TYPICAL_NOISE * noise / size)
 
 
@@ -68,16 +70,45 @@ def crowding_of(w: Complex, k: int) -> float:
 
 
 @compiled
+def settled_error(here: Corrected, crowding: float, exact: bool) -> float:
+    """Error of an eigenvalue, with the remainder crowding step^2; inf until that is small enough."""
+    left = crowding * here.step * here.step
+    allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWED_ACCURACY * abs(here.w)
+    if left <= allowed or here.step <= ROUNDING_STEP * here.blur:
+        return max(here.blur, min(left, here.step))
+    return math.inf
+
+
+@compiled
+def keep(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool:
+    """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
+
+    False for a pair that has become real. The error of eigenvalue k is in the track already.
+    """
+    w = track.w[i]
+    slope = track.slope[i]
+    error = track.error[i]
+    w[k] = last.w
+    slope[k] = last.slope
+    if mate >= 0:
+        if not w[k].imag > REAL_BELOW * abs(w[k]):
+            return False
+        w[mate] = w[k].conjugate()
+        slope[mate] = slope[k].conjugate()
+        error[mate] = error[k]
+    return True
+
+
+@compiled
 def _settled(
     first: Corrected, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[Corrected, float]:
     """(last correction, error): Newton steps until the estimated remainder, crowding step^2, is small."""
     here = first
     for _ in range(MAX_EIGENVALUE_CORRECTIONS):
-        left = crowding * here.step * here.step
-        allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWED_ACCURACY * abs(here.w)
-        if left <= allowed or here.step <= ROUNDING_STEP * here.blur:
-            return here, max(here.blur, min(left, here.step))
+        error = settled_error(here, crowding, exact)
+        if error < math.inf:
+            return here, error
         here = corrected(here.w, rod, direction)
     return here, math.inf
 
@@ -98,8 +129,12 @@ def distinct_roots(w: Complex, error: Array) -> bool:
 def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Corrects the guesses for point i into the track; whether all converged and every pair stayed a pair."""
-    w, slope, error, order = track.w[i], track.slope[i], track.error[i], track.order[i]
+    """Corrects the guesses for point i and writes the roots to the track. True if all converged and every
+    pair stayed a pair.
+    """
+    w = track.w[i]
+    error = track.error[i]
+    order = track.order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
     mates_of(guess, mate)
@@ -117,12 +152,8 @@ def _correct_all(
         k = order[rank]
         if guess[k].imag >= 0:
             last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
-            w[k], slope[k] = last.w, last.slope
-            if mate[k] >= 0:
-                if not w[k].imag > REAL_BELOW * abs(w[k]):
-                    return False
-                j = mate[k]
-                w[j], slope[j], error[j] = w[k].conjugate(), slope[k].conjugate(), error[k]
+            if not keep(track, i, k, mate[k], last):
+                return False
     sort_descending(w, order)
     return distinct_roots(w, error)
 

@@ -1,21 +1,17 @@
-"""Krylov-Schur for one uniform rod on equal elements; its matrices are affine in the coefficients."""
+"""Krylov-Schur for a uniform rod on equal elements, with matrices affine in the coefficients."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...arrays import Array, Complex
 from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.pencil import Pencil, assemble
+from ...discretization.straight.pencil import Pencil, assemble, fields_of, finite_eigenvalues
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import Loaded, ShiftInvertSolver
-
-EIGEN_SOLVERS_KEPT = 24
-"""Number of solvers kept for later points of equal resolution; a sweep uses few, and each takes some
-megabytes."""
+from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
 
 
 @compiled
@@ -46,9 +42,10 @@ class EigenSolver(ShiftInvertSolver):
         shift *= pace**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
-            raise FloatingPointError("the parameters overflow the matrix entries")
+            raise FloatingPointError("matrix entries overflow with these parameters")
         if rod.rotational_drag != self.gamma3:
-            self.gamma3, self.inertia = rod.rotational_drag, self.pencil.inertia(rod)
+            self.gamma3 = rod.rotational_drag
+            self.inertia = self.pencil.inertia(rod)
             self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
             self.B.assemble()
         if self.dense:
@@ -57,12 +54,16 @@ class EigenSolver(ShiftInvertSolver):
             values = coefficients @ self.pencil.pieces
             values[self.diagonal] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return Loaded(self.pencil.finite(rod), shift, pace)
+        return Loaded(finite_eigenvalues(rod, self.nodes), shift, pace)
+
+    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+        return fields_of(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, pace): its eigenvalues are those of `rod` times pace^2, its y are those of `rod` over
-    pace.
+    """(equivalent rod, pace): the equivalent rod has the eigenvalues of `rod` times pace^2, and y of `rod`
+    over pace.
 
     A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, with times scaled by
     nu^2. Near crushing the matrices of the beam itself are too badly scaled.
@@ -72,14 +73,9 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(EigenSolver, EIGEN_SOLVERS_KEPT)
+_kept = LruPool(EigenSolver, KRYLOV.uniform_solvers_kept)
 
 
 def eigen_solver(resolution: Resolution) -> EigenSolver:
     """The solver for a resolution; kept for later points."""
     return _kept.get(resolution)
-
-
-def forget_uniform_solvers() -> None:
-    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
-    _kept.clear()

@@ -34,6 +34,16 @@ class Track(NamedTuple):
     order: NDArray[np.int64]
 
 
+def track_from(first: Complex, points: int) -> Track:
+    """A track with the eigenvalues of its first point, (m,), the leading ones first."""
+    shape = (points, len(first))
+    order = np.zeros(shape, np.int64)
+    order[0] = np.arange(len(first))
+    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
+    track.w[0] = first
+    return track
+
+
 def part(track: Track, start: int, stop: int) -> Track:
     """The track from point start up to point stop."""
     here = slice(start, stop)
@@ -55,17 +65,22 @@ def mates_of(w: Complex, mate: NDArray) -> None:
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
     """Also makes mates of real eigenvalues that meet within some steps, the earliest meeting first."""
     while True:
-        soonest, a, b = CLOSING, -1, -1
+        soonest = CLOSING
+        a = -1
+        b = -1
         for k in range(len(w)):
             for j in range(k + 1, len(w)):
                 if mate[k] < 0 and mate[j] < 0 and w[k].imag == 0 and w[j].imag == 0:
                     closing = abs((slope[k] - slope[j]).real * step)
                     gap = abs(w[k] - w[j])
                     if gap < soonest * closing:
-                        soonest, a, b = gap / closing, k, j
+                        soonest = gap / closing
+                        a = k
+                        b = j
         if a < 0:
             return
-        mate[a], mate[b] = b, a
+        mate[a] = b
+        mate[b] = a
 
 
 @compiled
@@ -84,10 +99,11 @@ def extrapolated(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of two eigenvalues, squared half of their difference, slopes of both)."""
+    """(half the sum of two eigenvalues, squared half of the difference, slopes of these two numbers)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
-    middle, slope_of_middle = (w[k] + w[j]).real / 2, (slope[k] + slope[j]).real / 2
+    middle = (w[k] + w[j]).real / 2
+    slope_of_middle = (slope[k] + slope[j]).real / 2
     return middle, (half * half).real, slope_of_middle, (2 * half * slope_of_half).real
 
 
@@ -97,9 +113,12 @@ def _two_ahead(
 ) -> tuple[complex, complex, bool]:
     """Guesses for two eigenvalues extrapolated together; the larger real part or frequency comes first.
 
-    Where D has to decide what they are, both guesses are their middle and the last value is True.
+    If D has to decide between a real and a complex pair, both guesses are the middle and the last value is
+    True.
     """
     k, j = two
+    # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
+    # difference are smooth.
     middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
     before = square
     if i >= 2:
@@ -107,7 +126,8 @@ def _two_ahead(
         middle = extrapolated((middle_0, middle), (m0, m1), steps)
         square = extrapolated((square_0, square), (s0, s1), steps)
     else:
-        middle, square = middle + m1 * steps[1], square + s1 * steps[1]
+        middle = middle + m1 * steps[1]
+        square = square + s1 * steps[1]
     if square * before <= 0 or abs(square) < MEETING * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
@@ -129,10 +149,11 @@ def place_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], 
 def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
     """Guesses for point i >= 1, a rod with the coefficients, into `guess`, (m,); p: (points,).
 
-    decided: shape (m,), filled with the number of the other one where D has to decide what two are, whose
-    guess is their middle; -1 elsewhere.
+    decided: shape (m,), filled with -1; for two eigenvalues of which D has to decide whether they are real,
+    the index of the partner, and both guesses are the middle.
     """
-    w, slope = track.w[i - 1], track.slope[i - 1]
+    w = track.w[i - 1]
+    slope = track.slope[i - 1]
     mate = np.empty(len(w), np.int64)
     mates_of(w, mate)
     ahead = p[i] - p[i - 1]

@@ -1,7 +1,7 @@
 """The transverse eigenvalue problem of one rod for the search of leading eigenvalues.
 
-A uniform rod of linear material has D in closed form and a pencil that is affine in its coefficients. Every
-other arm has D from propagators and a pencil that is filled anew.
+For a uniform rod of linear material, D has a closed form and the pencil is affine in the coefficients. For
+every other arm, D comes from propagators and the pencil is assembled anew.
 """
 
 from abc import ABC, abstractmethod
@@ -22,16 +22,12 @@ from ...determinant.roots import Roots, roots
 from ...discretization.elements.resolution import Resolution, expected_wave_number, finer, resolution_for
 from ...discretization.straight.arm_pencil import ArmMesh
 from ...discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh
+from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod
-from .arm_solver import ArmSolver, arm_solver, forget_arm_solvers
-from .krylov_schur import EigenSolver, eigen_solver, forget_uniform_solvers
-
-SHIFT_ABOVE_GROWTH = 1.05
-"""Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
-
-Mesh = Resolution | ArmMesh
-"""Mesh of a uniform rod or of an arm."""
+from .arm_solver import ArmSolver, arm_solver
+from .krylov_schur import EigenSolver, eigen_solver
+from .shift_invert import KRYLOV
 
 
 class TransverseProblem(ABC):
@@ -50,17 +46,17 @@ class TransverseProblem(ABC):
     def mesh_for(self, modes: int, accuracy: float) -> Any:
         """The mesh expected to give a number of leading modes to a relative accuracy."""
 
-    @abstractmethod
-    def finer(self, mesh: Any) -> Any:
+    def finer(self, mesh: AnyMesh) -> AnyMesh:
         """The next mesh after a mesh that is too coarse."""
+        return finer_mesh(self.rod, mesh)
 
     @abstractmethod
-    def informed(self, mesh: Any, waves: Array, accuracy: float) -> Any:
-        """The next mesh, from the wave numbers of the leading modes found, (modes,)."""
+    def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
+        """The next mesh, chosen for the wave numbers of the leading modes found, (modes,)."""
 
-    @abstractmethod
-    def solver(self, mesh: Any) -> Any:
+    def solver(self, mesh: AnyMesh) -> EigenSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
+        return eigen_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
     def roots(self, raw: Complex, most_waves: float) -> Roots:
@@ -80,16 +76,6 @@ class TransverseProblem(ABC):
         """Whether a count is possible; False if it fails for every line at most 0."""
         return True
 
-    @abstractmethod
-    def fields(self, mesh: Any, vectors: Complex) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes of a mesh, (nodes + 1, k) each, from vectors of the last solve, (unknowns,
-        k)."""
-
-    def evaluation(self, mesh: Any, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
-        matrix: Array = self.solver(mesh).pencil.evaluation(points)
-        return matrix
-
 
 class UniformProblem(TransverseProblem):
     """The problem of a uniform rod of linear material."""
@@ -99,23 +85,17 @@ class UniformProblem(TransverseProblem):
     def __init__(self, rod: Rod):
         self.rod = rod
         growth, self._wave = most_amplified_wave(rod)
-        self.shift = SHIFT_ABOVE_GROWTH * growth
+        self.shift = KRYLOV.shift_above_growth * growth
         self._amplification = sqrt(squared_amplification(rod))
         self.bounded = isfinite(self._amplification)
 
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
-    def finer(self, mesh: Resolution) -> Resolution:
-        return finer(mesh)
-
-    def informed(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
+    def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the wave numbers, (modes,), but at least the next finer mesh."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer(mesh), key=lambda each: each.unknowns)
-
-    def solver(self, mesh: Resolution) -> EigenSolver:
-        return eigen_solver(mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
@@ -123,10 +103,6 @@ class UniformProblem(TransverseProblem):
 
     def count(self, line: float, found: Roots | None = None) -> Count:
         return count_right_of(line, self.rod)
-
-    def fields(self, mesh: Resolution, vectors: Complex) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors, (unknowns, k)."""
-        return eigen_solver(mesh).pencil.fields(vectors, self.rod)
 
 
 class ArmProblem(TransverseProblem):
@@ -140,20 +116,14 @@ class ArmProblem(TransverseProblem):
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
         growth, _ = local_growth(rod)
-        self.shift = SHIFT_ABOVE_GROWTH * float(growth.max())
+        self.shift = KRYLOV.shift_above_growth * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
 
-    def finer(self, mesh: ArmMesh) -> ArmMesh:
-        return finer_arm_mesh(self.rod, mesh)
-
-    def informed(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
+    def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
         """The next finer mesh; the wave numbers, (modes,), are ignored."""
         return finer_arm_mesh(self.rod, mesh)
-
-    def solver(self, mesh: ArmMesh) -> ArmSolver:
-        return arm_solver(mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
@@ -170,18 +140,7 @@ class ArmProblem(TransverseProblem):
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
         return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
 
-    def fields(self, mesh: ArmMesh, vectors: Complex) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
-        solver = arm_solver(mesh)
-        return solver.pencil.fields(vectors, solver.matrices.scale)
-
 
 def problem_of(rod: Rod) -> TransverseProblem:
     """The problem of a rod: uniform, or an arm."""
     return UniformProblem(rod) if rod.standard else ArmProblem(rod)
-
-
-def forget_solvers() -> None:
-    """Drops every kept solver: a PETSc object is unusable after an error inside PETSc."""
-    forget_uniform_solvers()
-    forget_arm_solvers()

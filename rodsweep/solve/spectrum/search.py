@@ -9,35 +9,49 @@ is ok once all three are sufficient.
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...discretization.elements.resolution import MOST_UNKNOWNS, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...model.rod import Rod
+from ..backend.kept import forget_all
 from ..point import solved
 from .candidates import Candidates, Verdict, attempt, judge
-from .problem import TransverseProblem, forget_solvers, problem_of
+from .problem import TransverseProblem, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
 __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
-SPARE_MODES = 1
-"""Number of eigenvalues requested beyond the count of the winding number."""
-UNKNOWNS_A_MODE = 6
-"""Fewest unknowns of a mesh for each requested eigenvalue."""
-ENOUGH_UNPROVED = 50
-"""Number of growing modes after which no more are solved for if no count is possible: each doubling costs
-several times as much, and nothing is proved in the end."""
-MAX_MESHES_TRIED = 12
-"""Maximum number of attempts."""
-MAX_FAILURES = 3
-"""Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
-NO_PROGRESS = 2
-"""Number of refinements without a smaller error after which rounding is taken as the limit."""
-ERROR_SHARE, STALLED_ERROR_SHARE = 0.5, 0.8
-"""Largest error estimate in units of the accuracy: it is an estimate only. The second value holds if rounding
-limits the error."""
-LARGEST_DISPLACEMENT, UNBOUNDED_DISPLACEMENT = 1e-3, 1e-6
-"""Relative distance of the mesh's eigenvalues from the roots of D, above which the mesh may have missed an
-eigenvalue. The second value holds without an a-priori bound, if convergence is the only evidence."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchSettings:
+    """Settings of the search for one spectrum: meshes, attempts and accepted errors."""
+
+    spare_modes: int = 1
+    """Number of eigenvalues requested beyond the count of the winding number."""
+    unknowns_a_mode: int = 6
+    """Fewest unknowns of a mesh for each requested eigenvalue."""
+    enough_unproved: int = 50
+    """Number of growing modes after which no more are solved for if no count is possible: each doubling costs
+    several times as much, and nothing is proved in the end."""
+    max_meshes: int = 12
+    """Maximum number of attempts."""
+    max_failures: int = 3
+    """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
+    no_progress: int = 2
+    """Number of refinements without a smaller error after which rounding is taken as the limit."""
+    progress: float = 0.5
+    """Largest ratio of the errors of two attempts that counts as progress."""
+    error_share: float = 0.5
+    """Largest error estimate in units of the accuracy: it is an estimate only."""
+    stalled_error_share: float = 0.8
+    """`error_share` if rounding limits the error."""
+    largest_displacement: float = 1e-3
+    """Relative distance of the mesh's eigenvalues from the roots of D, above which the mesh may have missed
+    an eigenvalue."""
+    unbounded_displacement: float = 1e-6
+    """`largest_displacement` without an a-priori bound, if convergence is the only evidence."""
+
+
+SEARCH = SearchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +73,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is a status, never an exception."""
 
     def failed(cause: str) -> Spectrum:
-        forget_solvers()
+        forget_all()
         return no_spectrum(SpectrumStatus.failed, request, cause)
 
     if rod.uniform and not rod.standard:
@@ -86,7 +100,9 @@ class Search:
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
-        self.problem, self.request, self.modes = problem_of(rod), request, request.modes
+        self.problem = problem_of(rod)
+        self.request = request
+        self.modes = request.modes
         self.with_vectors = request.vector_nodes > 0
         bounded = self.problem.bounded
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
@@ -102,8 +118,8 @@ class Search:
 
     def outcome(self) -> Spectrum:
         """Tries meshes until the result is good enough or improves no more."""
-        for turn in range(MAX_MESHES_TRIED):
-            if self.mesh.unknowns > MOST_UNKNOWNS or self.failures > MAX_FAILURES:
+        for turn in range(SEARCH.max_meshes):
+            if self.mesh.unknowns > RESOLUTION.most_unknowns or self.failures > SEARCH.max_failures:
                 break
             tight = self.with_vectors or turn > 0
             found = attempt(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
@@ -111,9 +127,9 @@ class Search:
             if judged is None:
                 continue
             self.keep(judged)
-            if judged.short <= ERROR_SHARE or self.stalled >= NO_PROGRESS:
+            if judged.short <= SEARCH.error_share or self.stalled >= SEARCH.no_progress:
                 break
-            self.mesh = self.problem.informed(found.mesh, found.roots.wave[: self.modes], self.aim)
+            self.mesh = self.problem.next_mesh_for(found.mesh, found.roots.wave[: self.modes], self.aim)
         return self.concluded()
 
     def judged(self, found: Candidates) -> JudgedCandidates | None:
@@ -122,14 +138,16 @@ class Search:
             # Too few converged, or converged to no root, or SLEPc failed: request more, on a finer mesh.
             self.failures += bool(found.failure)
             self.why = found.failure or self.why
-            self.wanted, self.mesh = self.wanted + self.modes, self.problem.finer(self.mesh)
+            self.wanted = self.wanted + self.modes
+            self.mesh = self.problem.finer(self.mesh)
             return None
         if self.wants_the_axis(found):
             self.reach_the_axis(len(found.roots.w))
             return None
         verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
         if verdict is not None and verdict.count.number is None and found.roots.ahead:
-            self.unresolved, self.mesh = True, self.problem.finer(self.mesh)
+            self.unresolved = True
+            self.mesh = self.problem.finer(self.mesh)
             return None
         if verdict is not None and verdict.count.number is not None and not verdict.agrees:
             self.lost = verdict
@@ -145,7 +163,7 @@ class Search:
         error = found.worst(self.modes) / self.request.accuracy
         if verdict is not None and verdict.agrees and not self.with_vectors:
             return error
-        allowed = LARGEST_DISPLACEMENT if self.problem.bounded else UNBOUNDED_DISPLACEMENT
+        allowed = SEARCH.largest_displacement if self.problem.bounded else SEARCH.unbounded_displacement
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
@@ -154,36 +172,40 @@ class Search:
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer(self.mesh)
             return
-        more = number + SPARE_MODES
+        more = number + SEARCH.spare_modes
         if more <= self.wanted:  # the missing ones are further from the shift, or unresolved
-            more, self.mesh = self.wanted + number - here + SPARE_MODES, self.problem.finer(self.mesh)
+            more = self.wanted + number - here + SEARCH.spare_modes
+            self.mesh = self.problem.finer(self.mesh)
         self.request_more(more)
 
     def wants_the_axis(self, found: Candidates) -> bool:
         """Whether eigenvalues beyond the axis are needed for a count, or for a list that nothing proves."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
-        return len(found.roots.w) < ENOUGH_UNPROVED or self.problem.countable
+        return len(found.roots.w) < SEARCH.enough_unproved or self.problem.countable
 
     def reach_the_axis(self, number: int) -> None:
         """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""
         self.unresolved = True
         if number < self.wanted:
             self.mesh = self.problem.finer(self.mesh)
-        self.request_more(max(self.wanted, 2 * number + SPARE_MODES))
+        self.request_more(max(self.wanted, 2 * number + SEARCH.spare_modes))
 
     def request_more(self, wanted: int) -> None:
         """Requests a larger number of eigenvalues, on a mesh that holds as many."""
-        while wanted > self.mesh.unknowns // UNKNOWNS_A_MODE and self.mesh.unknowns <= MOST_UNKNOWNS:
+        while (
+            wanted > self.mesh.unknowns // SEARCH.unknowns_a_mode
+            and self.mesh.unknowns <= RESOLUTION.most_unknowns
+        ):
             self.mesh = self.problem.finer(self.mesh)
         self.wanted = wanted
 
     def keep(self, judged: JudgedCandidates) -> None:
         """Keeps the candidates if better than all before; counts attempts without progress."""
         best = self.best
-        progress = best is None or judged.grade < (best.grade[0], 0.5 * best.short)
-        self.stalled = 0 if progress else self.stalled + 1
-        if best is None or judged.grade <= best.grade or judged.short <= ERROR_SHARE:
+        better = best is None or judged.grade < (best.grade[0], SEARCH.progress * best.short)
+        self.stalled = 0 if better else self.stalled + 1
+        if best is None or judged.grade <= best.grade or judged.short <= SEARCH.error_share:
             self.best = judged
 
     def concluded(self) -> Spectrum:
@@ -202,8 +224,10 @@ class Search:
 
 def _result(best: JudgedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The outcome with its numbers and the extent of their proof."""
-    found, verdict = best.found.roots, best.verdict
-    status = SpectrumStatus.ok if best.short <= STALLED_ERROR_SHARE else SpectrumStatus.accuracy_not_reached
+    found = best.found.roots
+    verdict = best.verdict
+    accurate = best.short <= SEARCH.stalled_error_share
+    status = SpectrumStatus.ok if accurate else SpectrumStatus.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
     w: Any = found.w.tolist()
     on_the_axis: Any = found.on_the_axis.tolist()
@@ -213,7 +237,8 @@ def _result(best: JudgedCandidates, problem: TransverseProblem, request: Spectru
         if undecided:
             status = SpectrumStatus.undecided
         elif not proved:
-            status, message = SpectrumStatus.not_certified, verdict.count.why_not if verdict else ""
+            status = SpectrumStatus.not_certified
+            message = verdict.count.why_not if verdict else ""
     unstable = sum(value.real > 0 for value in w)
     # Without a request for a proof, the unstable modes are known if the search went beyond them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))

@@ -8,6 +8,7 @@ otherwise a sparse one.
 """
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -18,22 +19,43 @@ from ...model.rod import Rod
 from ...watch import report
 from ..backend.petsc import PETSc, SLEPc, sparse_package
 
-DENSE_UP_TO = 300
-"""Number of unknowns up to which the dense factorisation is as fast as the sparse, with smaller rounding
-errors."""
-START_TOLERANCE, START_SPARE = 1e-4, 5
-"""Krylov tolerance, and number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are
-refined on D."""
-TIGHT_TOLERANCE, TIGHT_SPARE = 1e-14, 13
-"""The same for eigenvalues and vectors that are not refined: the mesh is then the only error."""
-MAX_RESTARTS = 200
-"""Maximum number of restarts of the Krylov space."""
-STEPS_OF_INFINITY = 2
-"""Number of steps of shift-and-invert that remove the components of infinite eigenvalues: one, or two for k2
-= inf. A larger Krylov space contains only rounding errors in addition, on which LAPACK may fail (trexc)."""
-START_WIDTH = 3.3
-"""Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
-every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KrylovSettings:
+    """Settings of Krylov-Schur by shift-and-invert, and of the solvers kept from point to point."""
+
+    shift_above_growth: float = 1.05
+    """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
+    dense_up_to: int = 300
+    """Number of unknowns up to which the dense factorisation is as fast as the sparse, with smaller rounding
+    errors."""
+    start_tolerance: float = 1e-4
+    """Krylov tolerance for eigenvalues that are refined on D."""
+    start_spare: int = 5
+    """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues that are refined on D."""
+    tight_tolerance: float = 1e-14
+    """Krylov tolerance for eigenvalues and vectors that are not refined: the mesh is then the only error."""
+    tight_spare: int = 13
+    """Number of Krylov vectors beyond the wanted eigenvalues, for eigenvalues and vectors that are not
+    refined."""
+    max_restarts: int = 200
+    """Maximum number of restarts of the Krylov space."""
+    steps_of_infinity: int = 2
+    """Number of steps of shift-and-invert that remove the components of infinite eigenvalues: one, or two for
+    k2 = inf. A larger Krylov space contains only rounding errors in addition, on which LAPACK may fail
+    (trexc)."""
+    start_width: float = 3.3
+    """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip,
+    which every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""
+    uniform_solvers_kept: int = 24
+    """Number of solvers kept for later points of equal resolution; a sweep uses few, and each takes some
+    megabytes."""
+    arm_solvers_kept: int = 8
+    """Number of solvers kept for later points on equal meshes of arms."""
+
+
+KRYLOV = KrylovSettings()
+
 SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
 
@@ -77,17 +99,19 @@ class Loaded(NamedTuple):
 class ShiftInvertSolver(ABC):
     """Krylov-Schur for pencils of one pattern; `solve` may be called any number of times.
 
-    mass: of the nodes without the clamp, (nodes,), for the first Krylov vector.
+    mass: mass of the nodes without the clamp, (nodes,), for the first Krylov vector.
     """
 
     def __init__(self, pattern: Pattern, mass: Array):
-        self.nodes, n = pattern.nodes, pattern.unknowns
+        self.nodes = pattern.nodes
+        n = pattern.unknowns
         package = sparse_package()
-        self.dense = n <= DENSE_UP_TO or package is None
+        self.dense = n <= KRYLOV.dense_up_to or package is None
         self.diagonal = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
-        self.A, self.B = PETSc.Mat(), PETSc.Mat()
+        self.A = PETSc.Mat()
+        self.B = PETSc.Mat()
         if self.dense:
             self.A.createDense([n, n], comm=PETSc.COMM_SELF).setUp()
         else:
@@ -96,7 +120,7 @@ class ShiftInvertSolver(ABC):
         self.line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         first = np.zeros(n)
-        distance = (1 - pattern.positions[1:]) * pattern.nodes / START_WIDTH
+        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.start_width
         first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
@@ -125,6 +149,10 @@ class ShiftInvertSolver(ABC):
     def load(self, rod: Rod, shift: float) -> Loaded:
         """Fills A - shift B and B for a rod."""
 
+    @abstractmethod
+    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+        """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
+
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
         """At least `wanted` eigenvalues nearest the shift if they converge, unsorted, complex, (k,), in
         1/tau2.
@@ -138,10 +166,11 @@ class ShiftInvertSolver(ABC):
         self.eps.setOperators(self.A, self.B)
         most = self.loaded.finite
         wanted = min(wanted, most - 1)  # a conjugate pair may add one
-        spare, tolerance = (TIGHT_SPARE, TIGHT_TOLERANCE) if tight else (START_SPARE, START_TOLERANCE)
+        spare = KRYLOV.tight_spare if tight else KRYLOV.start_spare
+        tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.start_tolerance
         krylov = self.users_krylov or max(2 * wanted, wanted + spare)
-        self.eps.setTolerances(self.users_tolerance or tolerance, MAX_RESTARTS)
-        krylov = min(krylov, most + STEPS_OF_INFINITY)
+        self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV.max_restarts)
+        krylov = min(krylov, most + KRYLOV.steps_of_infinity)
         self.eps.setDimensions(wanted, krylov, krylov)
         self.eps.setInitialSpace(self.start)
         self.eps.solve()

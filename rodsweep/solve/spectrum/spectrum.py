@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import tip_scale
-from .problem import Mesh, TransverseProblem
+from ...discretization.straight.transverse_mesh import AnyMesh
+from .problem import TransverseProblem
 from .status import SpectrumStatus
 
 
@@ -25,7 +26,7 @@ class SpectrumRequest:
 
 
 EachRod = Any
-"""A number of one rod, or the numbers of n rods that were solved together, (n,)."""
+"""A number of a rod, or the numbers of n rods solved together, (n,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,8 +37,8 @@ class Spectrum:
     |D/D'|, (modes,): at least a tenth of the error, and at most ten times the error or the effect of rounding
     of the force or of w. unstable_count: number of eigenvalues with Re w > 0, -1 if unknown; proved if
     requested. certified: whether the winding number proves that no eigenvalue right of the last mode is
-    missing. elements, order: of the mesh, 0 without a mesh. seconds: for several rods the mean. vectors: (Y,
-    Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
+    missing. elements, order: numbers of the mesh, 0 without a mesh. seconds: time of the solve, for several
+    rods the mean. vectors: (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
 
     status: EachRod
@@ -77,7 +78,7 @@ class Reached:
 
 
 def vectors_on_nodes(
-    problem: TransverseProblem, request: SpectrumRequest, mesh: Mesh, found: Complex | None
+    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: Complex | None
 ) -> Complex | None:
     """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), from vectors of a mesh, (unknowns, k).
 
@@ -85,8 +86,10 @@ def vectors_on_nodes(
     """
     if found is None:
         return None
-    y, theta = problem.fields(mesh, found[:, : request.modes])
-    matrix, scale = problem.evaluation(mesh, lobatto_points(request.vector_nodes)), tip_scale(y, theta)
+    solver = problem.solver(mesh)
+    y, theta = solver.fields(found[:, : request.modes], problem.rod)
+    matrix = solver.pencil.evaluation(lobatto_points(request.vector_nodes))
+    scale = tip_scale(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 

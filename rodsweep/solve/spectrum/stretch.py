@@ -11,24 +11,33 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod, coefficients_of
+from ..backend.kept import forget_all
 from ..point import FAILURES
 from .arm_stretch import followed_arms
 from .carried_count import best_gap, carry, judge_points, leading, line_in
 from .following import follow
-from .prediction import Track, part
-from .problem import forget_solvers
+from .prediction import Track, part, track_from
 from .search import Search, SpectrumRequest, solve_spectrum
 from .search import warm_up as warm_up_search
 from .spectrum import Reached, Spectrum
 from .status import SpectrumStatus
 
-FURTHER_MODES = 2
-"""Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StretchSettings:
+    """Settings for eigenvalues followed along a stretch."""
+
+    further_modes: int = 2
+    """Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+
+
+STRETCH = StretchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +72,11 @@ class Stretch:
 def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
     began = time.perf_counter()
-    n, modes = len(stretch), request.modes
+    n = len(stretch)
+    modes = request.modes
     columns = _unsolved(n, modes)
-    place, patience = 0, 1
+    place = 0
+    patience = 1
     while place < n:
         found = _followed(stretch, place, request)
         end = place + (len(found.good) if found else min(patience, n - place))
@@ -73,8 +84,10 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
         patience = 1 if found else 2 * patience
         if found:
             here = slice(place, end)
-            columns["eigenvalues"][here], columns["error_estimate"][here] = found.w, found.error
-            columns["unstable_count"][here], columns["certified"][here] = found.unstable, True
+            columns["eigenvalues"][here] = found.w
+            columns["error_estimate"][here] = found.error
+            columns["unstable_count"][here] = found.unstable
+            columns["certified"][here] = True
         for i in range(place, end):
             if not (found and found.good[i - place]):
                 alone = solve_spectrum(stretch.rod(i), request)
@@ -100,8 +113,9 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
-    """The points from `start` on that can be followed and counted; None if even the first cannot."""
-    rod, varies = stretch.path.rod, stretch.path.name == "taper"
+    """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
+    rod = stretch.path.rod
+    varies = stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.standard:
@@ -109,44 +123,54 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
     seed = _first_point(stretch.rod(start), request)
     if seed is None:
         return None
-    (first, complete), modes, n = seed, request.modes, len(stretch) - start
-    shape = (n, len(first))
-    order = np.zeros(shape, np.int64)
-    order[0] = np.arange(len(first))
-    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
-    track.w[0] = first
-    path = stretch.path
-    coefficients, p = stretch.coefficients[start:], stretch.coordinates[start:]
-    direction = path.direction
-    n = follow(track, coefficients, p, direction, modes)
+    first, complete = seed
+    modes = request.modes
+    rest = Stretch(stretch.path, stretch.values[start:])
+    track = track_from(first, len(rest))
+    n = follow(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
     if n == 0:
         return None
+    track = part(track, 0, n)
+    known = _known_along(rest, track, modes, complete)
+    reached = part(track, 0, len(known))
+    good, unstable = judge_points(reached, known, modes, request.accuracy)
+    return Reached(*leading(reached, modes), unstable, good)
+
+
+def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
+    """Numbers of leading eigenvalues that are proved complete at the first points of a track, (points,).
+
+    complete: the number at the first point. Where it cannot be carried on, a count gives the next number.
+    """
+    n = len(track.w)
+    coefficients = stretch.coefficients[:n]
+    p = stretch.coordinates[:n]
     known = np.zeros(n, np.int64)
-    known[0], at = complete, 0
+    known[0] = complete
+    at = 0
     while True:
-        at += carry(part(track, at, n), coefficients[at:n], p[at:n], direction, modes, known[at:])
+        rest = part(track, at, n)
+        at += carry(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
         if at == n - 1:
             break
         gap = best_gap(track, at + 1, modes)
         line = float(line_in(track, at + 1, gap)[0]) if gap else 0.0
-        if not gap or count_right_of(line, stretch.rod(start + at + 1)).number != gap:
+        if not gap or count_right_of(line, stretch.rod(at + 1)).number != gap:
             break
         at += 1
         known[at] = gap
-    reached = part(track, 0, at + 1)
-    good, unstable = judge_points(reached, known[: at + 1], modes, request.accuracy)
-    return Reached(*leading(reached, modes), unstable, good)
+    return known[: at + 1]
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, pairs unsplit; number of leading ones that are proved complete), or None."""
+    """(eigenvalues to follow, pairs unsplit; number of leading eigenvalues proved complete), or None."""
     try:
-        modes = request.modes + FURTHER_MODES
+        modes = request.modes + STRETCH.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:
-        forget_solvers()
+        forget_all()
         return None
     if search.best is None or search.best.verdict is None or not outcome.certified:
         return None

@@ -5,29 +5,44 @@ a shift above the growth rate of the most amplified wave; the number of eigenval
 leading ones stay the same. No result is certified.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.elements.resolution import MOST_UNKNOWNS, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
+from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
+from ..backend.kept import forget_all
 from ..point import Unsolvable, solved
-from .problem import Mesh, TransverseProblem, forget_solvers, problem_of
+from .problem import TransverseProblem, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
-MAX_FINER_MESHES_TRIED = 8
-"""Maximum number of meshes after the first, each with a third more unknowns."""
-FIRST_SPARE = 2
-"""Number of eigenvalues first requested beyond the wanted modes."""
-UNCHANGED = 1e-9
-"""Relative change below which the leading eigenvalues count as unchanged."""
-MESH_ERROR_FACTOR, EIGENVALUE_ROUNDING = 3.0, 3e-13
-"""Safety factor on the difference of two meshes, and rounding error of an eigenvalue in units of its modulus,
-the shift and F^2. Under a pull the first eigenvalue is exponentially small against F^2."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TwoMeshSettings:
+    """Settings for the comparison of two meshes."""
+
+    max_finer_meshes: int = 8
+    """Maximum number of meshes after the first, each with a third more unknowns."""
+    first_spare: int = 2
+    """Number of eigenvalues first requested beyond the wanted modes."""
+    unchanged: float = 1e-9
+    """Relative change below which the leading eigenvalues count as unchanged."""
+    mesh_error_factor: float = 3.0
+    """Safety factor on the difference of two meshes."""
+    rounding: float = 3e-13
+    """Rounding error of an eigenvalue in units of its modulus, the shift and F^2. Under a pull the first
+    eigenvalue is exponentially small against F^2."""
+    unknowns_a_mode: int = 3
+    """Fewest unknowns of a mesh for each requested eigenvalue: a third of the unknowns have no time
+    derivative, and coarse modes are not resolved."""
+
+
+TWO_MESHES = TwoMeshSettings()
 
 
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -37,21 +52,22 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """
 
     def failed(cause: str) -> Spectrum:
-        forget_solvers()
+        forget_all()
         return no_spectrum(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: _solve(rod, request), failed)
 
 
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    problem, modes = problem_of(rod), request.modes
+    problem = problem_of(rod)
+    modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
-    mesh: Mesh = problem.mesh_for(modes, aim)
+    mesh: AnyMesh = problem.mesh_for(modes, aim)
     before = _leading(problem, mesh, modes)
     best: Spectrum | None = None
-    for _ in range(MAX_FINER_MESHES_TRIED):
+    for _ in range(TWO_MESHES.max_finer_meshes):
         mesh = problem.finer(mesh)
-        if mesh.unknowns > MOST_UNKNOWNS:
+        if mesh.unknowns > RESOLUTION.most_unknowns:
             break
         found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
@@ -66,7 +82,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     if best is None:
         raise Unsolvable("no mesh within the limit gives the requested number of eigenvalues")
     # If rounding dominates, the error of either mesh may exceed the difference of both.
-    return replace(best, error_estimate=MESH_ERROR_FACTOR * best.error_estimate)
+    return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
 
 
 class _Found(NamedTuple):
@@ -77,22 +93,25 @@ class _Found(NamedTuple):
     indices: NDArray[np.intp]
 
 
-def _leading(problem: TransverseProblem, mesh: Mesh, modes: int) -> _Found:
+def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
     """Eigenvalues of a mesh, sorted; more eigenvalues do not change the leading `modes` ones.
 
     Empty if the mesh is too coarse for twice as many eigenvalues.
     """
-    solver, wanted, before = problem.solver(mesh), modes + FIRST_SPARE, np.empty(0, complex)
+    solver = problem.solver(mesh)
+    wanted = modes + TWO_MESHES.first_spare
+    before = np.empty(0, complex)
     while True:
         raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
-        same = len(leading) == len(before) == modes and np.allclose(leading, before, rtol=UNCHANGED, atol=0)
-        if same:
+        complete = len(leading) == len(before) == modes
+        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged, atol=0):
             return _Found(raw[order], order)
-        if 2 * wanted > mesh.unknowns // 3:
+        if 2 * wanted > mesh.unknowns // TWO_MESHES.unknowns_a_mode:
             return _Found(raw[:0], order[:0])
-        before, wanted = leading, 2 * wanted
+        before = leading
+        wanted = 2 * wanted
 
 
 def _worst(found: Spectrum) -> float:
@@ -113,17 +132,18 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     relative = np.max([padded[:-2], padded[1:-1], padded[2:]], axis=0)
     others = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     meeting = np.sqrt(1 + np.abs(w) / others.min(axis=1, initial=np.inf))
-    errors: Array = MESH_ERROR_FACTOR * relative * np.abs(w) + EIGENVALUE_ROUNDING * meeting * (
+    errors: Array = TWO_MESHES.mesh_error_factor * relative * np.abs(w) + TWO_MESHES.rounding * meeting * (
         np.abs(w) + scale
     )
     return errors
 
 
 def _spectrum(
-    problem: TransverseProblem, request: SpectrumRequest, mesh: Mesh, found: _Found, error: Array
+    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _Found, error: Array
 ) -> Spectrum:
     """The outcome of a mesh. error: absolute error of each eigenvalue found, (k,)."""
-    w, modes = found.w, request.modes
+    w = found.w
+    modes = request.modes
     enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
     if request.vector_nodes and enough:

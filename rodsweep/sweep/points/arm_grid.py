@@ -136,7 +136,8 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
             raise ValueError(f"parameters.arm.{section.load}: {force.failure}")
     if no_flutter:
         raise ValueError(
-            f"parameters.arm.{section.load} is relative to flutter, which no arm has with the likeliest drag"
+            f"parameters.arm.{section.load} is relative to flutter, but with the likeliest drag no arm "
+            "flutters"
         )
     k1 = float(beside["k1"][0])
     raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")

@@ -32,7 +32,7 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
     """Points of the sweep of a config; raises InputError for any value outside the model.
 
-    flutter: of all rods of `flutter_rods`, where it is known; else it is searched for here.
+    flutter: flutter forces of all rods of `flutter_rods`, if known; else they are searched for here.
     """
     parameters = config.parameters
     for name, value in parameters.numbers.items():

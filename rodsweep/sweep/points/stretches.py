@@ -68,6 +68,8 @@ class Stretches:
         """Flat indices of the points of a stretch, shape (n,)."""
         part, line = divmod(stretch, self.lines)
         along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
+        # Row-major index: `axis` has the stride inner, the axes before it together the stride shape[axis] *
+        # inner.
         inner = math.prod(self.shape[self.axis + 1 :])
         outer, within = divmod(line, inner)
         return outer * self.shape[self.axis] * inner + within + inner * along
@@ -82,7 +84,7 @@ class Stretches:
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
 
     def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
-        """Ranges of the stretches with missing points."""
+        """Stretches with missing points, as ranges of stretch numbers."""
         if total(missing) == math.prod(self.shape):
             return [(0, self.count)]
         missing_points = IndexSet(missing)

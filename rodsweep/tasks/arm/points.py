@@ -27,7 +27,7 @@ SMALLEST_OUTCOME = 10_000
 
 
 class NoRod(PointStatus):
-    """Outcome of a point that no rod covers, in every task."""
+    """Outcome, in every task, of a point to which the rod model does not apply."""
 
     not_slender = (
         NOT_SLENDER,
@@ -51,7 +51,7 @@ class NoRod(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class Uncovered:
-    """Outcome of a point that no rod covers."""
+    """Outcome of a point to which the rod model does not apply."""
 
     status: NoRod
     message: str = ""
@@ -59,7 +59,7 @@ class Uncovered:
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """Outcome of a point whose rod was already solved at another point."""
+    """Outcome of a point with a rod that was already solved at an earlier point."""
 
     outcome: Any
 
@@ -93,9 +93,9 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
 
 
 def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """A solver that keeps outcomes: a rank solves a rod once, although several points share the rod.
+    """A solver that keeps outcomes: a rank solves a rod once, even if the rod occurs at several points.
 
-    In chains, two points are equal if they have equal rods and start from the same state of a kept outcome.
+    In chains, two points are equal if their rods are equal and both start from the state of one kept outcome.
     Spectra along stretches are solved again, because a point takes less than a millisecond.
     """
     rods = None if solver.stretched else same_rods(points)
@@ -134,7 +134,7 @@ class _Outcomes:
 
 
 def around(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """A solver that skips points without a rod; their variables get fill values."""
+    """A solver that skips points without a rod; the variables of skipped points get fill values."""
     if points.covered is None or not points.covered.any():
         return solver
     return _Around(solver, points.covered, points.failures, layout).solver()

@@ -37,7 +37,7 @@ class ArmMotion:
 
     frequency: Array
     F: Array | None = None
-    """Force of each motion; None to take F from the points. If points have an F, it takes precedence."""
+    """Force of each motion; None to take F from the points. An F of the points takes precedence."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
 
@@ -65,7 +65,7 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
 
 
 def _of_flutter(record: Record) -> ArmMotion:
-    """Motion at the onset of flutter, which is stored even if the list of crossings has no room for it."""
+    """Motion at the onset of flutter. The onset is stored even if the list of crossings is full."""
     frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
     return ArmMotion(np.abs(frequency), F)
 
@@ -157,9 +157,9 @@ class ArmValidity:
         return np.asarray(F) * (arm.k1 / own)
 
     def _compressing(self, F: Array, index: int | NDArray[np.int64]) -> Array:
-        """The force that would compress the base as F does the weakest section; nan for rubber.
+        """The force that would compress the base as much as F compresses the weakest section; nan for rubber.
 
-        Rubber is compressed by its own law, which neglects nothing of it.
+        The law of rubber neglects no effect of compression, so the check does not concern rubber.
         """
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
@@ -169,8 +169,8 @@ class ArmValidity:
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
-        """A parameter at a point, shape (), or at n points, (n,); None if it is no parameter of the
-        points.
+        """A parameter at a point, shape (), or at n points, (n,); None if the points do not have the
+        parameter.
         """
         if name not in self.points.names:
             return None

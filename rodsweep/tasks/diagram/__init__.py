@@ -1,1 +1,1 @@
-"""Curves and cycles of a phase diagram, and their variables in its file."""
+"""Curves and cycles of a phase diagram, and the corresponding variables of the file."""

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from ..phase_diagram import PhaseDiagramTask
 
 MAX_KEPT_ROWS = 200
-"""Maximum number of rows whose special points a process keeps, because the cycles of a row take up to a
-megabyte. The special points of further rows are located again, with the same result, in some seconds."""
+"""Maximum number of rows with special points kept in a process, because the cycles of a row take up to a
+megabyte. Special points of further rows are located again, in some seconds and with equal results."""
 
 
 @dataclass(slots=True, eq=False)
@@ -42,10 +42,11 @@ class DiagramCurves:
     workspace: "NewtonWorkspace"
     """Buffers of Newton's matrices in this process."""
     special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
-    """Special points, with their cycles, of rows solved in this process, by the row's number."""
+    """Special points with cycles, by number of row, for rows solved in this process."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """The row itself. Its special points are kept if fewer than MAX_KEPT_ROWS rows are kept."""
+        """Returns the row unchanged, and keeps the special points unless MAX_KEPT_ROWS rows are kept
+        already."""
         if len(self.special) < MAX_KEPT_ROWS:
             self.special[number] = row.special
         return row
@@ -56,7 +57,7 @@ class DiagramCurves:
         return {row: self.special[row] for row in rows if row in self.special}
 
     def take(self, starts: "Mapping[int, Any]") -> None:
-        """Keeps special points of rows from another rank."""
+        """Keeps special points of rows solved on a different rank."""
         self.special.update(starts)
 
     def units(self, view: View) -> "SpecialBoundaries | None":
@@ -83,7 +84,9 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
+        """All curves as variables of the file. results: results of all wanted units, shapes as in
+        `TracedHalf`.
+        """
         plane = self.plane
         if plane is None:
             return []

@@ -1,4 +1,4 @@
-"""Cycles of the rows of a phase diagram (`phase_diagram.cycles`), and their curves."""
+"""Cycles of the rows of a phase diagram (`phase_diagram.cycles`), and curves of special points."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -48,7 +48,7 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
             tip_y_max=float(height[i, j]),
         )
         for i in np.flatnonzero(np.isfinite(rows))
-        for j in np.flatnonzero(np.isin(kinds[i], FOLLOWED_KINDS))
+        for j in np.flatnonzero(np.isin(kinds[i], tuple(FOLLOWED_KINDS)))
     ]
 
 

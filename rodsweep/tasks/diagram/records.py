@@ -30,8 +30,8 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
     points, folds = [], []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
-        for numbers in zip(*each, strict=True):
-            named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True))
+        for *numbers, end in zip(*each, _ends(curve.ends, len(curve.values)), strict=True):
+            named = dict(zip(("frequency", "growth_rate", *plane, "end"), (*numbers, end), strict=True))
             points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
         folds += [_located(fold, plane, curve=number, kind=curve.hopf, of=fold.axis) for fold in curve.folds]
     declared = curve_variables(*plane)
@@ -70,7 +70,7 @@ def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str],
 
 
 def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
-    """Curves of folds and torus points, including the Hopf points where they end."""
+    """Curves of folds and torus points, including the Hopf points at curve ends."""
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
@@ -85,7 +85,7 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
 
 
 def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
-    """A point with its values and errors by parameter, and further variables `beside`."""
+    """A point with values and errors by parameter, and further variables `beside`."""
     errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
     return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
 

@@ -23,7 +23,7 @@ from ...sweep.points.lines import lines_over
 from ...sweep.points.points import Points
 
 MAX_POINTS_IN_MEMORY = 1 << 13
-"""Maximum number of points whose eigenvalues are read together, which limits memory for large files."""
+"""Maximum number of points per read of eigenvalues; limits memory for large files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Lines of a list, one by one."""
+    """The lines over F among the points of a list, yielded separately."""
     count = points.count
     w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(count, -1)
     unstable = values["unstable_count"][...].ravel()
@@ -121,7 +121,7 @@ Steps = NDArray[np.int64]
 
 
 def _sign_changes(w: Complex) -> Steps:
-    """Pairs between which the leading growth rate changes its sign; w: (lines, n, modes)."""
+    """Pairs of neighbours with leading growth rates of opposite sign; w: (lines, n, modes)."""
     growing = w[..., 0].real > 0
     line, before, behind = _neighbours(np.isfinite(w[..., 0].real))
     differ = growing[line, before] != growing[line, behind]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HopfLine:
-    """Rods of a file along one parameter, between two values, with all other parameters fixed."""
+    """Rods of a file along a parameter, between two values, with all further parameters fixed."""
 
     name: str
     """The parameter that varies."""
@@ -39,14 +39,14 @@ class HopfLine:
         """Hopf points on the line; None if the range is empty or the search fails. Needs no PETSc."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
-        from ...solve.changes.unstable_modes import CRUSHING_MARGIN
+        from ...solve.changes.unstable_modes import CHANGE_COUNTS
         from ...solve.point import FAILURES
 
         start, stop = self.start, self.stop
         if self.name == "F":
-            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CRUSHING_MARGIN))
+            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CHANGE_COUNTS.crushing_margin))
         if self.name == "k1":
-            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - CRUSHING_MARGIN)))
+            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - CHANGE_COUNTS.crushing_margin)))
         if not start < stop:
             return None
         at_start: dict[str, Any] = self.fixed | {self.name: start}
@@ -68,10 +68,11 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 
 def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Lines over a parameter of points with at least two finite values of it; lines over F begin at 0.
+    """Lines over a parameter with at least two finite values; lines over F begin at 0.
 
-    Below the first force of the points the rod may already oscillate; such a Hopf point is stored too. Arms
-    whose parameters are equal and whose profiles differ have no line: a file could not tell them apart.
+    The rod may already oscillate below the smallest force of the points; the Hopf point below is stored too.
+    Arms with equal parameters and different profiles have no line, because a file cannot distinguish such
+    arms.
     """
     columns = {n: points.of_rods[n] for n in names}
     others = [n for n in names if n != name]

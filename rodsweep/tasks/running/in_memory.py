@@ -1,4 +1,4 @@
-"""Solves the points of a job one after another in this process, and keeps the results in memory."""
+"""Solves the points of a job in sequence in this process, and keeps the results in memory."""
 
 import json
 from collections.abc import Mapping
@@ -76,5 +76,5 @@ def blas_kernels() -> str:
 
 @cache
 def blas() -> ThreadpoolController:
-    """The BLAS libraries of this process; call it after PETSc has loaded a BLAS."""
+    """The BLAS libraries of this process. PETSc must have loaded a BLAS before."""
     return ThreadpoolController()

@@ -29,7 +29,7 @@ BYTES_A_VALUE = 40
 """Memory per value of an axis, in bytes, while a run is set up: four arrays of numbers; 33 to 36 were
 measured."""
 LARGEST_RECORD = 100_000_000
-"""Maximum size of one point's results in bytes; they are held in memory and written at once."""
+"""Maximum size of a point's results in bytes; the results are held in memory and written at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class Job:
 
     @property
     def name(self) -> str:
-        """The config's title, or else the name of its file."""
+        """The config's title, or else the name of the config's file."""
         return self.config.title or self.path.stem
 
     @property
@@ -105,10 +105,9 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
 
 
 def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None = None) -> Job:
-    """The job of a config with its YAML text. A file of points is searched relative to the folder of
-    `path`.
+    """The job of a config, with the YAML text. A file of points is searched relative to the folder of `path`.
 
-    flutter: what `points_of` takes.
+    flutter: as in `points_of`.
     """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_A_VALUE > memory():

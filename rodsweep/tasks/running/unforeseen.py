@@ -30,7 +30,7 @@ PASSING = (Refusal, OSError)
 MAX_NOTES = 1000
 """Maximum number of exceptions written to the log per rank; a larger number would repeat one bug."""
 FAILED = "failed"
-"""Status of a point whose solver raised an exception; every task has it."""
+"""Status, in every task, of a point with an unforeseen exception in the solver."""
 
 Note = Callable[[Sequence[int], Exception], None]
 """Called with the flat indices of the failed points and their exception."""
@@ -40,7 +40,7 @@ UnitNote = Callable[[str, Exception], None]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A point with its record made: every variable of the layout by name."""
+    """A point with a finished record: every variable of the layout by name."""
 
     status: PointStatus
     message: str
@@ -50,7 +50,8 @@ class Outcome:
 def guarded(solver: Solver, layout: Layout, note: Note) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives the point fill values.
 
-    After an exception in a stretch its points are solved one by one: only failing points lose their spectra.
+    After an exception in a stretch, each point of the stretch is solved alone, so that only failing points
+    lose spectra.
     """
     return _Guard(solver, layout, note).solver()
 
@@ -98,7 +99,7 @@ class _Guard:
             return self._one_by_one(indices)
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
-        """The points of a stretch, each solved on its own."""
+        """The points of a stretch, each solved alone."""
         solve = self.solver().solve
         outcomes = [solve(index) for index in indices.tolist()]
         names = [variable.name for variable in self.layout.variables]
@@ -133,7 +134,7 @@ class Log:
         self._known: set[str] = set()
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
-        """Appends a traceback, or only its last line if this rank has written the same traceback before."""
+        """Appends a traceback, or only the last line of a traceback that this rank has written before."""
         points = self.where(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"

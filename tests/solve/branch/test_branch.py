@@ -151,7 +151,7 @@ def test_branch_that_leaves_the_model_ends_where_h1_is_0():
 
 def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
-    curve = first_branch(rod, 207.0)
+    curve = first_branch(rod, 207.0, 1e-5)
     assert kinds(curve) == ["hopf", "torus", "end"]
     torus = only(curve, SpecialKind.torus)
     assert torus.error < 1e-9 * torus.at
@@ -277,7 +277,7 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
     rod = Rod(F=0.0, k1=229.46018, k2=1e4, gamma3=1e-4, gamma1=0.5)
     folds = []
     for start in (0.0, 100.0):  # from the first Hopf point, and from the restabilization
-        found = solved(rod, start, stop=0.9998 * rod.k1)
+        found = solved(rod, start, stop=0.9998 * rod.k1, accuracy=1e-5)
         assert found.status == BranchStatus.ok
         folds += [only(curve, SpecialKind.fold) for curve in found.curves]
     one, other = folds

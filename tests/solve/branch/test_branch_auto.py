@@ -1,6 +1,7 @@
 """AUTO-07p on the same semi-discrete rod, with its own bifurcation detection, beside branches of cycles."""
 
 import re
+from functools import partial
 from math import inf
 from pathlib import Path as Place
 
@@ -15,7 +16,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import next_point
+from rodsweep.solve.branch.arc import next_point, point_at
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.following import BranchLimits, _at_range_end, _range_end
 from rodsweep.solve.branch.settling import due, refined
@@ -72,7 +73,7 @@ def branch_of_this(rod, kind, F):
     here, special = beginning(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
     while True:
         there = next_point(here, ACCURACY)
-        for point in special_points(here, there, None, ACCURACY)[0]:
+        for point in special_points(here, there, partial(point_at, accuracy=ACCURACY), ACCURACY)[0]:
             if point.kind == kind:
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:

@@ -72,7 +72,7 @@ def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
         np.testing.assert_allclose(ours, theirs, rtol=1e-11, atol=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(max(8, RODS // 10)))
+@pytest.mark.parametrize("seed", range(RODS // 10 or 4))
 def test_no_crossing_is_missed_between_the_forces_of_a_dense_scan(seed):
     rng = np.random.default_rng(seed)
     rod = random_arm(rng, pulled=0.0)

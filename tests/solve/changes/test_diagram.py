@@ -10,8 +10,9 @@ from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.model.rod import Rod
+from rodsweep.solve.changes import boundary_curves
 from rodsweep.solve.changes.boundaries import curves_through, seed_of
-from rodsweep.solve.changes.boundary_curves import trace
+from rodsweep.solve.changes.boundary_curves import BoundaryEnd, trace
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind
@@ -98,6 +99,40 @@ def test_a_plane_of_two_material_parameters():
     for k2, motion, unstable in zip(values, found[2].motion, found[2].unstable_count, strict=True):
         assert count_right_of(0.0, Rod(F=30.0, k1=1e4, k2=float(k2), gamma3=gamma3)).number == unstable
         assert (motion == Motion.flutter) == (unstable > 0)
+
+
+ENDS = [
+    # double eigenvalues and Hopf points that end on gamma3 = 0, where no rod lies beyond
+    (
+        (PlaneAxis("F", 0.0, 150.0), PlaneAxis("gamma3", 0.0, 0.25)),
+        Rod(F=0.0, k1=327.0, k2=4502.0, gamma3=1e-3),
+        {(BoundaryEnd.edge, BoundaryEnd.edge)},
+    ),
+    # Hopf points that come as close to F = k1 as steps can be short
+    (
+        (PlaneAxis("F", 0.0, 239.0), PlaneAxis("k1", 183.0, 3e3, logarithmic=True)),
+        Rod(F=0.0, k1=1e3, k2=33.0, gamma3=2.7e-3),
+        {(BoundaryEnd.edge, BoundaryEnd.edge), (BoundaryEnd.crushed, BoundaryEnd.edge)},
+    ),
+]
+
+
+@pytest.mark.parametrize(("axes", "rod", "ends"), ENDS)
+def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
+    _, seeds = rows(axes, rod, 3)
+    curves = curves_through(Plane(rod, axes), seeds).curves
+    assert {curve.ends for curve in curves} == ends
+    for curve in curves:
+        for (x, y, _), (F, other), end in zip(
+            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.ends, strict=True
+        ):
+            beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
+            assert beside_an_edge if end == BoundaryEnd.edge else pytest.approx(other, rel=1e-7) == F
+    few = replace(boundary_curves.BOUNDARY_STEPS, most=5)
+    monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
+    curve = curves_through(Plane(rod, axes), seeds[:1]).curves[0]
+    assert BoundaryEnd.list_full in curve.ends
+    assert len(curve.values) < 10
 
 
 TOUCHED = [

@@ -166,3 +166,9 @@ def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, 
     ends = -(share**3), 1 - share**3
     found = zero_along(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
     assert abs(found - share * length) <= 2 * relative * length
+
+
+def test_steps_that_never_grow_are_refused():
+    """They would end a curve by the number of its solutions, however far its end is."""
+    with pytest.raises(ValueError, match="growth"):
+        StepControl(first=0.1, longest=1.0, shortest=1e-6, sharpest=0.3, growth=1.0)

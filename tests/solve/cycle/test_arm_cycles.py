@@ -8,6 +8,7 @@ import pytest
 from mixed_motion import rate as mixed_rate
 from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
+from surveyed import survey_only
 
 from rodsweep.discretization.at_jumps import carried, parted
 from rodsweep.discretization.beam import Beam
@@ -23,11 +24,17 @@ from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.cycle import CycleRequest
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.marched import solve_by_integration
 from rodsweep.solve.cycle.neighbour import Neighbour
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.newton import newton
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
 JUMP_OF_ONE = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * len(FACTORS),) * 4)
@@ -150,7 +157,11 @@ CYCLES = [
 ]
 
 
-@pytest.mark.parametrize(("law", "taper", "values"), CYCLES, ids=NAMES)
+@pytest.mark.parametrize(
+    ("law", "taper", "values"),
+    [pytest.param(*case, marks=() if case[0] == 1 else survey_only) for case in CYCLES],
+    ids=NAMES,
+)
 def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
     """By code that shares nothing: Chebyshev collocation of the strains, SciPy's Radau."""
     build = RUBBER[law]
@@ -180,7 +191,11 @@ SEGMENTS = [
 ]
 
 
-@pytest.mark.parametrize(("section", "values"), SEGMENTS, ids=["fixed", "swelling"])
+@pytest.mark.parametrize(
+    ("section", "values"),
+    [pytest.param(*segments, marks=survey_only) for segments in SEGMENTS],
+    ids=["fixed", "swelling"],
+)
 def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(section, values):
     """By code that shares nothing, in which positions are continuous at the jump and strains are not."""
     factors = (0.6, 0.7, 0.5, 1.0, 1.2, 0.8)
@@ -198,6 +213,41 @@ def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(se
     period, y = segments.cycle(shape.T, found.measures.period, turns=1)
     assert period == pytest.approx(found.measures.period, rel=1e-7)
     assert y == pytest.approx(found.measures.tip_y_max, rel=3e-7)
+
+
+OFF_BY_A_JUMP = [
+    (
+        2.7e-8,
+        ("linear", "fixed"),
+        {"F": 54.37758574938067, "k1": 2808.1155575582607, "k2": math.inf, "gamma3": 6.698685675566226e-4},
+        0.18093417109640694,
+        (0.594, 1.202430505513659, 4.625674396181283, 0.3264042448040304),
+    ),
+    (
+        4.4e-8,
+        ("neo_hookean", "swelling"),
+        {"F": 54.58068419055371, "k1": 18191.830117097787, "k2": 8204.985700532343, "gamma3": 0.0},
+        0.6462785980729304,
+        (0.517, 0.5220515092504533, 2.110895372407469, 0.571584538310548),
+    ),
+]
+
+
+@pytest.mark.parametrize("accuracy, names, values, gamma1, jump", OFF_BY_A_JUMP, ids=["linear", "swelling"])
+def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, gamma1, jump):
+    """A tip integrated with the mean strain at the jump was off by 7.9 and 1.4 times the stated error."""
+    at, *stiffness = jump
+    factors = (*stiffness, 1.0, 1.0, 1.0)
+    profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTORS),) * 2 + (factors,) * 2)
+    rod = Rod(**values, gamma1=gamma1, build=Build(*names, profile))
+    memory = NewtonWorkspace()
+    form = StressForm(rod, coarse_mesh(rod))
+    found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
+    orbit = found.orbit
+    finer = mesh_on(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
+    start = orbit.on(finer, 2 * orbit.intervals, orbit.stages + 1)
+    exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
+    assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
 
 
 def test_a_jump_of_factor_one_is_none():

@@ -8,7 +8,7 @@ import pytest
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.accuracy.calibration import ERROR_FACTOR
+from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.accuracy.refinement import refine
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -16,7 +16,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
-from rodsweep.solve.orbit.path_differences import APART, HEIGHT, PERIOD, path_differences
+from rodsweep.solve.orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, path_differences
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
@@ -55,15 +55,17 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
     for field, parts in (("order", known.space), ("intervals", known.time)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
-        for which in (PERIOD, HEIGHT, APART):
-            assert true[which] <= ERROR_FACTOR * parts[which] + 1e-12
+        for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
+            assert true[which] <= CALIBRATION.safety * parts[which] + 1e-12
 
 
-def test_coarser_meshes_serve_those_that_are_a_little_finer(near):
+def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
     coarser = CoarserMeshes(FINE, near, ACCURACY, MEMORY)
-    assert coarser.serve(FINE) and coarser.serve(replace(FINE, order=FINE.order + 2, intervals=20))
+    assert coarser.can_predict(FINE) and coarser.can_predict(
+        replace(FINE, order=FINE.order + 2, intervals=20)
+    )
     for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"edges": (0.0, 0.5, 1.0)}, {"stages": 5}):
-        assert not coarser.serve(replace(FINE, **other))
+        assert not coarser.can_predict(replace(FINE, **other))
 
 
 @pytest.mark.parametrize("why", ["no coarse cycle", "far off"])

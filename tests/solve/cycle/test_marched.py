@@ -39,7 +39,7 @@ def pairs():
             solve_cycle(rod, request(1e-8)),
             solve_by_integration(rod, request(ACCURACY)),
         )
-        for rod in random_rods(max(RODS // 5, 5))
+        for rod in random_rods(RODS // 5 or 3)
     ]
 
 

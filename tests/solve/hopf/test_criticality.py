@@ -289,12 +289,15 @@ CONFIG = (
 
 def test_numbers_of_one_rod_come_out_of_show(command):
     told = shown(command, CONFIG.format(k1=200))
-    assert re.search(r"hopf at F = 49\.758004916\d+ \(\+- \de-1\d\), frequency 334\.32146573", told)
-    assert "supercritical: stable cycles at F above it" in told
-    assert re.search(r"restabilization at F = 155\.6001592987\d+", told)
-    assert "subcritical: unstable cycles at F above it" in told
-    assert re.search(r"Re c = -971\.91953336\d* \(\+- \de-\d+\), Im c = -387\.9588634", told)
-    assert re.search(r"a = 0\.5811406522\d* \(\+- \de-1\d\) L", told)
+    assert re.search(r"F, k3/L\^2 +49\.758004916\d+ +\de-1\d +155\.6001592987\d+ +\de-1\d", told)
+    above = "2 unstable modes above"
+    assert f"hopf at F = 49.758: supercritical, stable cycles at F above it; {above}" in told
+    assert "restabilization at F = 155.6: subcritical, unstable cycles at F above it; 0 unstable" in told
+    assert re.search(r"frequency, rad/tau2 +334\.32146573", told)
+    assert re.search(r"Re c, 1/\(tau2 L\^2\) +-971\.91953336\d* +\de-\d+", told)
+    assert re.search(r"Im c, 1/\(tau2 L\^2\) +-387\.9588634", told)
+    assert re.search(r"a, L +0\.5811406522\d* +\de-1\d", told)
+    assert re.search(r"^k1 +200 +k3/L\^2", told, re.MULTILINE)  # a single value is printed once
     assert "is proved complete at 1 of 1 rod" in told
 
 

@@ -8,7 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from surveyed import RODS
 
+from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.slaving import slaving_of
+from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
 from rodsweep.model.adjoint import slaving_layer
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -16,7 +18,6 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.modes.inverse_iteration import mode_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
-from rodsweep.solve.modes.problem import ArmModes
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 INF = float("inf")
@@ -96,8 +97,7 @@ def test_modes_and_growth_agree_with_another_discretisation(rod):
     L, growth = in_energy_norm(rod), result.growth
     assert growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-6)
     if not rod.uniform:
-        problem = ArmModes(rod)
-        pencil = problem.pencil(problem.mesh_for(12.0, 1e-20))
+        pencil = pencil_on(mesh_for(rod, 12.0, 1e-20))
         vectors = mode_vectors(rod, pencil, result.spectrum.eigenvalues, nodes(rod))
         assert relative(vectors.right, right) < 1e-7
         assert relative(vectors.left, left) < 1e-7
@@ -142,8 +142,7 @@ def test_strains_and_errors_are_those_of_a_finer_mesh(rod):
 def test_the_bending_strain_jumps_with_the_stiffness_and_the_moment_does_not():
     rod = ARMS[2]
     result = solve_modes(rod, TIGHT)
-    problem = ArmModes(rod)
-    pencil = problem.pencil(problem.mesh_for(12.0, 1e-20))
+    pencil = pencil_on(mesh_for(rod, 12.0, 1e-20))
     beside = np.array([0.4 - 1e-9, 0.4])
     strain = mode_vectors(rod, pencil, result.spectrum.eigenvalues, beside).deformation
     assert strain[1, :, 1] == pytest.approx(strain[1, :, 0] / 0.2, rel=1e-6)
@@ -209,10 +208,11 @@ def test_the_slaved_layer_of_a_uniform_arm_is_the_closed_form(k2):
 def test_the_abscissa_of_a_slaved_arm_is_the_largest_quotient(rod):
     """Over y, with theta and theta+ slaved by their own ends on a mesh that resolves the layer."""
     found = solve_modes(rod, TIGHT).growth.numerical_abscissa
-    fine = ArmModes(rod)
-    mesh = fine.mesh_for(160.0, 1e-12)
-    assert numerical_abscissa(rod, fine.pencil(mesh)) == pytest.approx(found, rel=1e-9)
-    A, B = fine.pencil(mesh).dense(rod)
+    mesh = mesh_for(rod, 160.0, 1e-12)
+    assert numerical_abscissa(rod, pencil_on(mesh)) == pytest.approx(found, rel=1e-9)
+    form = dense_form(rod, pencil_on(mesh))
+    A = form.A
+    B = form.B
     n = mesh.nodes
     y, slaved = slice(n), slice(n, None)
     L = A[y, y] - A[y, slaved] @ np.linalg.solve(A[slaved, slaved], A[slaved, y])

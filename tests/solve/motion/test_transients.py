@@ -15,9 +15,9 @@ from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.transient import draw_transients
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
-from rodsweep.solve.cycle.limit_cycle import MOTION_ACCURACY, CycleRequest, solve_cycle
-from rodsweep.solve.cycle.transient.amplitude_equation import SLOW_GROWTH
-from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
+from rodsweep.solve.cycle.transient.amplitude_equation import AMPLITUDE_EQUATION
+from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH, motion_mesh
 from rodsweep.solve.motion.integrator import INTEGRATOR
 from rodsweep.solve.motion.leading_mode import leading_mode
 
@@ -49,7 +49,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
     rod = rod_of(60.0, *STRETCHABLE[:3])
-    beam = Beam(rod, motion_mesh(rod, MOTION_ACCURACY))
+    beam = Beam(rod, motion_mesh(rod, MOTION_MESH.accuracy))
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
@@ -62,7 +62,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
 def test_a_stored_motion_has_no_jumps():
     """It grows so slowly, by a few percent a period, that without being stored it would be scaled."""
     c = followed(27.6, amplitude=0.03, count=20_000)
-    assert c.linear_growth_rate * c.measures.period < SLOW_GROWTH / 2
+    assert c.linear_growth_rate * c.measures.period < AMPLITUDE_EQUATION.slow_growth / 2
     period = 2 * np.pi / c.linear_frequency
     time, _, y, _ = c.transient
     inner = (np.abs(y[1:-1]) > np.abs(y[:-2])) & (np.abs(y[1:-1]) >= np.abs(y[2:]))

@@ -63,7 +63,7 @@ def test_a_cone_is_followed_and_proved_without_single_points():
     assert reached.good.all()
 
 
-@pytest.mark.parametrize("seed", range(max(4, RODS // 10)))
+@pytest.mark.parametrize("seed", range(RODS // 10 or 2))
 def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
     rng, compared = np.random.default_rng(4000 + seed), 0
     for _ in range(4):

@@ -108,7 +108,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
         return whole(problem, mesh, number, vectors, tight)
 
     monkeypatch.setattr(search, "attempt", attempt)
-    monkeypatch.setattr(search, "ENOUGH_UNPROVED", 2)
+    monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, enough_unproved=2))
     if not countable:
         monkeypatch.setattr(hull, "LARGEST_SHARE", 0.0)
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))

@@ -39,7 +39,7 @@ LINES = {
 }
 
 
-COMPARED = 24
+COMPARED = 12
 """Points of each line that are compared, at least; `make survey` compares all. All are followed, and counted
 beside their neighbours, so that what goes wrong at a point lasts."""
 

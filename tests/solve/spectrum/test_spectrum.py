@@ -12,9 +12,9 @@ from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import problem as problem_module
-from rodsweep.solve.spectrum.krylov_schur import EIGEN_SOLVERS_KEPT, eigen_solver
+from rodsweep.solve.spectrum.krylov_schur import eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.shift_invert import DENSE_UP_TO
+from rodsweep.solve.spectrum.shift_invert import KRYLOV
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -385,7 +385,7 @@ def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
 
 def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     """petsc4py would set it aside until the end of the process, some megabyte a resolution."""
-    solvers = [eigen_solver(Resolution(1, nodes)) for nodes in range(6, 6 + EIGEN_SOLVERS_KEPT)]
+    solvers = [eigen_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.uniform_solvers_kept)]
     assert eigen_solver(Resolution(1, 6)) is solvers[0]
     eigen_solver(Resolution(2, 6))
     first, longest_unused, *others = solvers
@@ -417,7 +417,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
-    assert 3 * result.elements * result.order > DENSE_UP_TO
+    assert 3 * result.elements * result.order > KRYLOV.dense_up_to
     assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
 
 

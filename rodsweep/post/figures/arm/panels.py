@@ -49,7 +49,7 @@ def _of_thresholds(view: View) -> list[Panel]:
 
 
 EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
-"""Words for thresholds."""
+"""Words for the kinds of thresholds."""
 
 
 def _of_modes(view: View) -> list[Panel]:

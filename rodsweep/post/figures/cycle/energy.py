@@ -34,7 +34,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
         _budget(column, cycle)
         column[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
-    for axes, label in zip(rows[:, 0], cycles[0].units.budget_labels, strict=True):
+    for axes, label in zip(rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
     handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
     legend_below(figure, handles, columns=2 if narrow else min(3, 1 + len(cycles)))

@@ -47,7 +47,7 @@ PADDING = 0.1
 TEXT_HEIGHT = 1.4
 """Height of labels and headings above and below the panels, in inches."""
 NARROW_TEXT_HEIGHT = 2.0
-"""The same height on a narrow page, where the colour bar lies below the panels."""
+"""`TEXT_HEIGHT` on a narrow page, where the colour bar lies below the panels."""
 LIGHTEST_ARM = 0.14
 """Fraction of the colour map left out: yellow, which is invisible on white."""
 
@@ -191,7 +191,7 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
     along = [np.concatenate(values) for values in (along_x, along_y)]
     (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in along)
     if not (left < right and low < high):
-        raise ValueError("shapes are too large")
+        raise ValueError("the shapes are too large for axes in floating-point numbers")
     return (left, right), (low, high)
 
 

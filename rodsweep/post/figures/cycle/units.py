@@ -77,7 +77,7 @@ class CycleUnits:
         )
 
     @property
-    def budget_labels(self) -> tuple[str, str, str]:
+    def energy_and_power_labels(self) -> tuple[str, str, str]:
         """Labels of energy, power and rate of energy."""
         if self.in_si:
             _, _, energy, power = self.names

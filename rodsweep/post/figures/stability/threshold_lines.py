@@ -144,7 +144,7 @@ def _table(view: View, along: str, other: str | None) -> Array:
 
 
 def _abscissa(view: View, along: str) -> Array:
-    """Values along the axis: of the parameter, or 1/gamma3 as in the paper."""
+    """Values along the axis: the parameter, or 1/gamma3 as in the paper."""
     values = view.axes[along]
     return 1 / values if along == "gamma3" else values
 

@@ -46,7 +46,7 @@ def arm_answer(view: View, done: np.ndarray) -> list[str]:
 def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
     """Warning if some rectangular section flutters first in the plane that is not computed; else empty.
 
-    quantities: of an arm, in SI units, each a number or (n,).
+    quantities: quantities of an arm, in SI units, each a number or (n,).
     """
     height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
     return [OTHER_PLANE] if np.max(height) > np.min(width) else []

@@ -79,7 +79,9 @@ class JoinedFile:
                     raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
 
     def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
-        """Whether two values differ by rounding only: other BLAS kernels, or neighbours in stretches."""
+        """Whether two values differ by rounding only, as results of different BLAS kernels or of different
+        stretches do.
+        """
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False

@@ -19,13 +19,15 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON, relative_change
 from ...orbit.orbit import Orbit
 from ...point import Unsolvable
-from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from ..bordered import BorderedMatrix, Condition, Scale, deflection_of, moved
 from .point import LOCATING
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AugmentedSettings:
-    """Iterations with the factors of a nearby cycle's matrix: cycle, test function, null vectors."""
+    """Settings for iterating cycle, test function and null vectors with the factors of a nearby cycle's
+    matrix.
+    """
 
     tolerance: float = 1e-9
     """Relative tolerance of a cycle and its test function, which is thus known to about 1e-8."""
@@ -33,8 +35,8 @@ class AugmentedSettings:
     """Tolerance in units of the distance from the curve that the test function indicates; the larger
     tolerance counts."""
     min_contraction: float = 10.0
-    """Smallest contraction rate that is assumed: ratio of successive corrections over the distance from the
-    matrix's cycle. Large cycles have 2 or 3."""
+    """Lower limit of the assumed contraction rate: ratio of successive corrections over the distance from the
+    matrix's cycle. The true rate is 2 or 3 for large cycles; a larger one is on the safe side."""
     contraction_safety: float = 3.0
     """Safety factor on a measured contraction rate, for the next cycle."""
     slow: float = 0.3
@@ -138,7 +140,7 @@ class NearbyCycles:
 class FoldFunction:
     """Test function of folds: the derivative dp/dl of the parameter along the branch; the border measures l.
 
-    small: whether the function is divided by the moment, because it vanishes at a Hopf point too.
+    small: whether the function is divided by the deflection, because it vanishes at a Hopf point too.
     """
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
@@ -151,7 +153,7 @@ class FoldFunction:
     def value(self, orbit: Orbit) -> float:
         """The test function from the present tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
-        return rises * self.matrix.scale.moment / moment_of(orbit) if self.small else rises
+        return rises * self.matrix.scale.deflection / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
         """Sets the tangent, (N + 1,), that is corrected next."""
@@ -220,6 +222,23 @@ class TorusFunction:
         self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
 
 
+def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
+    """Corrects a test function at a cycle until its value is known to rounding; raises Unsolvable."""
+    value = function.value(orbit)
+    last = np.inf
+    for _ in range(AUGMENTED.max_corrections):
+        function.correct(orbit)
+        before = value
+        value = function.value(orbit)
+        change = abs(value - before)
+        if change <= LOCATING.function_tolerance or (change > last / 2 and change <= AUGMENTED.rounding):
+            return
+        if change > last:
+            break
+        last = change
+    raise Unsolvable("the corrections of the test function do not converge")
+
+
 def _parts(vector: Array) -> Array:
     """Real and imaginary part of a vector, (2, n)."""
     return np.array([vector.real, vector.imag])
@@ -228,6 +247,6 @@ def _parts(vector: Array) -> Array:
 def crossing_pair(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over half a period and the reflection; None if all are
     real."""
-    h = matrix.returns
+    h = matrix.partial_multipliers
     pairs = h[np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

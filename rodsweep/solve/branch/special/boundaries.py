@@ -18,13 +18,13 @@ from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCur
 from .on_curve import OnCurve
 from .point import SpecialKind, SpecialPoint
 
-FOLLOWED_KINDS = (SpecialKind.fold, SpecialKind.torus)
-"""Kinds of special points that are followed as curves."""
+FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
+"""Kinds of special points that are followed as curves, with the words for their points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecial:
-    """A special point of a row as the file holds it; number, row: number of the row, and its value."""
+    """A special point of a row, as stored in the file; number, row: number and value of the row."""
 
     number: int
     row: float
@@ -93,7 +93,7 @@ class SpecialBoundaries:
         """Description of a unit: curve, starting row and direction."""
         place, behind = divmod(unit, 2)
         one, way = self.special[place], "down" if behind else "up"
-        return f"curve of {one.kind.name}s from {self.rows.name} = {one.row:.5g} {way}"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +128,7 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Units from which other curves may start: special points on the row of the next seed."""
+        """Units from which further curves may start: special points on the row of the next seed."""
         rows = {self.special[unit // 2].row for unit in search.needed}
         beside = sorted((i for i in search.left if self.special[i].row in rows), key=self._place)
         return [unit for i in beside for unit in self.lacking(i)]
@@ -189,7 +189,7 @@ def _traced(
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecial],
 ) -> TracedHalf:
-    """The half of a curve from a special point of a row; its `half` is None if no curve is found."""
+    """Half a curve from a special point of a row; the field `half` is None if no curve is found."""
     width = abs(limits.line.stretch(one.at))
     same = [
         point

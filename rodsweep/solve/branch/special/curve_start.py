@@ -10,8 +10,8 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..beginning import BEGINNING, MOMENT
-from ..bordered import BorderedMatrix, Scale, moment_of
+from ..beginning import BEGINNING, DEFLECTION
+from ..bordered import BorderedMatrix, Scale, deflection_of
 from .family import CycleFamily
 from .on_curve import ACROSS_CURVE, OnCurve
 from .point import SpecialPoint
@@ -19,9 +19,9 @@ from .point import SpecialPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveStartSettings:
-    """First mesh of a curve of special points."""
+    """Settings for the first mesh of a curve of special points."""
 
-    order_share: float = 0.6
+    order_share: float = 0.62
     """Order of a curve's first mesh, in units of the order that located the special point to 1e-9."""
     interval_share: float = 0.5
     """Intervals of a curve's first mesh, in units of the intervals that located the special point."""
@@ -45,9 +45,10 @@ def first_on_curve(
         stages=stages_for(ACROSS_CURVE.accuracy),
     )
     orbit = rough.carry(orbit)
-    scale = Scale.of(orbit, line, abs(moment_of(orbit)) * BEGINNING.min_moment_amplitude / special.tip_y_max)
+    least = abs(deflection_of(orbit)) * BEGINNING.min_deflection_amplitude / special.tip_y_max
+    scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
-    ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, matrix))
+    ahead = scale.moved(orbit, tangent_at(orbit, scale, DEFLECTION, matrix))
     place = rows.scaled(row)
     start = OnCurve(
         orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row

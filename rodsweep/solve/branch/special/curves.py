@@ -41,7 +41,7 @@ CURVE_STEPS = StepControl(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleCurveSettings:
-    """Ends of a curve of special points."""
+    """Settings for the ends of a curve of special points."""
 
     min_loop_points: int = 5
     """Minimum number of points of a closed curve."""

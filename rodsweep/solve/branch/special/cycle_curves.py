@@ -16,7 +16,7 @@ from .point import SpecialKind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveIdentitySettings:
-    """Comparison of curves with special points of rows, with Hopf points, and with one another."""
+    """Settings for comparing a curve with special points of rows, Hopf points and further curves."""
 
     on_curve: float = 1e-6
     """A special point of a row this close to a curve lies on it; in units of the line's axis."""
@@ -30,8 +30,8 @@ class CurveIdentitySettings:
     equal_ends: float = 1e-4
     """Scaled distance of both ends within which two curves are identical."""
     on_last_chord: float = 1e-3
-    """A special point this close to the last part of a curve, where cycles vanish, lies on it; in units of
-    the line's axis."""
+    """Largest distance of a special point on the last chord of a curve, where cycles vanish; in units of the
+    line's axis."""
     max_interpolated: int = 4
     """Maximum number of points through which a prediction is interpolated."""
     extrapolation_factor: float = 10.0
@@ -94,7 +94,7 @@ class CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class HalfCurve:
-    """A curve from a special point of a row to one of its ends."""
+    """Half a curve: from a special point of a row to an end."""
 
     points: tuple[CurvePoint, ...]
     end: CurveEnd

@@ -41,7 +41,7 @@ class _CycleAcross(NamedTuple):
 class CycleFamily:
     """Cycles about a point of a curve. border: direction of its branch in the scale, (3,).
 
-    small: whether the fold function is divided by the moment, because the cycles are near a Hopf point.
+    small: whether the fold function is divided by the deflection, because the cycles are near a Hopf point.
     workspace: memory of the matrices.
     """
 
@@ -136,7 +136,8 @@ class _SecantAcross:
         self.before: _CycleAcross | None = None
         self.length = float(family.border @ family.scale.place(start))
         self.trusted = ACROSS_CURVE.max_linear_step if same else ACROSS_CURVE.max_carried_step
-        """Longest last step along a line with derivatives that do not come from two cycles of this search."""
+        """Largest last step along a line for derivatives that were not computed from two cycles of this
+        search."""
         contraction = rates.contraction if rates and not family.small else inf
         self.near = NearbyCycles(family, self.orbit, contraction)
 
@@ -182,7 +183,7 @@ class _SecantAcross:
         before = self.before
         if before is None or present.test == before.test:
             return None
-        if abs(present.at - before.at) < ACROSS_CURVE.min_span:
+        if abs(present.at - before.at) < ACROSS_CURVE.min_cycle_distance:
             return None
         name = self.family.scale.name
         span = present.at - before.at

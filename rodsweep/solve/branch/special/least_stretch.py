@@ -5,7 +5,8 @@ from math import inf
 
 import numpy as np
 
-from ....arrays import Array
+from ....arrays import Array, Complex
+from ....discretization.element_strains import place_before
 from ....discretization.elements.periodic import maxima, samples_of
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
@@ -14,7 +15,7 @@ from ..arc import ArcPoint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeastStretchSettings:
-    """Search for the least stretch of a cycle."""
+    """Settings for the search for the least stretch of a cycle."""
 
     places_per_node: int = 8
     """Number of places per node at which the least stretch is sampled."""
@@ -42,10 +43,7 @@ def stretch_at(point: ArcPoint) -> float:
 
 def stretch_of(orbit: Orbit) -> float:
     """`stretch_at` for an orbit alone."""
-    rod = orbit.form.nodal
-    pull = orbit.form.layout.field(orbit.points, "n1")
-    nodes = pull.shape[-1]
-    rough = float((rod.rest[0, :nodes] + rod.compliance[0, :nodes] * pull).min())
+    rough = orbit.form.least_stretch(orbit.points)
     if rough > LEAST_STRETCH.safe_at_nodes:
         return rough
     return least_stretch(CyclePath(orbit), LEAST_STRETCH.safe_at_places)
@@ -59,21 +57,28 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
     """
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
-    grid = path.orbit.form.mesh
+    form = path.orbit.form
+    grid = form.mesh
     c = path.strain_coefficients[:, 0]
 
-    def least(u: Array) -> Array:
-        at = -np.ascontiguousarray(c @ grid.evaluation(u).T)
+    def least_of(coefficients: Complex) -> Array:
+        at = -np.ascontiguousarray(coefficients)
         return -maxima(at, samples_of(at, LEAST_STRETCH.times_per_harmonic * len(c)))
 
+    def least(u: Array) -> Array:
+        return least_of(c @ grid.evaluation_by_element(u).T)
+
+    before = [place_before(int(node), grid.order) for node in form.nodal.jumps]
+    at_jumps = float(least_of(c[:, before + [place + 1 for place in before]]).min(initial=inf))
     places = np.linspace(0.0, 1.0, LEAST_STRETCH.places_per_node * len(grid.positions))
     values = least(places)
     best = int(np.argmin(values))
-    if values[best] > enough:
-        return float(values[best])
+    rough = min(float(values[best]), at_jumps)
+    if rough > enough:
+        return rough
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
     tolerance = {"xatol": LEAST_STRETCH.place_tolerance}
     found = minimize_scalar(
         lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
     )
-    return min(float(values[best]), float(found.fun))
+    return min(rough, float(found.fun))

@@ -1,23 +1,25 @@
 """Location of special points on a branch: the zero of a test function, with a cycle solved at each place.
 
 The zero is bracketed on the branch's own mesh, then found by the secant method on two finer meshes; their
-difference is the error.
+difference is the error. Each cycle takes one elimination: its test function is corrected with the factors of
+a nearby matrix (`augmented`).
 """
 
 from dataclasses import replace
-from math import ceil, nan
+from math import ceil, log, nan
 
 import numpy as np
 
-from ....arrays import Array
+from ....arrays import Array, Complex
 from ...continuation.follower import zero_along
 from ...orbit.measures import CyclePath
 from ...orbit.newton import Converged
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ...point import Unsolvable
-from ..arc import ArcPoint, arc_between, tangent_at
-from ..bordered import BorderedMatrix, bordered, moved
+from ..arc import ArcPoint, arc_between
+from ..bordered import BorderedMatrix, Scale, bordered, moved
+from .augmented import FoldFunction, TorusFunction, correct_fully
 from .least_stretch import least_stretch
 from .point import LOCATING, SpecialKind, SpecialPoint
 
@@ -42,29 +44,34 @@ class Segment:
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """Continues on another mesh, without a cycle to start from."""
+        """Continues on a different mesh, without a cycle to start from."""
         self.mesh, self._known = mesh, None
 
-    def at(self, length: float, distance: float = LOCATING.cycle_tolerance) -> Converged:
-        """The cycle at a length from `start`, with a matrix within a relative distance; raises Unsolvable."""
-        scale, name = self.start.scale, self.start.scale.name
+    def at(self, length: float) -> Converged:
+        """The cycle at a length from `start`, with a matrix nearby; raises Unsolvable."""
         if self._known is None:
             start = self.mesh.carry(self.predicted(length))
         else:
             last, orbit, tangent = self._known
-            start = moved(orbit, name, (length - last) * tangent)
+            start = moved(orbit, self.start.scale.name, (length - last) * tangent)
         condition = self.start.condition(length)
-        found = condition.solved(start, LOCATING.cycle_tolerance, self.start.workspace, distance)
-        tangent = tangent_at(found.orbit, scale, self.start.ahead, bordered(found))
-        rate = float(scale.moved(found.orbit, tangent) @ self.start.ahead)
-        self._known = length, found.orbit, tangent / rate
+        workspace = self.start.workspace
+        found = condition.solved(start, LOCATING.cycle_tolerance, workspace, LOCATING.matrix_distance)
+        function = FoldFunction(bordered(found), self.start.ahead, False)
+        correct_fully(function, found.orbit)
+        self._known = length, found.orbit, function.vectors
         return found
+
+    @property
+    def known(self) -> tuple[float, Orbit, Array]:
+        """The last cycle found: its length, its orbit, and the derivative by the length, (N + 1,)."""
+        if self._known is None:
+            raise ValueError("nothing is found yet")
+        return self._known
 
     def rises(self) -> float:
         """Derivative of the parameter along the branch at the last cycle found."""
-        if self._known is None:
-            raise ValueError("nothing is found yet")
-        return float(self._known[2][-1]) / self.start.scale.coordinate
+        return float(self.known[2][-1]) / self.start.scale.coordinate
 
 
 def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> float:
@@ -73,20 +80,39 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         return segment.rises()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
-    h = BorderedMatrix(found.orbit, segment.start.scale, found.workspace).returns
+    if kind == SpecialKind.torus:
+        function = TorusFunction(bordered(found))
+        correct_fully(function, found.orbit)
+        return function.value(found.orbit)
+    matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
+    return of_multipliers(kind, matrix.partial_multipliers)
+
+
+def of_multipliers(kind: SpecialKind, h: Complex) -> float:
+    """The test function of a kind from multipliers over the solved interval, (rank,); raises Unsolvable."""
     real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
-    if kind == through_minus_one(found.orbit):
+    if kind != SpecialKind.torus:
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
-    if kind == SpecialKind.torus and not real.all():
-        beyond = np.abs(h[~real]) - 1
-        return float(beyond[np.argmin(np.abs(beyond))])
-    raise Unsolvable("the multiplier that crosses the unit circle is lost")
+    if real.all():
+        raise Unsolvable("the multiplier that crosses the unit circle is lost")
+    beyond = np.abs(h[~real]) - 1
+    return float(beyond[np.argmin(np.abs(beyond))])
+
+
+def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
+    """The test function at a known cycle; scale, ahead: as for the segment. Raises Unsolvable."""
+    if kind == SpecialKind.fold:
+        rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
+        return float(point.tangent[-1]) / scale.coordinate / rate
+    if kind == SpecialKind.left_the_model:
+        return least_stretch(point.cycle.path)
+    return of_multipliers(kind, point.partial_multipliers)
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles; if it is not found, its error is the distance of the
-    two."""
+    """The special point of a kind between two cycles. The error of a point that is not found is the distance
+    of the two cycles."""
     aim = min(accuracy, LOCATING.accuracy)
     try:
         segment = Segment(start, end)
@@ -94,20 +120,18 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
         length, slope = _enclosed(kind, segment)
         mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
-        last, point = None, None
-        for _ in range(LOCATING.max_mesh_pairs + 1):
+        point: SpecialPoint | None = None
+        for number in range(LOCATING.max_mesh_pairs + 1):
             segment.start_on(mesh)
-            length, found, slope = _zero(kind, segment, length, slope)
-            last, point = point, _point_at(kind, found)
+            length, orbit, slope = _zero(kind, segment, length, slope)
+            last = point
+            point = _point_at(kind, orbit, start.scale.name)
             if last is not None:
                 point = _with_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
-            mesh = replace(
-                mesh,
-                order=mesh.order + LOCATING.more_orders,
-                intervals=ceil(LOCATING.more_intervals * mesh.intervals),
-            )
+            # The measured error chooses every other mesh; the mesh after it is close, for comparison.
+            mesh = _finer(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.allowed:
                 break
         if point is None or np.isnan(point.error):
@@ -115,6 +139,14 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
     except Unsolvable as why:
         return _between(kind, start, end, f"the {kind.name} is not located: {why}")
     return point
+
+
+def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
+    """The next finer mesh. excess: error of a point on this mesh in units of the accuracy."""
+    growth = excess ** (1 / (LOCATING.power_by_stages * mesh.stages))
+    growth = min(max(growth, LOCATING.more_intervals), LOCATING.max_interval_ratio)
+    more = min(max(ceil(log(excess) / LOCATING.fall), LOCATING.more_orders), LOCATING.max_more_orders)
+    return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
@@ -138,16 +170,16 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     )
 
 
-def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
-    path = CyclePath(found.orbit)
-    name = bordered(found).scale.name
+def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
+    """The special point at a cycle, without error. name: name of the parameter."""
+    path = CyclePath(orbit)
     return SpecialPoint(
         kind=kind,
-        at=getattr(found.orbit.form.rod, name),
-        period=found.orbit.period,
+        at=getattr(orbit.form.rod, name),
+        period=orbit.period,
         tip_y_max=path.extrema["tip_y_max"],
         error=nan,
-        orbit=found.orbit,
+        orbit=orbit,
     )
 
 
@@ -174,15 +206,12 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
 
     Raises Unsolvable.
     """
-    rough = LOCATING.matrix_step_share * LOCATING.enclosure_share * segment.length
-
-    def value(length: float) -> float:
-        return test_function(kind, segment, segment.at(length, rough))
-
-    values = {at: value(at) for at in (segment.length, 0.0)}
+    start = segment.start
+    known = ((0.0, start), (segment.length, segment.end))
+    values = {at: _at_end(kind, start.scale, start.ahead, point) for at, point in known}
 
     def kept(length: float) -> float:
-        values[length] = value(length)
+        values[length] = test_function(kind, segment, segment.at(length))
         return values[length]
 
     ends = values[0.0], values[segment.length]
@@ -190,29 +219,34 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
     at = zero_along(kept, ends, segment.length, least, LOCATING.enclosure_share)
     # The nearest other place and this zero give the slope.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
-    return at, (values[at] - values[other]) / (at - other)
+    slope = (values[at] - values[other]) / (at - other)
+    return at - values[at] / slope, slope
 
 
-def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Converged, float]:
+def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Orbit, float]:
     """(zero of the test function near a guess, the cycle there, the slope of the test function).
 
     slope: approximate, as on a coarser mesh. Raises Unsolvable.
     """
-    end = LOCATING.secant_end_at_fold if kind == SpecialKind.fold else LOCATING.secant_end
-    enough = segment.length * end
+    linear = LOCATING.linear_step_at_fold if kind == SpecialKind.fold else LOCATING.linear_step
+    enough = segment.length * linear
     at = guess
-    step = LOCATING.enclosure_share * segment.length
+    step = np.inf
     before = None
     for _ in range(LOCATING.max_secants):
-        found = segment.at(at, max(LOCATING.cycle_tolerance, LOCATING.matrix_step_share * abs(step)))
-        f = test_function(kind, segment, found)
+        f = test_function(kind, segment, segment.at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
-        last, step = abs(step), -f / slope
+        last = abs(step)
+        step = -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step between the two cycles")
         if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
-            return at, found, slope
+            _, orbit, tangent = segment.known
+            change = step * tangent
+            if kind == SpecialKind.fold:
+                change[-1] /= 2  # the parameter's derivative falls to 0 along the step
+            return at + step, moved(orbit, segment.start.scale.name, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method does not converge")

@@ -16,15 +16,15 @@ from ..bordered import Scale
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrossingSettings:
-    """Corrections across a curve of special points, and the errors of its points."""
+    """Settings of the corrections across a curve of special points, and of the errors of its points."""
 
     accuracy: float = 1e-7
     """Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
     max_unmeasured: int = 3
     """The error is measured at least at every third point."""
     small_fold_cycle: float = 0.05
-    """Largest tip y, in L, of cycles whose fold function is divided by the moment, since it vanishes at the
-    Hopf point too."""
+    """Largest tip y, in L, of cycles whose fold function is divided by the deflection, since it vanishes at
+    the Hopf point too."""
     first_secant: float = 1e-3
     """First step of the secant method across a curve if the derivatives are unknown."""
     longest_secant: float = 0.1
@@ -35,14 +35,13 @@ class CrossingSettings:
     """The last secant step is taken without solving at its end if its length times the distance of the last
     two cycles is below this limit; the test function is known to about 1e-8."""
     max_linear_step: float = 1e-6
-    """The limit of the last step with derivatives from other cycles at the same point, which are known to
-    1e-3."""
+    """Limit of the last step with derivatives from earlier cycles at the same point, with errors of 1e-3."""
     max_carried_step: float = 1e-7
     """The limit of the last step with derivatives from the previous point, which are known to a tenth."""
     min_cosine: float = 0.9
     """Smallest cosine of the angle between two directions across the curve for which derivatives are
     reused."""
-    min_span: float = 1e-6
+    min_cycle_distance: float = 1e-6
     """Smallest distance of two cycles whose difference gives the derivatives: the test function is known to
     1e-8."""
     error_factor: float = 3.0
@@ -62,11 +61,10 @@ ACROSS_CURVE = CrossingSettings()
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Derivatives of a family's cycles across its curve, by the length across.
-
-    way: unit direction across, (along the branch, along the rows), (2,). test: of the test function. orbit:
-    of the orbit's values and the line's coordinate, (N + 1,). mesh: of that orbit. span: length between the
-    two cycles of the difference quotient. contraction: of corrections, as in `NearbyCycles`.
+    """Derivatives of a family's cycles by the length across its curve. way: unit direction across, (along the
+    branch, along the rows), (2,). test: derivative of the test function. orbit: derivative of the orbit's
+    values and the line's coordinate, (N + 1,). mesh: mesh of the orbit. span: length between the two cycles
+    of the difference quotient. contraction: contraction of corrections, as in `NearbyCycles`.
     """
 
     way: Array
@@ -90,8 +88,8 @@ class CurveErrors:
     """Relative error of the line's parameter at a point of a curve; it scales with the squared coefficient
     tails.
 
-    tails: of the orbit where it was measured, in space and time, (2,). mesh: of that orbit. age: number of
-    points since.
+    tails: tails of the orbit whose error was measured, in space and time, (2,). mesh: mesh of that orbit.
+    age: number of points since that orbit.
     """
 
     measured: float
@@ -152,12 +150,13 @@ class OnCurve:
 
 
 def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
-    """Points of a curve in order; the error of each is the larger of those measured before and behind it."""
+    """Points of a curve in order. The error of each point is the larger of the errors measured before and
+    behind."""
     found: list[OnCurve] = []
     behind: CurveErrors | None = None
     for point in reversed(points):
         if point.errors is None:
-            raise ValueError("the point was located without error")
+            raise ValueError("the point has no error estimate")
         candidates = [point.errors]
         if point.errors.age == 0:
             behind = point.errors

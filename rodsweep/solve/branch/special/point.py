@@ -9,46 +9,63 @@ from ...orbit.orbit import Orbit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LocatingSettings:
-    """Location of a special point on a branch."""
+    """Settings for the location of a special point on a branch."""
 
     real_multiplier: float = 1e-7
     """Largest imaginary part of a real multiplier, relative to its modulus."""
     accuracy: float = 1e-9
     """Relative accuracy of the parameter at a special point; the accuracy of the branch if that is
     smaller."""
-    first_mesh_share: float = 0.1
+    first_mesh_share: float = 0.2
     """Accuracy for which the first of the two meshes is planned, in units of `accuracy`."""
-    cycle_tolerance: float = 1e-10
-    """Tolerance of the last Newton step for a cycle on the way; convergence is quadratic, so its square is
-    left."""
+    cycle_tolerance: float = 1e-12
+    """Relative tolerance of a cycle on the way; corrections with one matrix leave an error of this size."""
+    function_tolerance: float = 1e-10
+    """Change of a test function by its last correction; folds are quadratic in it, and corrections gain two
+    digits each."""
     max_secants: int = 12
     """Maximum number of secant steps."""
     stalled_secant: float = 1e-6
     """A secant step this small, in units of the step of the branch, that did not halve is rounding error."""
+    linear_step: float = 1e-6
+    """Longest last secant step, in units of the step of the branch: the cycle is moved along its tangent, and
+    the slope, known to a thousandth, leaves an error of `secant_end`."""
+    linear_step_at_fold: float = 1e-5
+    """`linear_step` at a fold, where the parameter is quadratic in arc length."""
     secant_end: float = 1e-9
-    """Length of the last secant step, in units of the step of the branch."""
+    """Error of the place that the last secant step leaves, in units of the step of the branch."""
     secant_end_at_fold: float = 1e-5
-    """The same at a fold, where the parameter is quadratic in arc length."""
-    matrix_step_share: float = 1e-2
-    """Relative distance of a matrix from its cycle, in units of the last secant step: the test function then
-    gives the next step to two digits."""
+    """`secant_end` at a fold, whose slope may come from a coarser mesh and is known to a tenth."""
+    matrix_distance: float = 1e-3
+    """Largest relative distance of a matrix from the cycle whose test function is corrected with its factors:
+    each correction then gains two digits or more."""
     enclosure_share: float = 1e-3
     """Tolerance of the bracketing: test function in units of its values at the ends, bracket in units of the
     step."""
     max_mesh_pairs: int = 4
     """Maximum number of pairs of meshes that are compared."""
-    more_orders: int = 4
-    """Increase of the order on the next finer mesh."""
-    more_intervals: float = 1.3
-    """Factor on the number of intervals on the next finer mesh."""
+    more_orders: int = 2
+    """Smallest increase of the order on the next finer mesh."""
+    max_more_orders: int = 8
+    """Largest increase of the order on the next finer mesh."""
+    fall: float = 0.8
+    """Decay of the error in space per order, natural logarithm, as measured at a torus point."""
+    more_intervals: float = 1.2
+    """Smallest factor on the number of intervals on the next finer mesh."""
+    max_interval_ratio: float = 2.0
+    """Largest factor on the number of intervals on the next finer mesh."""
+    power_by_stages: float = 1.5
+    """Order in time of the special point, in units of the stages; known orders are larger."""
     error_factor: float = 3.0
     """Safety factor on the difference of two meshes."""
     rounding: float = 1e-13
     """Relative rounding error of the parameter, the period and the size."""
     near_one: float = 3e-3
-    """A multiplier this close to 1 may be rounded to either side; beside a fold there are two."""
+    """A multiplier this close to 1 may be rounded to either side of 1. Beside a fold, two multipliers are
+    close to 1."""
     max_halvings: int = 7
-    """Maximum number of halvings of a step with several special points, or with one that is not located."""
+    """Maximum number of halvings of a step with several special points, or with a point that is not
+    located."""
 
 
 LOCATING = LocatingSettings()

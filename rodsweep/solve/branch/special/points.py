@@ -16,12 +16,12 @@ from .locating import located, through_minus_one
 from .point import LOCATING, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
-"""Gives the cycle at a length from another cycle; raises Unsolvable."""
+"""Returns the cycle at an arc length from a given cycle; raises Unsolvable."""
 
 
-def unstable_returns(point: ArcPoint) -> int:
+def unstable_multipliers(point: ArcPoint) -> int:
     """Number of multipliers outside the unit circle."""
-    return int((np.abs(point.returns) > 1).sum())
+    return int((np.abs(point.partial_multipliers) > 1).sum())
 
 
 def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
@@ -32,7 +32,7 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
         found.append(SpecialKind.fold)
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
         found.append(through_minus_one(start.orbit))
-    change = abs(unstable_returns(end) - unstable_returns(start))
+    change = abs(unstable_multipliers(end) - unstable_multipliers(start))
     slack = 1 if _near_one(start) or _near_one(end) else 0
     if not found and change - slack > 1:
         return [SpecialKind.torus], change == 2 and all(map(_has_pair, (start, end)))
@@ -41,16 +41,16 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
 
 def _beyond_minus_one(point: ArcPoint) -> int:
     """Number of real multipliers below -1."""
-    h = point.returns
+    h = point.partial_multipliers
     return int(((h.real < -1) & (np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h))).sum())
 
 
 def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.returns - 1) < LOCATING.near_one).any())
+    return bool((np.abs(point.partial_multipliers - 1) < LOCATING.near_one).any())
 
 
 def _has_pair(point: ArcPoint) -> bool:
-    h = point.returns
+    h = point.partial_multipliers
     return bool((np.abs(h.imag) > LOCATING.real_multiplier * np.abs(h)).any())
 
 
@@ -63,8 +63,8 @@ def special_points(
 ) -> tuple[list[SpecialPoint], bool]:
     """(special points between two cycles, in order, whether they account for the change of the multipliers).
 
-    accuracy: of the branch. The step is halved if several changes lie within it, or if a special point is not
-    located: near crushing a prediction over the whole step may leave the model.
+    accuracy: accuracy of the branch. The step is halved if several changes lie within it, or if a special
+    point is not located: near crushing a prediction over the whole step may leave the model.
     """
     kinds, explained = changes_between(start, end)
     points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []

@@ -12,45 +12,14 @@ from math import ceil, inf
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.elements.resolution import LARGEST_ORDER
+from ....discretization.elements.resolution import RESOLUTION
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
-from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
+from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
 from ...orbit.tails import lasting_tails, tails_of
-from .cycle_errors import ERROR_ROUNDING, MIN_CLAIM, CycleErrors, largest_error
+from .calibration_settings import CALIBRATION
+from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
-ERROR_FACTOR = 3.0
-"""Safety factor on measured errors of period, extrema and multiplier."""
-HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
-"""Smallest errors of largest y, period and other extrema, in units of the distance between the tip's paths on
-two meshes: a number may agree on two meshes by coincidence, a path does not. The last share replaces the
-first two for the distance in time, which is largest in theta, where the rod is stiff and errors matter
-least."""
-MUTUAL_BOUND = 2.0
-"""Smallest error of period and of largest y, in units of the larger error of the two. The two errors fall as
-the squares of the tails and rarely change sign near the same mesh. Without this bound, one cycle in a
-thousand was off by more than the estimate, by up to 4.5 times."""
-PLANNED_ERROR = 0.5
-"""Error for which a mesh is chosen, in units of the accuracy."""
-FALL_BY_DECAY, MIN_FALL, MAX_FALL = 1.6, 0.5, 2.2
-"""Decay of errors in space per order, natural logarithm: in units of the decay of the coefficients, whose
-squares the errors follow (1.4 to 2 were measured), and its bounds."""
-POWER_BY_STAGES, LARGEST_POWER_RATIO = 1.5, 2.0
-"""Order in time in units of the stages, where it was not measured, and the largest measured order in units of
-the smallest, stages + 1."""
-FEWER_ORDERS, FEWER_INTERVALS, MAX_MORE_ORDERS, MAX_INTERVAL_RATIO = 3, 0.6, 12, 4
-"""Bounds of a planned mesh beside the present one: fewer orders, ratio of intervals if fewer, additional
-orders, ratio of intervals."""
-MAX_REACH, MAX_CALIBRATED_GROWTH = 0.2, 4.0
-"""Relative change of the parameter, and growth of the errors, beyond which the mesh is calibrated again."""
-MIN_SIZE_RATIO = 0.75
-"""Size of the orbit, in units of its size at the calibration, below which the mesh is calibrated again. Near
-the Hopf point at which cycles end, the error of the largest y grows fast beyond a change of sign."""
-MIN_REPEATED_SHARE = 0.5
-"""Smallest error of a repeated calibration, in units of the previous error scaled with the tails. Near a
-change of sign an error is small at one cycle, and has the old size three cycles later."""
-MIN_TAIL = 1e-15
-"""Smallest tail, for rounding errors."""
 MULTIPLIER = 4
 """Index of the largest multiplier's error, behind the indices of `path_differences`."""
 PARTS = 5
@@ -92,7 +61,7 @@ class Calibration:
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The calibration for the orbit of the next point, after a relative change of the parameter."""
         tails = _tails(orbit)
-        dies = tails[-1] < MIN_SIZE_RATIO * self.tails[-1]
+        dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
         return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
     def on_branch(self, orbit: Orbit) -> "Calibration":
@@ -111,15 +80,17 @@ class Calibration:
     @property
     def holds(self) -> bool:
         """Whether the calibration still applies to the orbit."""
-        return self.reach <= MAX_REACH and float(self.growth.max()) <= MAX_CALIBRATED_GROWTH
+        return self.reach <= CALIBRATION.max_reach and float(self.growth.max()) <= CALIBRATION.max_growth
 
     def lasts(self, change: float) -> bool:
         """Whether the calibration may apply after a further relative change of the parameter."""
-        return self.reach + change <= MAX_REACH
+        return self.reach + change <= CALIBRATION.max_reach
 
     def least(self, orbit: Orbit) -> tuple[Array, Array]:
         """Smallest errors in space and in time, (5,) each, of a new calibration of this mesh at an orbit."""
-        in_space, in_time = MIN_REPEATED_SHARE * np.minimum(_change(self.tails, _tails(orbit)), 1.0)
+        in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
+            _change(self.tails, _tails(orbit)), 1.0
+        )
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
@@ -138,20 +109,22 @@ class Calibration:
     def planned(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh that is expected to reach the accuracy."""
         present = self.mesh
-        lowest = max(ORBIT_MESH.min_order, present.order - FEWER_ORDERS)
-        orders = np.arange(lowest, min(LARGEST_ORDER, present.order + MAX_MORE_ORDERS) + 1)
-        fewest = max(ORBIT_MESH.min_intervals, ceil(FEWER_INTERVALS * present.intervals))
-        most = min(MAX_INTERVAL_RATIO * present.intervals, ORBIT_MESH.max_intervals)
+        lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
+        orders = np.arange(
+            lowest, min(RESOLUTION.largest_order, present.order + CALIBRATION.max_more_orders) + 1
+        )
+        fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
+        most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors may fall no faster than the paths'
         # distance, and in time with the smallest order.
-        least = np.minimum(self.fall, self.fall[APART])
+        least = np.minimum(self.fall, self.fall[WHOLE_PATH])
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
-        time = self.time[:, None] * ((present.intervals - 1) / (intervals - 1)) ** power
+        time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= PLANNED_ERROR * accuracy
+        enough = largest_error(*errors[:3]) <= CALIBRATION.planned_error * accuracy
         meshes = [
             replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
@@ -161,22 +134,26 @@ class Calibration:
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
     """Errors of `CycleErrors`, (4, ...), from the parts of the error in space and in time, (5, ...) each."""
-    whole, apart = ERROR_FACTOR * (space + time), space[APART] + time[APART]
-    in_time = SHARE_IN_TIME * time[APART]
-    either = MUTUAL_BOUND * sum(np.maximum(part[PERIOD], part[HEIGHT]) for part in (space, time))
+    whole = CALIBRATION.safety * (space + time)
+    apart = space[WHOLE_PATH] + time[WHOLE_PATH]
+    in_time = CALIBRATION.share_in_time * time[WHOLE_PATH]
+    parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
+    either = CALIBRATION.mutual_bound * (parts[0] + parts[1])
+    of_period = CALIBRATION.period_share * space[WHOLE_PATH] + in_time
+    of_height = CALIBRATION.height_share * space[WHOLE_PATH] + in_time
     stated = [
-        np.maximum(np.maximum(whole[PERIOD], PERIOD_SHARE * space[APART] + in_time), either),
-        np.maximum(np.maximum(whole[HEIGHT], HEIGHT_SHARE * space[APART] + in_time), either),
-        np.maximum(whole[OTHERS], OTHERS_SHARE * apart),
+        np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
+        np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
+        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.others_share * apart),
         whole[MULTIPLIER],
     ]
-    least: Array = np.maximum(np.array(stated), max(MIN_CLAIM * accuracy, ERROR_ROUNDING))
+    least: Array = np.maximum(np.array(stated), max(CYCLE_ERRORS.min_claim * accuracy, CYCLE_ERRORS.rounding))
     return least
 
 
 def _tails(orbit: Orbit) -> Array:
     """Tails in space and in time, at least rounding errors, and the orbit's size, (3,)."""
-    return np.append(np.maximum(lasting_tails(orbit), MIN_TAIL), orbit.size)
+    return np.append(np.maximum(lasting_tails(orbit), CALIBRATION.min_tail), orbit.size)
 
 
 def _growth(before: Array, after: Array) -> Array:
@@ -206,11 +183,13 @@ def calibration_of(
     """
     tails = _tails(orbit)
     if before is None:
-        decay = FALL_BY_DECAY * tails_of(orbit).decay
-        fall = np.full(PARTS, min(max(decay, MIN_FALL), MAX_FALL))
-        power = np.full(PARTS, POWER_BY_STAGES * orbit.stages)
+        decay = CALIBRATION.fall_by_decay * tails_of(orbit).decay
+        fall = np.full(PARTS, min(max(decay, CALIBRATION.min_fall), CALIBRATION.max_fall))
+        power = np.full(PARTS, CALIBRATION.power_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
-    previous, fall, power = before.mesh, before.fall, before.power
+    previous = before.mesh
+    fall = before.fall
+    power = before.power
     if previous.order != mesh.order and previous.edges == mesh.edges:
         fall = _fall(before.space, space, mesh.order - previous.order)
     if previous.intervals != mesh.intervals:
@@ -220,15 +199,15 @@ def calibration_of(
 
 def _fall(before: Array, after: Array, orders: int) -> Array:
     """Decay of errors in space per order, (5,), from errors before and after added orders, (5,) each."""
-    fall: Array = np.clip(_logarithm(before, after) / orders, MIN_FALL, MAX_FALL)
+    fall: Array = np.clip(_logarithm(before, after) / orders, CALIBRATION.min_fall, CALIBRATION.max_fall)
     return fall
 
 
 def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
     least = mesh.stages + 1
-    steps = np.log((mesh.intervals - 1) / (previous.intervals - 1))
-    power: Array = np.clip(_logarithm(before, after) / steps, least, LARGEST_POWER_RATIO * least)
+    steps = np.log(mesh.full_intervals / previous.full_intervals)
+    power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_power_ratio * least)
     return power
 
 

@@ -6,7 +6,7 @@ Zenger 1992), so that one elimination on the fine mesh gives the cycle and its m
 the three orbits measure the errors of the coarse meshes; slowest rates of decay bound the fine mesh's errors.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,15 +17,28 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
-from .calibration import MAX_FALL, MIN_FALL, Calibration, calibration_of
-from .finer_meshes import COMPARED_TOLERANCE, ComparedCycle
+from .calibration import Calibration, calibration_of
+from .calibration_settings import CALIBRATION
+from .finer_meshes import COMPARISON, ComparedCycle
 
-ORDER_DIFFERENCE, INTERVAL_RATIO = 2, 1.4
-"""Difference in orders, and ratio of intervals, of the fine mesh and the coarse mesh made to predict it."""
-SERVED_ORDERS, SERVED_INTERVALS = 4, 2.0
-"""Largest difference in orders, and largest ratio of intervals, of a predicted mesh and the coarse mesh."""
-SLOWEST_FALL = 1.2
-"""Slowest decay of errors in space per order, natural logarithm, in units of the coefficients' decay."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoarserMeshSettings:
+    """Settings for the coarser meshes that predict a cycle on a fine mesh."""
+
+    fewer_orders: int = 2
+    """Orders of the fine mesh minus those of the coarse mesh made to predict it."""
+    more_intervals: float = 0.4
+    """Additional intervals of the fine mesh, in units of those of the coarse mesh made to predict it."""
+    max_order_difference: int = 4
+    """Largest difference between the orders of a fine mesh that is predicted and the coarse mesh."""
+    max_interval_ratio: float = 2.0
+    """Largest ratio of the intervals of a fine mesh that is predicted and the coarse mesh."""
+    slowest_fall: float = 1.2
+    """Slowest decay of errors in space per order, natural logarithm, in units of the coefficients' decay."""
+
+
+COARSER_MESHES = CoarserMeshSettings()
 
 
 class CoarserMeshes:
@@ -33,40 +46,44 @@ class CoarserMeshes:
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine mesh. near: an orbit near the cycle, on any mesh. Raises Unsolvable."""
-        order = mesh.order - ORDER_DIFFERENCE
-        intervals = round((mesh.intervals - 1) / INTERVAL_RATIO) + 1
+        order = mesh.order - COARSER_MESHES.fewer_orders
+        intervals = round(mesh.full_intervals / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = COMPARED_TOLERANCE * accuracy
+        self._tolerance = COMPARISON.newton_share * accuracy
         self._workspace = workspace
-        self._both = self._solved(self.mesh, near)
+        self._coarse = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
-    def serve(self, mesh: OrbitMesh) -> bool:
+    def can_predict(self, mesh: OrbitMesh) -> bool:
         """Whether the coarse meshes can predict the cycle on a fine mesh."""
-        few = (
-            mesh.order - self.mesh.order <= SERVED_ORDERS and self._refined_in_time(mesh) <= SERVED_INTERVALS
+        near = (
+            mesh.order - self.mesh.order <= COARSER_MESHES.max_order_difference
+            and self._refined_in_time(mesh) <= COARSER_MESHES.max_interval_ratio
         )
-        return few and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
+        return near and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """The predicted orbit on a fine mesh, and the calibration of this mesh; raises Unsolvable."""
         space = self._on(replace(self.mesh, order=mesh.order))
         time = self._on(replace(self.mesh, intervals=mesh.intervals))
-        fine, in_intervals, coarse = (mesh.carry(each.orbit) for each in (space, time, self._both))
-        orbit = replace(fine, values=fine.values + in_intervals.values - coarse.values)
-        fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, MIN_FALL), MAX_FALL)
+        fine_in_space = mesh.carry(space.orbit)
+        fine_in_time = mesh.carry(time.orbit)
+        coarse = mesh.carry(self._coarse.orbit)
+        orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
+        fall = COARSER_MESHES.slowest_fall * tails_of(space.orbit).decay
+        fall = min(max(fall, CALIBRATION.min_fall), CALIBRATION.max_fall)
         by_orders = np.exp(fall * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
-        # Each of the two meshes has one of the errors. The fine mesh's multipliers may be as wrong as the two
-        # differ: their errors need not fall as those of the paths.
-        apart = multiplier_change(space.multipliers, time.multipliers)
+        # The error of the multipliers need not fall as fast as those of the paths. It is therefore bounded by
+        # the difference between the meshes fine in space and fine in time, each of which lacks one error.
+        of_multipliers = multiplier_change(space.multipliers, time.multipliers)
         in_space = np.append(self._errors(space, by_orders), 0.0)
-        in_time = np.append(self._errors(time, by_intervals), apart)
+        in_time = np.append(self._errors(time, by_intervals), of_multipliers)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
     def _on(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._finer:
-            self._finer[mesh] = self._solved(mesh, self._both.orbit)
+            self._finer[mesh] = self._solved(mesh, self._coarse.orbit)
         return self._finer[mesh]
 
     def _solved(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
@@ -74,8 +91,9 @@ class CoarserMeshes:
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
         """Errors of a finer mesh, (4,), `factor` times smaller than those of the coarse mesh."""
-        errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
+        errors: Array = path_differences(self._coarse.path, finer.path) / (factor - 1)
         return errors
 
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
-        return (mesh.intervals - 1) / (self.mesh.intervals - 1)
+        """Ratio of the lengths of full intervals of the coarse mesh and a fine mesh."""
+        return mesh.full_intervals / self.mesh.full_intervals

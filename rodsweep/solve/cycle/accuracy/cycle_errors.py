@@ -7,13 +7,21 @@ import numpy as np
 
 from ....arrays import Array
 
-ERROR_ROUNDING = 2e-14
-"""Smallest stated relative error of period and extrema: rounding errors on any mesh."""
-MIN_CLAIM = 0.1
-"""Smallest stated error in units of the accuracy: a smaller estimate may be small by coincidence."""
-EXTREMA_SLACK = 100.0
-"""Tolerance of the tip's other extrema in units of the tolerance of period and largest y. Period and largest
-y converge fastest; a time node lies at the largest y."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CycleErrorSettings:
+    """Settings for the smallest stated errors, and for the error that is compared with the accuracy."""
+
+    rounding: float = 2e-14
+    """Smallest stated relative error of period and extrema: rounding errors on any mesh."""
+    min_claim: float = 0.1
+    """Smallest stated error in units of the accuracy: a smaller estimate may be small by coincidence."""
+    extrema_slack: float = 100.0
+    """Tolerance of the tip's other extrema in units of the tolerance of period and largest y. Period and
+    largest y converge fastest; a time node lies at the largest y."""
+
+
+CYCLE_ERRORS = CycleErrorSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +45,9 @@ class CycleErrors:
 
 def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
     """`CycleErrors.largest` of numbers, or of arrays with a common shape."""
-    largest: Array = np.maximum(np.maximum(period, amplitude), np.asarray(extrema) / EXTREMA_SLACK)
+    largest: Array = np.maximum(
+        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_slack
+    )
     return largest
 
 

@@ -4,7 +4,7 @@ A comparison with a coarser mesh measures the coarse mesh's error; the fine mesh
 assumed order, which must be pessimistic. Two finer meshes measure the error directly.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
 
@@ -17,18 +17,30 @@ from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import path_differences
 from .calibration import Calibration, calibration_of
 
-COMPARED_MORE_ORDERS, COMPARED_MORE_INTERVALS = 2, 1.4
-"""Additional orders of the mesh finer in space, and ratio of intervals of the mesh finer in time."""
-COMPARED_TOLERANCE, COMPARED_DISTANCE = 0.1, 1e-3
-"""Newton tolerance on the compared meshes, in units of the accuracy, and largest relative distance between an
-orbit and the matrix that gives its multipliers."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparisonSettings:
+    """Settings for the two finer meshes whose cycles measure the errors of a mesh."""
+
+    more_orders: int = 2
+    """Additional orders of the mesh finer in space: errors fall by a tenth or more."""
+    more_intervals: float = 0.4
+    """Additional intervals of the mesh finer in time, in units of the mesh's; the share of the error that
+    they remove is known."""
+    newton_share: float = 0.1
+    """Tolerance of Newton's method on the compared meshes, in units of the accuracy."""
+    matrix_distance: float = 1e-3
+    """Largest relative distance between an orbit and the matrix that gives its multipliers."""
+
+
+COMPARISON = ComparisonSettings()
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
-    longer = ceil(COMPARED_MORE_INTERVALS * mesh.intervals)
-    share = 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
-    return (replace(mesh, order=mesh.order + COMPARED_MORE_ORDERS), replace(mesh, intervals=longer)), share
+    longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
+    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
+    return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
 
 def calibrated(found: Converged, accuracy: float, before: Calibration | None) -> Calibration:
@@ -40,7 +52,7 @@ def calibrated(found: Converged, accuracy: float, before: Calibration | None) ->
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
-    tolerance = COMPARED_TOLERANCE * accuracy
+    tolerance = COMPARISON.newton_share * accuracy
     others = (newton(target.carry(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
@@ -61,7 +73,7 @@ class ComparedCycle:
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers, (rank - 1,), by descending modulus."""
-        return multipliers_of(at_orbit(self._found, COMPARED_DISTANCE))[0]
+        return multipliers_of(at_orbit(self._found, COMPARISON.matrix_distance))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
         """Difference from the cycle on a finer mesh, in the quantities of `Calibration.space`, (5,)."""

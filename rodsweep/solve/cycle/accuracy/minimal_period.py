@@ -6,7 +6,7 @@ certain harmonics have g = 1, T is proved minimal. If g > 1 among harmonics of c
 again over T/g. If g = 1 only by harmonics that may be errors, the minimal period stays undecided.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import gcd
 
 import numpy as np
@@ -16,13 +16,22 @@ from ....model.compiled.compilation import compiled
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit, node_times
 
-PRESENT = 1e-3
-"""Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not known."""
-CERTAIN = 10.0
-"""Smallest relative size of a certainly present harmonic, in units of the extrema's relative error."""
-MIN_PRESENT = 1e-6
-"""Lower bound of this size: the error estimate is the tip's, and the bending strain may have a larger
-error."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MinimalPeriodSettings:
+    """Settings for the harmonics that prove the period minimal."""
+
+    present: float = 1e-3
+    """Smallest size of a present harmonic, in units of the largest harmonic, as long as errors are not
+    known."""
+    certain: float = 10.0
+    """Smallest relative size of a certainly present harmonic, in units of the extrema's relative error."""
+    min_present: float = 1e-6
+    """Lower bound of this size: the error estimate is the tip's, and the bending strain may have a larger
+    error."""
+
+
+MINIMAL_PERIOD = MinimalPeriodSettings()
 
 
 def common_divisor(path: CyclePath, present: float) -> int:
@@ -33,7 +42,8 @@ def common_divisor(path: CyclePath, present: float) -> int:
 @compiled
 def _divisor_of(sizes: Array, present: float) -> int:
     """`common_divisor` of harmonics of these sizes, (harmonics,), from the first; 0 if all sizes are 0."""
-    divisor, least = 0, present * sizes.max()
+    divisor = 0
+    least = present * sizes.max()
     for k in range(len(sizes)):
         if sizes[k] > least:
             divisor = gcd(divisor, k + 1)
@@ -45,12 +55,12 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
 
     error: relative error of the extrema.
     """
-    return common_divisor(path, max(CERTAIN * error, MIN_PRESENT))
+    return common_divisor(path, max(MINIMAL_PERIOD.certain * error, MINIMAL_PERIOD.min_present))
 
 
 def shortened(orbit: Orbit) -> Orbit:
     """The orbit over the common period of its present harmonics, as a start for Newton's method."""
-    g = common_divisor(CyclePath(orbit), PRESENT)
+    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.present)
     if g == 1:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)

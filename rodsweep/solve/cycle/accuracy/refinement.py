@@ -22,28 +22,8 @@ from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
 from .finer_meshes import calibrated
-from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-
-MATRIX_DISTANCE, MIN_MATRIX_DISTANCE, MAX_MATRIX_DISTANCE = 3.0, 1e-7, 1e-5
-"""Relative distance of Newton's matrix for accurate multipliers, in units of the accuracy, and its bounds."""
-MULTIPLIER_FACTOR = 10.0
-"""Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
-FINEST_ACCURACY, FIRST_ACCURACY = 1e-12, 1e-7
-"""Finest accuracy for which a mesh is chosen, by measured errors and by the tails of a nearby orbit."""
-NEARBY_TOLERANCE, AIM_FACTOR = 1e-3, 1e-3
-"""Newton tolerance of the nearby orbit, and factor on the accuracy where a mesh is too coarse."""
-FIRST_MESH_ACCURACY = 0.5
-"""Relative accuracy of a single cycle's first mesh: a second round costs more than a finer first mesh."""
-MIN_PREDICTED_INTERVALS = 6
-"""Smallest number of intervals of a predicted mesh. For 5, the prediction would use meshes with 4 and 5,
-where errors in time do not yet fall as a power (the largest y was off by four times its estimate)."""
-PREDICTED_WITHIN, MIN_PREDICTED_DISTANCE = 30.0, 1e-9
-"""Largest distance of a cycle from its prediction, in units of the accuracy, at which predicted errors hold
-(up to 4.4 was seen), and the smallest bound on the distance, for rounding errors."""
-MIN_SIZE, MAX_SIZE = 0.2, 5.0
-"""Bounds on the size of a solution in units of the start's size: the motion must stay the same."""
-ALLOWED_INCREASE, MAX_ROUNDS = 10.0, 8
-"""Factor by which an error may grow on a finer mesh, by coincidence, and maximum number of meshes tried."""
+from .minimal_period import MINIMAL_PERIOD, common_divisor, shortened, undecided_divisor
+from .refinement_settings import REFINEMENT
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,10 +83,11 @@ class RefinedCycle:
 
 def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
     """A cycle with the errors of its calibrated mesh."""
-    path, errors = CyclePath(found.orbit), calibration.errors(accuracy)
+    path = CyclePath(found.orbit)
+    errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
-    by_matrix = MULTIPLIER_FACTOR * largest * (found.distance + trivial_error)
+    by_matrix = REFINEMENT.multiplier_factor * largest * (found.distance + trivial_error)
     by_exponent = errors.amplitude_error * _by_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
@@ -133,23 +114,26 @@ def refine(
     Near a Hopf point a coarse mesh may have no cycle, because its own Hopf point lies beyond. Finer meshes
     are tried in this case.
     """
-    aim, start = max(accuracy, FIRST_ACCURACY), orbit
+    aim = max(accuracy, REFINEMENT.first_accuracy)
+    start = orbit
     while True:
         try:
-            rough = same_motion(newton(start, NEARBY_TOLERANCE, workspace), orbit.size)
+            rough = same_motion(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
             near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
-                first = wanted_mesh(near, FIRST_MESH_ACCURACY * aim, stages)
-                first = replace(first, intervals=max(first.intervals, MIN_PREDICTED_INTERVALS))
+                first = wanted_mesh(near, REFINEMENT.first_mesh_accuracy * aim, stages)
+                first = replace(first, intervals=max(first.intervals, REFINEMENT.min_predicted_intervals))
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
             found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
-            if aim <= FINEST_ACCURACY or not orbit.symmetric:  # only symmetric cycles are born at Hopf points
+            if (
+                aim <= REFINEMENT.finest_accuracy or not orbit.symmetric
+            ):  # only symmetric cycles are born at Hopf points
                 raise
-            aim = max(AIM_FACTOR * aim, FINEST_ACCURACY)
+            aim = max(REFINEMENT.aim_factor * aim, REFINEMENT.finest_accuracy)
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
@@ -161,9 +145,10 @@ def _predicted_cycle(
     The best cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a coarser mesh
     has no such cycle, if the errors do not decrease, or if the cycle is far from its prediction.
     """
-    coarser, last = CoarserMeshes(mesh, near, accuracy, workspace), inf
+    coarser = CoarserMeshes(mesh, near, accuracy, workspace)
+    last = inf
     orbit, known = best = coarser.predicted(mesh)
-    for _ in range(MAX_ROUNDS):
+    for _ in range(REFINEMENT.max_rounds):
         error = known.errors(accuracy).largest
         if error < best[1].errors(accuracy).largest:
             best = orbit, known
@@ -171,17 +156,18 @@ def _predicted_cycle(
             break
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh, last = finer_mesh(mesh, known.planned(accuracy)), ALLOWED_INCREASE * error
+        mesh = finer_mesh(mesh, known.planned(accuracy))
+        last = REFINEMENT.allowed_increase * error
         if not mesh.allowed:
             break
-        if not coarser.serve(mesh):
+        if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
     found = same_motion(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
-    if found.distance > max(PREDICTED_WITHIN * accuracy, MIN_PREDICTED_DISTANCE):
+    if found.distance > max(REFINEMENT.predicted_within * accuracy, REFINEMENT.min_predicted_distance):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    return judged_by(known, at_orbit(found, min(accuracy, MAX_MATRIX_DISTANCE)), accuracy)
+    return judged_by(known, at_orbit(found, min(accuracy, REFINEMENT.max_matrix_distance)), accuracy)
 
 
 def calibrated_cycle(
@@ -191,15 +177,16 @@ def calibrated_cycle(
 
     before: calibration at a nearby cycle. The best cycle is returned if no allowed mesh reaches the accuracy.
     """
-    best, last = None, inf
-    for _ in range(MAX_ROUNDS):
+    best = None
+    last = inf
+    for _ in range(REFINEMENT.max_rounds):
         before = calibrated(found, accuracy, before)
         cycle = judged_by(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        last = ALLOWED_INCREASE * cycle.errors.largest
+        last = REFINEMENT.allowed_increase * cycle.errors.largest
         finer = finer_mesh(before.mesh, before.planned(accuracy))
         if not finer.allowed:
             break
@@ -219,7 +206,7 @@ def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | Non
 
 def same_motion(found: Converged, size: float) -> Converged:
     """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
-    if not MIN_SIZE * size < found.orbit.size < MAX_SIZE * size:
+    if not REFINEMENT.min_size * size < found.orbit.size < REFINEMENT.max_size * size:
         raise Unsolvable("Newton's method converged to another motion than the one at its start")
     return found
 
@@ -233,10 +220,10 @@ def refined_cycle(
     again for a hundredth of the accuracy.
     """
     found = refine(shortened(orbit), accuracy, workspace, parameter)
-    if common_divisor(found.path, PRESENT) > 1:
+    if common_divisor(found.path, MINIMAL_PERIOD.present) > 1:
         found = refine(shortened(found.orbit), accuracy, workspace, parameter)
     if found.stable is None:
-        found = refine(found.orbit, max(accuracy / 100, FINEST_ACCURACY), workspace, parameter)
+        found = refine(found.orbit, max(accuracy / 100, REFINEMENT.finest_accuracy), workspace, parameter)
     return found
 
 
@@ -247,4 +234,7 @@ def newton_tolerance(accuracy: float) -> float:
 
 def matrix_distance(accuracy: float) -> float:
     """Largest relative distance between an orbit and a matrix with accurate multipliers."""
-    return min(max(MATRIX_DISTANCE * accuracy, MIN_MATRIX_DISTANCE), MAX_MATRIX_DISTANCE)
+    return min(
+        max(REFINEMENT.matrix_distance_share * accuracy, REFINEMENT.min_matrix_distance),
+        REFINEMENT.max_matrix_distance,
+    )

@@ -8,36 +8,49 @@ decays at the linear rate. A slowly growing motion with a growth that increases 
 scaled up.
 """
 
+from dataclasses import dataclass
 from math import isnan, nan
 
 import numpy as np
 
 from ....arrays import Array
 
-SLOW_GROWTH = 0.2
-"""Linear growth per period below which the amplitude is predicted instead of integrated."""
-SIGNIFICANT_GROWTH = 10.0
-"""Part of c in the growth, in units of the noise, at which a new c replaces the c of a larger motion. A tenth
-of the new c is noise then; a c measured within the noise may have the wrong sign."""
-NEAR_AMPLITUDE = 0.1
-"""Relative distance from the predicted amplitude within which Newton's method takes over."""
-SHRINK, LARGEST_JUMP = 0.7, 4.0
-"""Factor on the state of a slowly decaying motion (the inverse applies to a growing motion), near enough to 1
-not to jump over a cycle; and the largest factor."""
-LINEAR_TOLERANCE = 0.05
-"""Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AmplitudeEquationSettings:
+    """Settings for the prediction of the amplitude of a slowly growing motion."""
+
+    slow_growth: float = 0.2
+    """Linear growth per period below which the amplitude is predicted instead of integrated."""
+    significant_growth: float = 10.0
+    """Part of c in the growth, in units of the noise, at which a new c replaces the c of a larger motion. A
+    tenth of the new c is noise then; a c measured within the noise may have the wrong sign."""
+    near_amplitude: float = 0.1
+    """Relative distance from the predicted amplitude within which Newton's method takes over."""
+    shrink: float = 0.7
+    """Factor on the state of a slowly decaying motion; the inverse applies to a growing motion. It is near
+    enough to 1 not to jump over a cycle."""
+    max_jump: float = 4.0
+    """Largest factor on the state."""
+    linear_tolerance: float = 0.05
+    """Relative deviation from the linear decay rate and frequency up to which a rod is called straight."""
+
+
+AMPLITUDE_EQUATION = AmplitudeEquationSettings()
 
 
 class AmplitudeEquation:
     """g = g0 - c |z|^2 of one rod, from the returns of its motion: times, (k,), and states, (k, unknowns).
 
-    period: of the leading mode. linear_rate: g0 per time, 1/tau2. excess: linear growth rate of the rod minus
-    that of the integrated beam, 1/tau2. noise: growth per period that the integrator may add.
+    period: period of the leading mode. linear_rate: g0 per time, 1/tau2. excess: linear growth rate of the
+    rod minus that of the integrated beam, 1/tau2. noise: growth per period that the integrator may add.
     """
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
-        self.period, self.linear_rate = period, linear_rate
-        self.excess, self.noise = excess, noise
+        self.period = period
+        self.linear_rate = linear_rate
+        self.excess = excess
+        self.noise = noise
         self.coefficient = nan
         """Coefficient c; NaN until the growth shows it."""
 
@@ -53,13 +66,15 @@ class AmplitudeEquation:
 
     def slow(self, times: Array, states: Array) -> bool:
         """Whether the motion is a slowly growing or decaying leading mode; arguments as of `growth`."""
-        return max(map(abs, self.growth(times, states))) <= SLOW_GROWTH and self._has_period_of_mode(times)
+        return max(
+            map(abs, self.growth(times, states))
+        ) <= AMPLITUDE_EQUATION.slow_growth and self._has_period_of_mode(times)
 
     def decays_as_linear(self, times: Array, states: Array) -> bool:
         """Whether the returns shrink steadily and the last as the leading mode, up to noise."""
         growth, linear = self.growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
-        margin = LINEAR_TOLERANCE * abs(linear)
+        margin = AMPLITUDE_EQUATION.linear_tolerance * abs(linear)
         falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
         alike = bool(falls.all()) and abs(growth - linear) < margin
         # With a known c the distance from the linear rate is bounded by c |z|^2, whatever the noise.
@@ -70,7 +85,9 @@ class AmplitudeEquation:
         """Whether the motion decays faster than the leading mode; no cycle is near in this case."""
         growth, linear = self.growth(times, states)
         known = self.coefficient > 0 and self.slow(times, states)
-        return linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
+        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.slow_growth) + (
+            self.noise if known else 0
+        )
 
     def jump(self, times: Array, states: Array) -> float | None:
         """Factor on the state to the amplitude at which the growth vanishes, or towards this amplitude.
@@ -82,21 +99,29 @@ class AmplitudeEquation:
             return None
         size = float(np.linalg.norm(states[-1]))
         measured = (linear - growth) / size**2
-        if abs(linear - growth) > self.noise * (1 if isnan(self.coefficient) else SIGNIFICANT_GROWTH):
+        if abs(linear - growth) > self.noise * (
+            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.significant_growth
+        ):
             self.coefficient = measured
         coefficient = measured if isnan(self.coefficient) else self.coefficient
         if isnan(self.coefficient) and linear > 0:
-            factor = LARGEST_JUMP  # at this small amplitude the growth does not show c
+            factor = AMPLITUDE_EQUATION.max_jump  # at this small amplitude the growth does not show c
         elif linear > 0 and coefficient > 0:
-            factor = float(np.clip(np.sqrt(linear / coefficient) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
+            factor = float(
+                np.clip(
+                    np.sqrt(linear / coefficient) / size,
+                    1 / AMPLITUDE_EQUATION.max_jump,
+                    AMPLITUDE_EQUATION.max_jump,
+                )
+            )
         elif linear > 0 or (coefficient < 0 and growth > self.noise):
-            factor = 1 / SHRINK  # the growth increases with the amplitude
+            factor = 1 / AMPLITUDE_EQUATION.shrink  # the growth increases with the amplitude
         elif coefficient > 0 or growth < -self.noise:
-            factor = SHRINK
+            factor = AMPLITUDE_EQUATION.shrink
         else:
             return None
-        return factor if abs(factor - 1) >= NEAR_AMPLITUDE else None
+        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.near_amplitude else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
         """Whether the return time is the leading mode's period; otherwise the growth predicts nothing."""
-        return bool(abs((times[-1] - times[-2]) / self.period - 1) < LINEAR_TOLERANCE)
+        return bool(abs((times[-1] - times[-2]) / self.period - 1) < AMPLITUDE_EQUATION.linear_tolerance)

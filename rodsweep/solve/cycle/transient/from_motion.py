@@ -1,5 +1,7 @@
 """Start of Newton's method: an orbit from the integrated motion of a rod near a cycle."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ....arrays import Array
@@ -10,12 +12,22 @@ from ...motion.integrator import Trajectory
 from ...orbit.orbit import Orbit, node_times
 from ...orbit.symmetry import NONE, REFLECTION
 
-MOTION_STAGES, MOTION_INTERVALS = 3, 20
-"""Collocation stages of the start, and its intervals per return of the tip."""
-PHASES = 128
-"""Number of times at which the largest y is searched."""
-MAX_ASYMMETRY = 0.2
-"""Largest relative distance of a symmetric motion from its reflection half a period later."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FromMotionSettings:
+    """Settings for starting Newton's method from an integrated motion."""
+
+    stages: int = 3
+    """Collocation stages of the start."""
+    intervals: int = 20
+    """Intervals of the start per return of the tip."""
+    phases: int = 128
+    """Number of times at which the largest y is searched."""
+    max_asymmetry: float = 0.2
+    """Largest relative distance of a symmetric motion from its reflection half a period later."""
+
+
+FROM_MOTION = FromMotionSettings()
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
@@ -27,16 +39,16 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
-    times = begin + period * np.arange(PHASES) / PHASES
+    times = begin + period * np.arange(FROM_MOTION.phases) / FROM_MOTION.phases
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
-    symmetry = REFLECTION if asymmetry(beam, whole) < MAX_ASYMMETRY else NONE
-    intervals = MOTION_INTERVALS * turns // symmetry.parts
+    symmetry = REFLECTION if asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NONE
+    intervals = FROM_MOTION.intervals * turns // symmetry.parts
     duration = period / symmetry.parts
-    at = top + duration * node_times(intervals, MOTION_STAGES)
+    at = top + duration * node_times(intervals, FROM_MOTION.stages)
     at = np.where(at > run.times[-1], at - period, at)
     states = stressed(beam, form, spline(at))
-    return Orbit.of(form, symmetry, period, states, MOTION_STAGES)
+    return Orbit.of(form, symmetry, period, states, FROM_MOTION.stages)
 
 
 def asymmetry(beam: Beam, states: Array) -> float:

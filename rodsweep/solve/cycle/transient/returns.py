@@ -4,6 +4,7 @@ A motion is integrated from return to return. A cycle is near where the states a
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import inf, isfinite, isnan
 from operator import mul
 from typing import NamedTuple
@@ -15,17 +16,26 @@ from ....discretization.beam import Beam
 from ....wording import counted
 from ...motion.integrator import Ending, RunLimit, Trajectory
 
-STRAIGHT_SIZE = 1e-6
-"""Norm of z below which a rod with a stable straight state is called straight, and norm of the bending and
-shear part of z below which a rod no longer swings. Smaller motions are governed by numerical damping."""
-SAME_RETURN = 0.03
-"""Largest relative distance of two returns at the same crossing of the orbit."""
-LONGEST_ORBIT = 8
-"""Maximum number of returns per period."""
-STEPS_PER_CHUNK = 20_000
-"""Maximum number of time steps in one run."""
-CROSSING_BISECTIONS = 50
-"""Bisections of a time step for a crossing: all digits of the crossing time."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReturnSettings:
+    """Settings for the returns of the tip, by which a motion is classified."""
+
+    straight_size: float = 1e-6
+    """Norm of z below which a rod with a stable straight state is called straight, and norm of the bending
+    and shear part of z below which a rod no longer swings. Smaller motions are governed by numerical
+    damping."""
+    same_return: float = 0.03
+    """Largest relative distance of two returns at the same crossing of the orbit."""
+    max_returns_per_period: int = 8
+    """Maximum number of returns per period."""
+    steps_per_run: int = 20_000
+    """Maximum number of time steps in one run."""
+    bisections: int = 50
+    """Bisections of a time step for a crossing: all digits of the crossing time."""
+
+
+RETURNS = ReturnSettings()
 
 
 def angle_weights(beam: Beam) -> Array:
@@ -45,7 +55,7 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
         last = angle
         return count >= wanted
 
-    return RunLimit(enough, STEPS_PER_CHUNK)
+    return RunLimit(enough, RETURNS.steps_per_run)
 
 
 class EarlyEnd(NamedTuple):
@@ -86,7 +96,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
         angles = (cubic @ row).tolist()
         low = 0.0
         high = 1.0
-        for _ in range(CROSSING_BISECTIONS):
+        for _ in range(RETURNS.bisections):
             middle = (low + high) / 2
             if sum(map(mul, _hermite_weights(middle), angles)) < 0:
                 low = middle
@@ -111,10 +121,10 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     the smallest m is taken.
     """
     size = np.linalg.norm(moments[-1])
-    if size < STRAIGHT_SIZE:  # moments of this size are rounding errors, which do not repeat
+    if size < RETURNS.straight_size:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
-    enough = max(2 * min(found)[0], SAME_RETURN)
+    enough = max(2 * min(found)[0], RETURNS.same_return)
     return next((m, distance) for distance, m in found if distance <= enough)
 
 

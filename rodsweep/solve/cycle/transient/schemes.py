@@ -1,9 +1,10 @@
 """Time schemes of a transient, by how fast its rod leaves or approaches the straight state."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...motion.time_scheme import TimeScheme
-from .amplitude_equation import SLOW_GROWTH
+from .amplitude_equation import AMPLITUDE_EQUATION
 
 USUAL_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-5)
 """Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
@@ -11,12 +12,21 @@ QUICK_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-4)
 """Scheme of the first run of a fast-growing motion, which often closes: no decision uses the growth."""
 CAREFUL_SCHEME = TimeScheme("arkimex", "5", tolerance=1e-9)
 """Scheme where the sign of a small growth per period must be correct, and for stored paths."""
-WEAK_GROWTH = 0.01
-"""Linear growth per period below which the scheme is CAREFUL_SCHEME."""
-GROWTH_NOISE = 1e-3
-"""Growth per period that the integrator may add; 3e-4 was measured."""
-CAREFUL_NOISE = 1e-5
-"""GROWTH_NOISE of CAREFUL_SCHEME; 8e-6 was measured."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SchemeSettings:
+    """Settings for the choice of the scheme of a motion by its growth."""
+
+    weak_growth: float = 0.01
+    """Linear growth per period below which the scheme is CAREFUL_SCHEME."""
+    growth_noise: float = 1e-3
+    """Growth per period that the integrator may add; 3e-4 was measured."""
+    careful_noise: float = 1e-5
+    """SCHEMES.growth_noise of CAREFUL_SCHEME; 8e-6 was measured."""
+
+
+SCHEMES = SchemeSettings()
 
 
 class TransientSchemes(NamedTuple):
@@ -29,8 +39,10 @@ class TransientSchemes(NamedTuple):
 
 def schemes_of(growth: float, is_stored: bool) -> TransientSchemes:
     """Schemes for a linear growth per period; is_stored: whether the path of the motion is stored."""
-    if abs(growth) < WEAK_GROWTH or is_stored:
-        return TransientSchemes(CAREFUL_SCHEME, CAREFUL_SCHEME, CAREFUL_NOISE)
+    if abs(growth) < SCHEMES.weak_growth or is_stored:
+        return TransientSchemes(CAREFUL_SCHEME, CAREFUL_SCHEME, SCHEMES.careful_noise)
     return TransientSchemes(
-        QUICK_SCHEME if growth > SLOW_GROWTH else USUAL_SCHEME, USUAL_SCHEME, GROWTH_NOISE
+        QUICK_SCHEME if growth > AMPLITUDE_EQUATION.slow_growth else USUAL_SCHEME,
+        USUAL_SCHEME,
+        SCHEMES.growth_noise,
     )

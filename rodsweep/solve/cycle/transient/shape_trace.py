@@ -1,6 +1,7 @@
 """Shapes at equal times from the start of a motion, for an animation."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,14 +11,22 @@ from ....discretization.elements.quadrature import lobatto_points
 from ...motion.integrator import Trajectory
 from ..cycle import MotionShapes
 
-MOST_STEPS = 4000
-"""Time steps after which no more are kept: some 50 to 100 returns of the tip, or 4 MB."""
-MOST_FRAMES = 1600
-"""Largest number of shapes: 50 periods of 32 shapes."""
-AT_REST = 2e-3
-"""Deflection of the tip, in L, below which an arm is drawn straight."""
-FEW_RETURNS = 3
-"""Returns of the tip below which the period of the motion is that of the leading mode."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeTraceSettings:
+    """Settings for the shapes of a motion that are kept for a moving picture."""
+
+    max_steps: int = 4000
+    """Time steps after which no more are kept: some 50 to 100 returns of the tip, or 4 MB."""
+    max_frames: int = 1600
+    """Largest number of shapes: 50 periods of 32 shapes."""
+    at_rest: float = 2e-3
+    """Deflection of the tip, in L, below which an arm is drawn straight."""
+    few_returns: int = 3
+    """Returns of the tip below which the period of the motion is that of the leading mode."""
+
+
+SHAPE_TRACE = ShapeTraceSettings()
 
 
 class ShapeTrace:
@@ -32,11 +41,11 @@ class ShapeTrace:
     @property
     def is_full(self) -> bool:
         """Whether no further step is kept."""
-        return self.steps >= MOST_STEPS
+        return self.steps >= SHAPE_TRACE.max_steps
 
     def shows(self, z: Array) -> bool:
         """Whether the motion is kept further at a state z, (unknowns,), of which the outcome is known."""
-        return not self.is_full and abs(float(self.beam.tip(z)[1])) > AT_REST
+        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.at_rest
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
         """Keeps the start z, which relaxes to a state, both (unknowns,), in a time too short to be seen."""
@@ -57,12 +66,15 @@ class ShapeTrace:
     def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
         """Shapes on `nodes` Lobatto nodes, `frames` per return of the tip, until the arm is at rest.
 
-        returns: times of the tip's last returns. period: of the leading mode, in place of few returns.
+        returns: times of the tip's last returns. period: period of the leading mode, used if there are too
+        few returns.
         """
         from scipy.interpolate import CubicSpline  # a tenth of a second of every start
 
-        step = (float(np.median(np.diff(returns))) if len(returns) >= FEW_RETURNS else period) / frames
-        due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, MOST_FRAMES))
+        step = (
+            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.few_returns else period
+        ) / frames
+        due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, SHAPE_TRACE.max_frames))
         run_of = np.searchsorted([times[0] for times in self.times], due, side="right") - 1
         states = np.empty((len(due), self.beam.unknowns))
         for number, (times, steps) in enumerate(zip(self.times, self.states, strict=True)):
@@ -70,6 +82,6 @@ class ShapeTrace:
             if within.any():
                 states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
-        is_whole = not self.is_full and len(due) < MOST_FRAMES
-        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > AT_REST)
+        is_whole = not self.is_full and len(due) < SHAPE_TRACE.max_frames
+        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE.at_rest)
         return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

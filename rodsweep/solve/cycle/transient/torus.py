@@ -6,7 +6,7 @@ the same angle on average. The bending moments at the k-th return are therefore 
 this angle. The series is fitted to the earlier returns and must predict the later ones, which excludes
 motions that grow, decay or are irregular. The earlier returns must fill the closed curve: an orbit that
 closes after several returns leaves gaps, as does a motion that is too short. An orbit that closes after
-`INVERSE_GAP` or more returns cannot be distinguished from a torus.
+`TORUS_TEST.inverse_gap` or more returns cannot be distinguished from a torus.
 """
 
 from collections.abc import Iterator
@@ -21,20 +21,31 @@ from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus
 from .transient import Transient, TransientOutcome
 
-HARMONICS = 6
-"""Harmonics of the second frequency in the returns. Each harmonic of the studied tori was a fifth of the
-previous one, and all harmonics beyond the sixth together were 6e-4."""
-INVERSE_GAP = 16
-"""Inverse of the largest gap between returns, as a share of the closed curve. The returns then determine the
-13 terms of the series, and an orbit that closes after fewer returns is rejected."""
-LARGEST_PREDICTION_ERROR = 0.05
-"""Largest rms error of the predicted returns in units of the rms modulation. The error was 7e-4 to 0.03 on
-tori, and 0.11 for a growing modulation."""
-SKIPPED_SHARE = 1 / 3
-"""Share of the returns, from the start, that is left out: the motion still approaches the torus."""
-ANGLE_TOLERANCE, PERIOD_TOLERANCE = 0.3, 0.1
-"""Largest difference between torus and cycle in the angle per return, rad, and in the mean return time,
-relative. Both differences vanish where the torus is born; 0.18 rad was seen far from there."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TorusTestSettings:
+    """Settings of the test whether a motion lies on a torus."""
+
+    harmonics: int = 6
+    """Harmonics of the second frequency in the returns. Each harmonic of the studied tori was a fifth of the
+    previous one, and all harmonics beyond the sixth together were 6e-4."""
+    inverse_gap: int = 16
+    """Inverse of the largest gap between returns, as a share of the closed curve. The returns then determine
+    the 13 terms of the series, and an orbit that closes after fewer returns is rejected."""
+    max_prediction_error: float = 0.05
+    """Largest rms error of the predicted returns in units of the rms modulation. The error was 7e-4 to 0.03
+    on tori, and 0.11 for a growing modulation."""
+    skipped_share: float = 1 / 3
+    """Share of the returns, from the start, that is left out: the motion still approaches the torus."""
+    angle_tolerance: float = 0.3
+    """Largest difference between torus and cycle in the angle per return, rad. It vanishes where the torus is
+    born; 0.18 was seen far from there."""
+    period_tolerance: float = 0.1
+    """Largest relative difference between torus and cycle in the mean return time; it vanishes where the
+    torus is born, too."""
+
+
+TORUS_TEST = TorusTestSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,17 +61,19 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     if end.status != CycleStatus.not_settled or end.found is not None:
         return end
     # Only the last returns are kept, so the first third may be partly or wholly forgotten already.
-    skipped = max(0, int(SKIPPED_SHARE * transient.waited) - (transient.waited - len(transient.past)))
+    skipped = max(
+        0, int(TORUS_TEST.skipped_share * transient.waited) - (transient.waited - len(transient.past))
+    )
     past = list(transient.past)[skipped:]
-    if len(past) < 2 * INVERSE_GAP:
+    if len(past) < 2 * TORUS_TEST.inverse_gap:
         return end
     times = np.array([time for time, _ in past])
     moments = np.array([moment for _, moment in past])
     for cycle in _unstable_cycles(transient):
-        near = abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= PERIOD_TOLERANCE
+        near = abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.period_tolerance
         angle = pair_outside(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
-        if modulation and modulation.error <= LARGEST_PREDICTION_ERROR:
+        if modulation and modulation.error <= TORUS_TEST.max_prediction_error:
             message = (
                 f"modulated with {modulation.angle / (2 * np.pi):.3f} of the return frequency; "
                 f"the cycle inside the torus is unstable, multiplier {cycle.largest_multiplier:.3g}"
@@ -101,9 +114,9 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     later = returns[half:]
     best = fitted_angle(fitted, angle)
     size = float(np.linalg.norm(later - later.mean(axis=0)))
-    if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / INVERSE_GAP:
+    if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
         return None
-    basis = fourier(best * numbers, HARMONICS)
+    basis = fourier(best * numbers, TORUS_TEST.harmonics)
     series = np.linalg.lstsq(basis[:half], fitted, rcond=None)[0]
     return Modulation(best, float(np.linalg.norm(later - basis[half:] @ series)) / size)
 
@@ -120,10 +133,12 @@ def fitted_angle(returns: Array, angle: float) -> float:
 
     # The minimum for one harmonic is 2 pi/k wide, that for m harmonics m times narrower.
     tried = np.linspace(
-        angle - ANGLE_TOLERANCE, angle + ANGLE_TOLERANCE, int(4 * ANGLE_TOLERANCE * len(returns)) + 1
+        angle - TORUS_TEST.angle_tolerance,
+        angle + TORUS_TEST.angle_tolerance,
+        int(4 * TORUS_TEST.angle_tolerance * len(returns)) + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
-    for harmonics in range(1, HARMONICS + 1):
+    for harmonics in range(1, TORUS_TEST.harmonics + 1):
         reach = np.pi / (len(returns) * harmonics)
         bounds = (best - reach, best + reach)
         found = minimize_scalar(

@@ -7,7 +7,7 @@ replace a state of several hundred.
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import TINY, Beam
+from ....discretization.beam import Beam
 from ...motion.integrator import Trajectory
 
 
@@ -24,7 +24,7 @@ class TipTrace:
     """A path has any length."""
 
     def shows(self, z: Array) -> bool:
-        """Whether the path goes on at a state z, (unknowns,), of which the outcome is known: it does not."""
+        """Always False: the path ends at a state z, (unknowns,), whose outcome is known."""
         return False
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
@@ -42,11 +42,8 @@ class TipTrace:
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)
         states = run.states[finite]
-        # A small imaginary step along the rates gives the tip's velocity without cancellation.
-        moved = states + 1j * TINY * self.beam.rate(states)
-        tips = self.beam.tip(moved)
         self.times.append(clock + run.times[finite])
-        self.tips.append(np.concatenate([tips.real, tips.imag / TINY]))
+        self.tips.append(np.concatenate(self.beam.tip_motion(states, self.beam.rate(states))))
 
     def at_equal_times(self, count: int) -> Array:
         """Time in tau2 and x, y, theta of the tip, (4, count), from the start to the end of the last run."""

@@ -28,36 +28,40 @@ from ..straight_rod import StraightRod, straight_rod
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import near_rod
-from .returns import (
-    LONGEST_ORBIT,
-    STRAIGHT_SIZE,
-    angle_weights,
-    early_end,
-    repetition,
-    section_crossings,
-    until_returns,
-)
+from .returns import RETURNS, angle_weights, early_end, repetition, section_crossings, until_returns
 from .schemes import schemes_of
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
 
-RETURNS_PER_RUN, FIRST_RETURNS = 5, 3
-"""Returns per run, before the motion is classified, and returns of the first run, after which only closed
-motions are recognised: a fast-growing motion may close early."""
-NEWTON_DISTANCE = 0.1
-"""Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
-STORED_PATH_DISTANCE = 1e-3
-"""NEWTON_DISTANCE for a stored path, in the first half of the allowed periods, to show the settling."""
-MAX_NEWTON_FAILURES = 5
-"""Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
-MAX_JUMPS = 60
-"""Maximum number of scaled or restarted states."""
-RESTART_DEFLECTION = 1e-3
-"""Tip deflection of a restart in L; its square is the relative change of the linear growth."""
-NEUTRAL_DISTANCE = 3e-8
-"""Distance of the largest multiplier from 1 below which a closed orbit does not determine its amplitude."""
-MAX_RETURNS = 400
-"""Number of last returns that are kept to recognise a torus."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TransientSettings:
+    """Settings for the integration of a motion until Newton's method finds its cycle."""
+
+    returns_per_run: int = 5
+    """Returns per run, before the motion is classified."""
+    first_returns: int = 3
+    """Returns of the first run, after which only closed motions are recognised: a fast-growing motion may
+    close early."""
+    newton_distance: float = 0.1
+    """Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
+    stored_path_distance: float = 1e-3
+    """`newton_distance` for a stored path in the first half of the allowed periods: smaller, to show the
+    settling."""
+    max_newton_failures: int = 5
+    """Failures of Newton's method up to which each failure doubles the returns before the next attempt."""
+    max_jumps: int = 60
+    """Maximum number of scaled or restarted states."""
+    restart_deflection: float = 1e-3
+    """Tip deflection of a restart in L; its square is the relative change of the linear growth."""
+    neutral_distance: float = 3e-8
+    """Distance of the largest multiplier from 1 below which a closed orbit does not determine its
+    amplitude."""
+    max_returns: int = 400
+    """Number of last returns that are kept to recognise a torus."""
+
+
+TRANSIENT = TransientSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,19 +96,24 @@ class Transient:
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
-        self.beam, self.form = Beam(near_rod(form.rod), form.mesh), form
-        self.straight, self.along, self.workspace = straight, along, workspace
-        self.accuracy, self.most_periods = request.accuracy, request.most_periods
+        self.beam = Beam(near_rod(form.rod), form.mesh)
+        self.form = form
+        self.straight = straight
+        self.along = along
+        self.workspace = workspace
+        self.accuracy = request.accuracy
+        self.most_periods = request.most_periods
         self.unstable = unstable
         self.mode = leading_mode(self.beam)
         self.trace = self._trace(request)
         self.row = angle_weights(self.beam)
-        rate, period = straight.growth_rate(self.mode.w.real), self.mode.period
+        rate = straight.growth_rate(self.mode.w.real)
+        period = self.mode.period
         self.first_scheme, self.scheme, noise = schemes_of(rate * period, request.transient > 0)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / 1000
         """First time step of the next run, tau2."""
-        self.past: deque[tuple[float, Array]] = deque(maxlen=MAX_RETURNS)
+        self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_returns)
         """Times and bending moments of the last returns since the last jump."""
         self.clock = 0.0
         self.waited = self.jumps = self.failures = self.next_newton = 0
@@ -117,7 +126,8 @@ class Transient:
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from z, shape (unknowns,)."""
-        z, first = self._relaxed(z), True
+        z = self._relaxed(z)
+        first = True
         while self.waited < self.most_periods:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._chunk(z, first)
@@ -127,20 +137,21 @@ class Transient:
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)
-            if self.straight.stable is not False and np.linalg.norm(z) < STRAIGHT_SIZE:
+            if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
             if self.straight.stable is False and not self._swings(z):
-                if self.trace or self.jumps >= MAX_JUMPS:
+                if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
-                z = self._jumped(RESTART_DEFLECTION * self.mode.z.real)
+                z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
                 continue
-            early, first = first, False
+            early = first
+            first = False
             if len(times) < 3 or (early and self.small.slow(times, states)):
                 continue
             shown = self.trace is not None and self.trace.shows(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
-            factor = None if early or self.jumps >= MAX_JUMPS else self.small.jump(times, states)
+            factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
             if factor is not None and self.trace and not self.trace.is_full:
                 continue  # a stored path has no jumps
             if factor is not None:
@@ -177,7 +188,7 @@ class Transient:
 
     def _swings(self, z: Array) -> bool:
         """Whether bending and shear exceed rounding errors."""
-        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= STRAIGHT_SIZE)
+        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
         """Linear growth rate of the beam, 1/tau2, from its spectrum. rate: that of the rod of `form`.
@@ -201,8 +212,12 @@ class Transient:
         return TransientOutcome(status, why, self.waited, found)
 
     def _chunk(self, z: Array, first: bool) -> Trajectory:
-        """A run over RETURNS_PER_RUN returns, limited to three times the expected duration."""
-        returns, scheme = (FIRST_RETURNS, self.first_scheme) if first else (RETURNS_PER_RUN, self.scheme)
+        """A run over TRANSIENT.returns_per_run returns, limited to three times the expected duration."""
+        returns, scheme = (
+            (TRANSIENT.first_returns, self.first_scheme)
+            if first
+            else (TRANSIENT.returns_per_run, self.scheme)
+        )
         limit = until_returns(self.row, z, returns)
         duration = 3 * returns * self.mode.period
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
@@ -214,18 +229,18 @@ class Transient:
 
     def _closed(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle, if the returns repeat and Newton's method converges; None otherwise."""
-        turns, distance = repetition([state for _, state in self.past][-1 - LONGEST_ORBIT :])
+        turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
         if distance >= self._near_enough() or self.waited < self.next_newton:
             return None
-        self.next_newton = self.waited + RETURNS_PER_RUN * 2**self.failures
-        self.failures = min(self.failures + 1, MAX_NEWTON_FAILURES)
+        self.next_newton = self.waited + TRANSIENT.returns_per_run * 2**self.failures
+        self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
         return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
     def _near_enough(self) -> float:
         """Relative distance of two returns below which Newton's method is tried."""
-        distance = NEWTON_DISTANCE / 10**self.failures
+        distance = TRANSIENT.newton_distance / 10**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
-        return min(distance, STORED_PATH_DISTANCE) if settles else distance
+        return min(distance, TRANSIENT.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found."""
@@ -240,4 +255,4 @@ class Transient:
             return None
         if found.stable is False:
             self.unstable = found
-        return found if found.stable and 1 - found.largest_multiplier >= NEUTRAL_DISTANCE else None
+        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None

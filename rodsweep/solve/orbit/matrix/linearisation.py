@@ -48,17 +48,17 @@ class Linearisation:
 
     def multipliers(self) -> Complex:
         """Floquet multipliers above rounding errors, (rank,), trivial one included, by descending modulus."""
-        return over_period(returns_of(self._memory.propagator, self.orbit), self.orbit)
+        return over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
 
 
-def returns_of(propagator: Array, orbit: Orbit) -> Complex:
+def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
     """Nonzero multipliers, (rank,), of the map S^-1 P over the solved part of the period; P: (n, n)."""
     return nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
 
 
-def over_period(returns: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers by descending modulus, from those of the map over the solved part, (rank,) each."""
-    values: Complex = returns**orbit.symmetry.parts
+def over_period(partial: Complex, orbit: Orbit) -> Complex:
+    """Floquet multipliers by descending modulus, from the multipliers over the solved part, (rank,) each."""
+    values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 

@@ -16,7 +16,7 @@ from ...backend.small_eigenvalues import eigenvalues
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MultiplierSettings:
-    """Compression of the flow's derivative."""
+    """Settings for the compression of the flow's derivative."""
 
     negligible: float = 1e-17
     """Largest norm of a negligible column, in units of the largest column of the flow's derivative."""

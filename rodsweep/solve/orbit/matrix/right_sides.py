@@ -14,7 +14,7 @@ from .substitution import add_products
 
 
 class Along(NamedTuple):
-    """Change of the rod per unit of a parameter: of the rod's arrays, and of the mass, (n,)."""
+    """Derivatives of the rod's arrays and of its mass, (n,), with respect to a parameter."""
 
     change: NodalChange
     mass: Array
@@ -100,7 +100,8 @@ def right_sides(
 def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Array, columns: Array) -> None:
     """Derivatives of an orbit's `residuals` along variations, into columns, (K, s, columns, n).
 
-    values: of the orbit, (N,). variations: of the values and of the parameter of `along`, (columns, N + 1).
+    values: values of the orbit, (N,). variations: variations of the values and of the parameter of `along`,
+    (columns, N + 1).
     """
     K, s, count, n = columns.shape
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts

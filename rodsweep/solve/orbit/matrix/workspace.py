@@ -15,7 +15,7 @@ from ....arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkspaceSettings:
-    """Memory of the matrices of orbits."""
+    """Settings for the memory of the matrices of orbits."""
 
     kept_numbers: int = 2**23
     """Numbers that a workspace keeps between rods, 64 MB: enough for most rods."""

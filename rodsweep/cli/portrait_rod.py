@@ -1,0 +1,94 @@
+"""The rod of the command `portrait` from its options, and the progress of the solves of its portrait."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..model.arm.quantities import LOADS
+from ..model.parameters import PARAMETERS
+from ..sweep.listener import NoClaims, RankListener
+from ..sweep.stop import StopRequest
+from ..watch import SolvePosition, reporting_to
+
+if TYPE_CHECKING:
+    from ..post.rod_portrait.results import DescribedRod
+    from ..results.file.view import View
+    from ..sweep.progress import ProgressReporter
+    from ..tasks.rod_portrait import Solve
+    from ..tasks.running.job import Job
+
+LEFT_OUT = (*LOADS, "fluid_density", "density_difference")
+"""Quantities of an arm without an option: the load is found, and densities do not enter the model."""
+REQUIRED = tuple(name for name, each in PARAMETERS.items() if each.default is None and name != "F")
+"""Parameters that a rod without an arm needs."""
+
+
+def rod_from(
+    parameters: Mapping[str, float | None],
+    quantities: Mapping[str, Any],
+    material: Mapping[str, str | None],
+) -> "DescribedRod":
+    """The rod of the options, each None where it is not given; InputError for options that describe no rod.
+
+    quantities: of an arm, with poisson and segments. An arm gives all parameters and keys of `material` that
+    are not given.
+    """
+    from ..config.axes import DEFAULTS
+    from ..config.material import with_profile_read
+    from ..model.arm.arm import SlenderArm
+    from ..model.arm.as_rod import material_of, parameters_of
+    from ..model.arm.quantities import ARM_UNITS
+    from ..post.rod_portrait.results import DescribedRod
+    from .arm_report import as_options
+
+    own = _given(parameters)
+    words = _given(material)
+    scales = {}
+    if of_arm := _given(quantities):
+        of_build = {name: words[name] for name in ("law", "section") if name in words}
+        try:
+            arm = SlenderArm(**of_arm, **of_build)
+        except InputError as error:
+            raise InputError(as_options(str(error))) from None
+        own = parameters_of(arm) | own
+        words = material_of(arm) | words
+        scales = {name: float(getattr(arm, name)) for name in ARM_UNITS}
+    for name in REQUIRED:
+        if name not in own:
+            raise InputError(
+                f"--{name} is missing; give {', '.join(f'--{each}' for each in REQUIRED)}, or the quantities "
+                "of an arm, such as --length"
+            )
+    values = {name: own.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
+    read = with_profile_read({"material": words}, Path())["material"]
+    return DescribedRod(parameters=_given(values), material=read, scales=scales)
+
+
+def _given(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options that are given."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+@contextmanager
+def showing(shown: "ProgressReporter", solve: "Solve") -> "Iterator[Solve]":
+    """Gives `solve` with its progress: the number of solved jobs, and the position of a long solve."""
+    numbers = count(1)
+
+    def show(place: SolvePosition) -> None:
+        shown.place(place.words, place.share or 0.0)
+
+    def solve_and_show(job: "Job") -> "View":
+        name = job.config.task.replace("_", " ")
+        with reporting_to(RankListener(NoClaims(show), StopRequest(), lambda: name)):
+            view = solve(job)
+        shown(next(numbers))
+        return view
+
+    shown(0)
+    try:
+        yield solve_and_show
+    finally:
+        shown.close()

@@ -1,0 +1,74 @@
+"""Strains at the nodes of every element, compiled: both values where the material jumps.
+
+At a jump stress is continuous and strain is not. The unknown at the node of a jump gives the mean strain of
+both sides. The strain takes this value on neither side, and a shape integrated with it converges only with
+the fifth power of the order. The strains of both sides follow from the stress
+(`rodsweep.model.material.jump`); a shape integrated with them converges exponentially.
+
+Arrays at the nodes of every element hold one element after the other, `Elements.element_nodes`.
+"""
+
+from ..arrays import Array
+from ..model.compiled.compilation import compiled, compiled_for_vectors
+from ..model.material.jump import SHEAR, Unknowns, before_jump, behind_jump, changes_beside_jump
+from .nodal_rod import NodalRod
+
+
+@compiled
+def place_before(node: int, order: int) -> int:
+    """Place before a jump among the nodes of every element; the place behind it is the next."""
+    return node + node // order - 1
+
+
+@compiled_for_vectors
+def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> None:
+    """Writes (h1, h2, Pi) of S, (3, m, nodes + 1), into out, (3, m, elements (order + 1)).
+
+    order: of the elements. S: unknown stresses at all nodes, E = E0 + C S.
+    """
+    for a in range(len(S)):
+        for k in range(S.shape[1]):
+            for i in range(out.shape[2]):
+                node = i - i // (order + 1)
+                out[a, k, i] = rod.rest[a, node] + rod.compliance[a, node] * S[a, k, node]
+    for j in range(len(rod.jumps)):
+        node = rod.jumps[j]
+        sides = rod.sides[j]
+        before = place_before(node, order)
+        for k in range(S.shape[1]):
+            q = Unknowns(S[0, k, node], S[2, k, node])
+            first = before_jump(rod.law, sides, q)
+            beside = first, behind_jump(sides, q, first)
+            for side in range(2):
+                out[0, k, before + side] = sides[side, 0] + sides[side, 1] * beside[side].q1
+                out[1, k, before + side] = sides[side, SHEAR] * S[1, k, node]
+                out[2, k, before + side] = sides[side, 2] * beside[side].q3
+
+
+@compiled_for_vectors
+def write_element_rates(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
+    """Writes dE of every element into out, (3, m, elements (order + 1)), from dE at all nodes.
+
+    S, rates: unknown stresses and changes of the (mean) strains at all nodes, (3, m, nodes + 1).
+    """
+    for a in range(len(rates)):
+        for k in range(rates.shape[1]):
+            for i in range(out.shape[2]):
+                out[a, k, i] = rates[a, k, i - i // (order + 1)]
+    for j in range(len(rod.jumps)):
+        node = rod.jumps[j]
+        sides = rod.sides[j]
+        before = place_before(node, order)
+        c1 = rod.compliance[0, node]
+        c2 = rod.compliance[1, node]
+        c3 = rod.compliance[2, node]
+        for k in range(rates.shape[1]):
+            q = Unknowns(S[0, k, node], S[2, k, node])
+            # A rigid component keeps its strain, whatever its stress does.
+            dq1 = rates[0, k, node] / c1 if c1 > 0 else 0.0
+            dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
+            changes = changes_beside_jump(rod.law, sides, q, Unknowns(dq1, rates[2, k, node] / c3))
+            for side in range(2):
+                out[0, k, before + side] = sides[side, 1] * changes[side].q1
+                out[1, k, before + side] = sides[side, SHEAR] * dq2
+                out[2, k, before + side] = sides[side, 2] * changes[side].q3

@@ -1,0 +1,39 @@
+"""Meshes of the transverse problem: equal elements of a uniform rod, or elements of an arm that end at jumps.
+
+A uniform rod of linear material has a `Resolution`, every other arm an `ArmMesh`.
+"""
+
+from functools import lru_cache
+
+from ...model.rod import Rod
+from ..elements.elements import ELEMENTS
+from ..elements.resolution import Resolution, finer, resolution_for
+from .arm_pencil import ArmMesh, ArmPencil
+from .arm_resolution import arm_elements, finer_arm_mesh
+from .dense_form import AnyPencil
+from .pencil import assemble
+
+AnyMesh = Resolution | ArmMesh
+
+
+def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
+    """Mesh that resolves fields of a wave number, in 1/L, to a relative accuracy."""
+    if rod.standard:
+        return resolution_for(wave_number, accuracy)
+    elements = arm_elements(rod, wave_number, accuracy)
+    return ArmMesh(elements.edges, elements.order)
+
+
+def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
+    """The next mesh after a mesh that is too coarse."""
+    return finer(mesh) if isinstance(mesh, Resolution) else finer_arm_mesh(rod, mesh)
+
+
+def pencil_on(mesh: AnyMesh) -> AnyPencil:
+    """The pencil on a mesh, kept for later rods on equal meshes."""
+    return assemble(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+
+
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
+def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
+    return ArmPencil(mesh)

@@ -1,0 +1,86 @@
+"""The rod that the options of `rodsweep portrait` describe, and the progress of its solves."""
+
+import time
+from types import SimpleNamespace
+
+import pytest
+
+import rodsweep as rs
+from rodsweep.cli.portrait_rod import rod_from, showing
+from rodsweep.errors import InputError
+from rodsweep.tasks.rod_portrait import PortraitRequest
+from rodsweep.watch import SolvePosition, report
+
+NO_MATERIAL = dict.fromkeys(("law", "section", "profile"))
+ROD = {"k1": 1e4, "k2": 100.0, "gamma3": 0.01}
+ARM = {"length": "10 cm", "radius": "5 mm", "tip_radius": "4 mm", "young": "100 kPa", "viscosity": "12 Pa s"}
+
+
+def test_an_arm_is_the_rod_that_it_is_in_python():
+    arm = rs.Arm(**ARM, law="neo_hookean", section="swelling")
+    swelling = {"law": "neo_hookean", "section": "swelling", "profile": None}
+    found = rod_from({}, ARM, swelling)
+    rod = rs.Rod(arm=arm)
+    assert found.parameters == rod.parameters
+    assert rs.Rod(**found.parameters, **found.material) == rod
+    assert found.scales == {name: getattr(arm, name) for name in ("tau2", "force_scale", "pressure_scale")}
+    assert rod_from({"gamma3": 0.5}, ARM, NO_MATERIAL).parameters["gamma3"] == 0.5
+
+
+def test_an_arm_in_segments_has_the_profile_of_its_config():
+    segments = ["5 cm: radius 6 mm, young 80 kPa", "5 cm: radius 4 mm, young 100 kPa"]
+    found = rod_from({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
+    build = PortraitRequest(rod=found).job("thresholds", {}).config.build
+    assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
+    assert found.words.endswith("a profile along its length")
+
+
+def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
+    (tmp_path / "p.csv").write_text("u,k3\n0,1\n1,0.5\n")
+    material = {"law": "neo_hookean", "section": None, "profile": str(tmp_path / "p.csv")}
+    found = rod_from({**ROD, "taper": 0.9}, {}, material)
+    assert found.parameters == {**ROD, "gamma1": 1.0, "taper": 0.9}
+    assert found.material == {"law": "neo_hookean", "profile": {"u": [0, 1], "k3": [1, 0.5]}}
+    assert found.words.endswith("taper = 0.9, law neo_hookean, a profile along its length")
+
+
+@pytest.mark.parametrize(
+    ("parameters", "quantities", "sentence"),
+    [
+        ({"k1": 10.0}, {}, "--k2 is missing; give --k1, --k2, --gamma3, or the quantities of an arm"),
+        ({}, {**ARM, "viscosity": "-1 Pa s"}, "--viscosity = '-1 Pa s' is not above 0"),
+    ],
+)
+def test_options_that_are_no_rod_are_refused(parameters, quantities, sentence):
+    with pytest.raises(InputError) as refusal:
+        rod_from(parameters, quantities, NO_MATERIAL)
+    assert str(refusal.value).startswith(sentence)
+
+
+def test_progress_counts_the_solves_and_says_where_a_long_one_is():
+    class Recorder:
+        def __init__(self):
+            self.counts, self.places, self.is_open = [], [], True
+
+        def __call__(self, done):
+            self.counts.append(done)
+
+        def place(self, words, begun):
+            self.places.append((words, begun))
+
+        def close(self):
+            self.is_open = False
+
+    def solve(job):
+        while not shown.places:
+            report(lambda: SolvePosition("F = 30", 0.5))
+            time.sleep(0.01)
+        return job
+
+    shown = Recorder()
+    job = SimpleNamespace(config=SimpleNamespace(task="limit_cycle"))
+    with pytest.raises(KeyboardInterrupt), showing(shown, solve) as shown_solve:
+        assert shown_solve(job) is job
+        assert (shown.counts, shown.places) == ([0, 1], [("limit cycle: F = 30", 0.5)])
+        raise KeyboardInterrupt
+    assert not shown.is_open

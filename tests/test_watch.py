@@ -1,0 +1,17 @@
+"""Progress of long solves: what each listener receives of the same report."""
+
+from rodsweep.watch import SolvePosition, part, report, reporting_to
+
+
+def test_a_listener_receives_positions_within_its_own_block():
+    outer, inner = [], []
+    with reporting_to(lambda place: outer.append(place())):
+        with part("point 2 of 4", (0.25, 0.5)), reporting_to(lambda place: inner.append(place())):
+            with part("branch 1", (0.0, 0.5)):
+                report(lambda: SolvePosition("F = 30", 0.5))
+            report()
+        report(lambda: SolvePosition("curves"))
+    assert inner == [SolvePosition("branch 1: F = 30", 0.25), SolvePosition()]
+    assert outer == [
+        SolvePosition("point 2 of 4: branch 1: F = 30", 0.3125), SolvePosition(), SolvePosition("curves"),
+    ]  # fmt: skip
