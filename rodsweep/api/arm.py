@@ -127,7 +127,8 @@ class Arm(SlenderArm):
         for name in options:
             if name in self._names:
                 raise InputError(
-                    f"{name} is a quantity of the arm, no option; arm.replace({name}=...) makes another arm"
+                    f"{name} is a quantity of the arm, not an option; "
+                    f"arm.replace({name}=...) makes another arm"
                 )
         options = dict(options)
         progress = options.pop("progress", None)

@@ -165,7 +165,8 @@ class SoftRod:
         for name in options:
             if name in PARAMETERS:
                 raise InputError(
-                    f"{name} is a parameter of the rod, no option; rod.replace({name}=...) makes another rod"
+                    f"{name} is a parameter of the rod, not an option; "
+                    f"rod.replace({name}=...) makes another rod"
                 )
         section: Any = CONFIGS[task].model_fields[task].annotation
         known = [*section.model_fields, "accuracy", "title", "progress"]
@@ -216,7 +217,7 @@ def _in_material(error: ValidationError) -> dict[str, Any]:
 def _of_arm(arm: object) -> dict[str, Any]:
     """Rod parameters of an arm, without F for an arm without load."""
     if not isinstance(arm, SlenderArm):
-        raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
+        raise InputError(f"arm = {short(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
     return parameters_of(known_load(arm))
 
 

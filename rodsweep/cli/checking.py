@@ -37,10 +37,10 @@ def describe_job(job: Job) -> None:
     cost = job.task.cost()
     if cost.unknowns is not None:
         low, high = cost.unknowns
-        console.print(f"unknowns a point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
+        console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
     console.print(
         f"expected: {cost.seconds:.3g} s on one rank (divide by the ranks; first use compiles for some "
-        f"seconds more), {cost.memory / 1e6:.0f} MB of memory a rank, "
+        f"seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:
@@ -96,11 +96,11 @@ def _uncovered_lines(points: Points) -> list[str]:
     """Lines on the number of different rods, and on points without a rod, with the reasons."""
     lines, rods = list[str](), same_rods(points)
     if rods is not None:
-        there = rods if points.covered is None else rods[points.covered == SLENDER]
+        there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")
         lines.append(f"{different} at {len(there)} points: each is solved once")
     for status in NoRod:
-        number = 0 if points.covered is None else int((points.covered == status).sum())
+        number = 0 if points.coverage is None else int((points.coverage == status).sum())
         if number:
             lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")
     return lines

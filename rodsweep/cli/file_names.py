@@ -16,7 +16,7 @@ def result_file(path: Path) -> Path:
     if path.is_dir() or not path.name:
         raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
     if path.suffix not in RESULTS:
-        raise InputError(f"{path} is no name for results, which are HDF5: it must end in {endings}")
+        raise InputError(f"{path} is not a name for results, which are HDF5: it must end in {endings}")
     return followed(path)
 
 

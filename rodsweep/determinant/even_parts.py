@@ -41,7 +41,8 @@ class EvenFunctions(NamedTuple):
 
 
 EvenSum = tuple[EvenFunctions, complex, float]
-"""(the functions, the sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error of that sum or of D)."""
+"""(the even functions, the sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error: that of D from
+`even_parts`, else that of the sum)."""
 
 
 @compiled

@@ -47,7 +47,7 @@ class PageContents:
                 ("diagram", "diagram", "Solve the diagram around this point"),
                 ("branch", "branches", "Solve the branches"),
                 ("cycles", "cycles", "Add folds and torus points of cycles (minutes)"),
-                ("film", "film", "Save a film of the cycle (GIF)"),
+                ("film", "film", "Save a film (GIF)"),
                 ("stop", "stop", "Stop"),
             )
         }

@@ -86,12 +86,12 @@ class Page:
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 
-    def solve(self, kind: str) -> None:
+    def solve(self, kind: str, tip: Tip | None = None) -> None:
         """Asks a question now, even if its answer is already shown."""
         if kind == "cycles" and "diagram" in self.solving:
             self._drop("diagram")
         self._drop(kind)
-        self._ask(kind, is_solved_again=True)
+        self._ask(kind, tip, is_solved_again=True)
 
     def stop(self) -> None:
         """Cancels the long solves; a bent arm goes on as before it was bent, and pictures of an earlier rod
@@ -128,7 +128,7 @@ class Page:
             "branch": lambda: self.solve("branch"),
             "diagram": lambda: self.solve("diagram"),
             "diagram_point": self._move_in_diagram,
-            "film": lambda: self.solve("film"),
+            "film": lambda: self.solve("film", self.asked["motion"][1] if "motion" in self.asked else None),
             "cycles": lambda: self.solve("cycles"),
             "load": self._move_load,
             "stop": self.stop,

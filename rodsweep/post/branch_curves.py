@@ -105,7 +105,9 @@ def count_incomplete_branches(view: View, rod: int) -> int:
 
 
 def _count_complete(v: dict[str, Array]) -> int:
-    """Number of branches of a rod, the first branches, with all special points stored."""
+    """Number of leading branches with all special points stored. If the list is full, the last listed branch
+    and the branches behind it may lack some.
+    """
     listed = v["special_branch"][v["special_kind"] > 0]
     if len(listed) >= v["special_count"]:
         return max(int(v["branch_count"]), 0)

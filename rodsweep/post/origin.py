@@ -17,8 +17,8 @@ def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     if done.sum() == 1:
         return [f"time of the {noun}: {duration(float(seconds.max()))}"]
     return [
-        f"time a {noun}: median {duration(float(np.median(seconds)))}, longest "
-        f"{duration(float(seconds.max()))}, all together {duration(float(seconds.sum()))}"
+        f"time per {noun}: median {duration(float(np.median(seconds)))}, longest "
+        f"{duration(float(seconds.max()))}, in total {duration(float(seconds.sum()))}"
     ]
 
 

@@ -39,7 +39,9 @@ def largest_first_mesh(
 
 
 def _moved(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
-    """The rod at all combinations of values of parameters, as far as it is not crushed there."""
+    """Yields the rod at all combinations of the values in `ends`. A force is lowered to just below crushing;
+    rods outside the model are left out.
+    """
     for values in product(*(column.tolist() for column in ends.values())):
         named = dict(zip(ends, values, strict=True))
         if "F" in named:

@@ -93,7 +93,7 @@ class ProgressReporter:
             return
         passed = now - self.began
         rate = rate_in_words(self.done, passed) if self.total else ""
-        seconds = self.pace.left(self.done, passed, self.begun) if self.pace else None
+        seconds = self.pace.remaining(self.done, passed, self.begun) if self.pace else None
         left = "" if seconds is None else f"about {in_words(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:

@@ -33,7 +33,7 @@ class Pace:
         self.reported: tuple[float, float] | None = None
         """(time of the last report, remaining time reported then)."""
 
-    def left(self, done: int, now: float, begun: float = 0.0) -> float | None:
+    def remaining(self, done: int, now: float, begun: float = 0.0) -> float | None:
         """Remaining time, in s, when `done` points are finished at the time `now`.
 
         begun: work done of unfinished points, in points. None if too little is done for an estimate.
@@ -45,16 +45,16 @@ class Pace:
         each = self._seconds_per_point(done, now, begun)
         if each is None:
             return None
-        found = max(self.total - done - begun, 0.0) * each
+        estimate = max(self.total - done - begun, 0.0) * each
         if self.reported is None:
-            self.reported = now, found
-            return found
+            self.reported = now, estimate
+            return estimate
         before, reported = self.reported
         expected = max(reported - (now - before), 0.0)
         # A zero time constant would divide by zero when nothing is left.
-        time_constant = TIME_CONSTANT * min(now, max(found, expected)) or 1.0
+        time_constant = TIME_CONSTANT * min(now, max(estimate, expected)) or 1.0
         follow = 1 - exp(-(now - before) / time_constant)
-        self.reported = now, expected + follow * (found - expected)
+        self.reported = now, expected + follow * (estimate - expected)
         return self.reported[1]
 
     def _record(self, done: int, now: float) -> None:

@@ -45,9 +45,9 @@ class BranchTask(NonlinearTask):
             self.AXIAL,
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),
-            ("branches without mirror symmetry", True, "from where the symmetry of those breaks"),
-            ("branches of twice the period, tori", False, "where they are born is found"),
-            ("cycles on no such branch", False, "task: limit_cycle finds stable ones from a motion"),
+            ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),
+            ("branches of twice the period, tori", False, "only the points where they begin are found"),
+            ("cycles on other branches", False, "task: limit_cycle finds stable ones from a motion"),
         ]
 
     def searched(self) -> dict[str, np.ndarray]:

@@ -94,9 +94,9 @@ class LimitCycleTask(Task):
             return each_point(self.points, f"started from {start}")
         chained = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
-            f"{count_of(self.points)} in {chained}, {options.direction} in {self.config.along}: each started "
-            f"from its neighbour's cycle, the first, and any after none, from {start}; at most "
-            f"{counted(chains.count, 'rank')} can share the work"
+            f"{count_of(self.points)} in {chained}, {options.direction} in {self.config.along}: each starts "
+            f"from its neighbour's cycle; the first point, and a point whose neighbour has no cycle, starts "
+            f"from {start}; at most {counted(chains.count, 'rank')} can share the work"
         )
 
     def arms(self) -> str:
@@ -139,7 +139,8 @@ class LimitCycleTask(Task):
             return what, False, f"limit_cycle.{option} stores them"
         values = self.points.count * each * len(variables) * (options.nodes if option == "shapes" else 1)
         nodes = f" on {options.nodes} nodes" if option == "shapes" else ""
-        return what, True, f"{each} a point{nodes}, {self.points.count * each} in all: {8e-6 * values:.3g} MB"
+        total = self.points.count * each
+        return what, True, f"{each} per point{nodes}, {total} in total: {8e-6 * values:.3g} MB"
 
     def cost(self) -> Estimate:
         if self.config.limit_cycle.method == "integration":

@@ -106,7 +106,7 @@ class NonlinearTask(ProvedTask):
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
-    AXIAL: ClassVar[Part] = ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle")
+    AXIAL: ClassVar[Part] = ("axial drag", True, "parameters.gamma1; it changes cycles, but no Hopf point")
 
 
 def before_crushed(config: Config) -> str:

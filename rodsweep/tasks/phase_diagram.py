@@ -48,7 +48,7 @@ class PhaseDiagramTask(ProvedTask):
         criticality = "phase_diagram.criticality adds it"
         if options.criticality:
             criticality = (
-                f"gamma1 = {self.config.gamma1:g}; some 10 ms a point of a Hopf curve, after the rows"
+                f"gamma1 = {self.config.gamma1:g}; some 10 ms per point of a Hopf curve, after the rows"
             )
         cycles = "phase_diagram.cycles adds it"
         if options.cycles:

@@ -14,7 +14,7 @@ from .sentences import verdict_sentences
 from .table import NumberRow, number_rows
 from .validity import Assessment
 
-OVER_DRAG = "In brackets: the range over drag, which is known by factors only."
+OVER_DRAG = "In brackets: the range over drag, which is known only up to a factor."
 """Sentence below the table of numbers."""
 NUMBERS_BEGIN = 18
 """Column of the values, right of the names."""

@@ -116,7 +116,7 @@ def _first_up_to(path: Path, end: float) -> float:
 
 
 def _first_of_varied(path: Path, end: float) -> float:
-    """The same for an arm that is not uniform or not of linear material."""
+    """`_first_up_to` for an arm that is not uniform or not of linear material."""
     from ..solve.changes.along_path import pair_crossings
     from ..solve.point import FAILURES, cause_of
 

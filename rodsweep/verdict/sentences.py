@@ -51,9 +51,9 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
         some = "" if back.always else ", with part of the range of drag"
-        says.append(f"The straight arm returns at {load.of(back)}{some}.")
+        says.append(f"The straight arm is stable again above {load.of(back)}{some}.")
     else:
-        says.append(f"The straight arm does not return {_until(plane, load)}.")
+        says.append(f"The straight arm does not become stable again {_until(plane, load)}.")
     return says + _swinging(found, load)
 
 
@@ -79,7 +79,7 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
         return f"Flutter is at {where}; {unknown}: changes were sought up to {end}."
     unstable = found.unstable_at(F)
     if flutter.high < F and not any(unstable):
-        return f"{load.given} is beyond flutter, at {where}: the straight arm has returned."
+        return f"{load.given} is beyond flutter, at {where}: the straight arm is stable again."
     if not all(unstable):
         return f"{load.given} lies in the range of flutter, {where}: drag decides whether the arm beats."
     return f"{load.given} is {_above(F, flutter)} flutter, at {where}: the arm beats."

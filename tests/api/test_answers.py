@@ -229,7 +229,7 @@ def test_a_table_or_column_that_there_is_not_is_refused(asked, sentence):
     with pytest.raises(rs.InputError) as refusal:
         rs.table(data, **asked)
     assert sentence in str(refusal.value)
-    with pytest.raises(rs.InputError, match="3 is no result; give a Dataset, an answer or a file"):
+    with pytest.raises(rs.InputError, match="3 is not a result; give a Dataset, an answer or a file"):
         rs.table(3)
 
 

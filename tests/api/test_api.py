@@ -318,7 +318,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Rod(**ROD).spectrum(mods=3), "unknown key spectrum.mods; did you mean modes?"),
         (
             lambda: rs.Rod(**ROD).spectrum(F=3),
-            "F is a parameter of the rod, no option; rod.replace(F=...) makes another rod",
+            "F is a parameter of the rod, not an option; rod.replace(F=...) makes another rod",
         ),
         (
             lambda: rs.Rod(**ROD).phase_diagram(),
@@ -349,11 +349,11 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         ),
         (
             lambda: rs.Arm(**LOADED).cycle(young="1 MPa"),
-            "young is a quantity of the arm, no option",
+            "young is a quantity of the arm, not an option",
         ),
         (lambda: rs.Arm(**LOADED).thresholds(F_mx=3), "unknown key thresholds.F_mx; did you mean F_max?"),
         (lambda: rs.Arm(**LOADED).replace(lenght=3), "unknown key lenght; did you mean length?"),
-        (lambda: rs.Rod(arm=3), "arm = 3 is no arm; write it as in rs.Rod(arm=rs.Arm("),
+        (lambda: rs.Rod(arm=3), "arm = 3 is not an arm; write it as in rs.Rod(arm=rs.Arm("),
         (lambda: rs.linspace(0, 10), "num is missing; write it as in rs.linspace(0, 10, num=11)"),
         (lambda: rs.linspace(0, 10, 5, 6), "6 has no name; write it as in rs.linspace("),
         (lambda: rs.linspace(0, 10, n=5), "unknown key n; did you mean num?"),
@@ -483,7 +483,7 @@ def test_other_attributes_of_a_rod_are_refused():
 def test_what_is_no_result_is_not_opened(tmp_path):
     xr.Dataset({"x": 1}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
     (tmp_path / "x.h5").write_text("text")
-    with pytest.raises(rs.InputError, match="is no result of rodsweep"):
+    with pytest.raises(rs.InputError, match="is not a result of rodsweep"):
         rs.open(tmp_path / "x.nc")
     with pytest.raises(rs.InputError, match="is not a whole rodsweep result file"):
         rs.open(tmp_path / "x.h5")

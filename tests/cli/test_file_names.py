@@ -6,7 +6,7 @@ from faults import small
 import rodsweep as rs
 from rodsweep.config.json.schema import json_schema
 
-RESULTS = "is no name for results, which are HDF5: it must end in .h5, .hdf5, .nc"
+RESULTS = "is not a name for results, which are HDF5: it must end in .h5, .hdf5, .nc"
 
 
 @pytest.fixture(scope="module")

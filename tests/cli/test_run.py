@@ -199,7 +199,7 @@ def test_slow_points_are_shared_evenly(command, wait):
 
 def test_fresh_leaves_a_file_that_is_no_result(command):
     command.write("c.yaml", SMALL)
-    for name, why in (("c.yaml", "must end in .h5"), ("notes.h5", "no result file")):
+    for name, why in (("c.yaml", "must end in .h5"), ("notes.h5", "not a result file")):
         command.write(name, SMALL)
         run = command("run", "c.yaml", "-o", name, "--fresh")
         assert run.returncode == 2

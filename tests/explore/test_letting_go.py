@@ -11,8 +11,10 @@ import rodsweep as rs
 from rodsweep.explore.page import AT_ONCE, Page
 from rodsweep.explore.pictures.beating import SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
+from rodsweep.explore.solving.letting_go import filmed
 from rodsweep.explore.solving.questions import SHAPES, Question, Reply, answer_to
 from rodsweep.explore.state import PageState
+from rodsweep.post.figures.cycle.motion_film import motion_film
 
 KINDS = (*AT_ONCE, "bent", "motion", "film")
 
@@ -108,6 +110,31 @@ def test_the_film_shows_the_shapes_of_a_period():
     assert len(given) == 1
     film = Image.open(BytesIO(given[0]))
     assert (film.format, film.n_frames) == ("GIF", SHAPES)
+
+
+def test_the_film_of_an_arm_that_was_let_go_is_that_of_its_motion():
+    solvers = ImmediateSolvers(("cycle",))
+    page = page_with(solvers, "tab=arm")
+    film = page._connections()["film"]
+    film()
+    assert solvers.questions[-1].tip is None
+    drag(page, "let go", 6.0, 5.0)
+    film()
+    assert (solvers.questions[-1].kind, solvers.questions[-1].tip) == ("film", pytest.approx((0.6, 0.5)))
+    page.change({"pressure": "1.1 kPa"})
+    film()
+    assert solvers.questions[-1].tip is None  # the motion was that of another arm
+
+
+def test_the_film_of_a_motion_is_in_the_units_of_the_page():
+    found = {"x": np.array([[0.0, 1.0], [0.0, 0.9]]), "y": np.array([[0.0, 0.1], [0.0, 0.2]]), "step": 0.5}
+    state = PageState(tab="arm")
+    motion = filmed(state, found)
+    assert (motion.length, motion.units) == (pytest.approx(10), ("cm", "s"))
+    assert motion.step == pytest.approx(0.5 * state.subject().tau2)
+    assert motion.y[:, -1] == pytest.approx([1, 2])
+    film = Image.open(BytesIO(motion_film(motion)))
+    assert (film.format, film.n_frames) == ("GIF", 2)
 
 
 def test_a_rod_without_a_cycle_has_no_film():

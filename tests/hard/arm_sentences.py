@@ -37,7 +37,7 @@ WITHOUT_CYCLE = {
     "straight": "does not beat",
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle is known, nor that there is none",
+    "not_settled": "is not settled: no stable cycle was found, but one may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     "failed": "is not known: the integration failed",
 }
@@ -319,7 +319,8 @@ def _alike_but_for_drag(view):
 def _drag_sentences(view, page, start, chosen, numbers):
     """The check of how much drag changes numbers at chosen points, by their name in the sentence."""
     found, alike = [], _alike_but_for_drag(view)
-    for line, match in read(page, rf"{start}over NUMBER drags of its range one arm varies: (.*)$"):
+    sentence = rf"{start}over NUMBER drags of the range the results of one arm vary: (.*)$"
+    for line, match in read(page, sentence):
         why = [] if int(match[1]) == len(DRAGS) else ["drags"]
         items = re.findall(
             rf"([a-z ]+?) by (up to )?(?:({NUMBER}) %|a factor of ({NUMBER}))(?:, |$)", match[2]
@@ -605,7 +606,7 @@ class ArmTruth:
         told(rf"^Flutter, at {value}{name}, is within", loads)
         told(rf"would flutter at {value}{name}[,.]", loads)
         told(rf"begins? to beat at {value}", own["hertz"])
-        told(rf"straight arm returns at {value}", self._loads(own["restabilization"]))
+        told(rf"straight arm is stable again above {value}", self._loads(own["restabilization"]))
         told(rf"^From {value} on a disturbance", self._loads(own["onset"]))
         told(rf"(?:crushed at|up to) {value}", [self._loads(own["end"])])
         if self.other:
@@ -650,7 +651,7 @@ class ArmTruth:
             return f"F = {F} is outside of {low} to {high}"
         if ": the arm beats" in line and not all(self._grows(n) for n in range(5)):
             return "with some drag the arm is stable"
-        if "has returned" in line and any(self._grows(n) for n in range(5)):
+        if "straight arm is stable again." in line and any(self._grows(n) for n in range(5)):
             return "with some drag the arm is unstable"
         return ""
 

@@ -29,10 +29,10 @@ PLURALS = {
     "period doublings?": "period_doubling",
 }
 LEADS_TO = {
-    "where h1 = 0": "left_the_model",
+    "a cycle with h1 = 0": "left_the_model",
     "the end of the range": "range_end",
-    "where F all but crushes the rod": "crushed",
-    "where no further cycle is found": "no_cycle_found",
+    "a force that almost crushes the rod": "crushed",
+    "a cycle beyond which none is found": "no_cycle_found",
 }
 CURVED = 2e-3
 """Relative error of a spline through the cycles of a finer branch, which stands for cycles between them."""

@@ -25,7 +25,7 @@ BOOKKEEPING = (
     "time of the",
     "cost of a search",
     "in all ",
-    "unknowns a point",
+    "unknowns per point",
     "every point was followed",
     "last run",
     "the ranks were busy",

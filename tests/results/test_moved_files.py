@@ -65,7 +65,7 @@ def replaced(path, journal):
 def test_run_whose_files_are_gone_writes_them_anew(command, strike):
     code, out, err = struck(command, strike)
     assert (code, err) == (75, ""), err
-    assert ("is made anew" in out) == (strike is not journal_deleted)
+    assert ("a new file holds the points" in out) == (strike is not journal_deleted)
     assert "5 points kept, the same command continues" in out
     goes_on(command)
 

@@ -77,7 +77,7 @@ def test_snapshot_is_taken_again_and_continued(command, waiting):
     done = command("run", "c.yaml", "-o", "s.h5")
     assert "80 of 120 points to do, 40 kept" in done.stdout
     refused = command("snapshot", "c.h5", "-o", "s.h5")
-    assert (refused.returncode, "s.h5 exists and is no snapshot" in refused.stderr) == (2, True)
+    assert (refused.returncode, "s.h5 exists and is not a snapshot" in refused.stderr) == (2, True)
     itself = command("snapshot", "c.h5", "-o", "c.h5")
     assert (itself.returncode, "is the file itself" in itself.stderr) == (2, True)
 

@@ -32,7 +32,7 @@ def told(costs, every=0.0, together=1):
         if now < after:
             continue
         after = now + every
-        left = pace.left(done, now)
+        left = pace.remaining(done, now)
         if left is not None:
             said.append((now, left, times[-1] - now))
     return np.array(said)
@@ -74,40 +74,40 @@ def test_nothing_is_left_at_the_end(kind):
 
 def test_nothing_is_said_before_the_pace_is_known():
     pace = Pace(100)
-    assert [pace.left(done, now) for done, now in ((0, 5.0), (1, 6.0), (2, 7.0))] == [None, None, None]
-    assert pace.left(3, 8.0) == pytest.approx(97)
-    assert Pace(1).left(1, 4.0) == 0
+    assert [pace.remaining(done, now) for done, now in ((0, 5.0), (1, 6.0), (2, 7.0))] == [None, None, None]
+    assert pace.remaining(3, 8.0) == pytest.approx(97)
+    assert Pace(1).remaining(1, 4.0) == 0
 
 
 def test_a_point_that_does_not_end_is_waited_for():
     pace = Pace(20)
     for done in range(1, 11):
-        pace.left(done, float(done))
-    waits = [pace.left(10, 10.0 + waited) for waited in (1.0, 20.0, 100.0, 1000.0)]
+        pace.remaining(done, float(done))
+    waits = [pace.remaining(10, 10.0 + waited) for waited in (1.0, 20.0, 100.0, 1000.0)]
     assert waits == sorted(waits)
     assert waits[-1] > 100
 
 
 def test_time_left_of_long_points_is_told_from_the_share_that_is_done():
     pace = Pace(4)
-    assert pace.left(0, 5.0, 0.05) is None, "its start would decide"
-    assert pace.left(0, 10.0, 0.5) == pytest.approx(70)
-    alone = [(now, Pace(1).left(0, now, now / 80.0)) for now in (8.0, 40.0, 79.0)]
+    assert pace.remaining(0, 5.0, 0.05) is None, "its start would decide"
+    assert pace.remaining(0, 10.0, 0.5) == pytest.approx(70)
+    alone = [(now, Pace(1).remaining(0, now, now / 80.0)) for now in (8.0, 40.0, 79.0)]
     assert alone == [(now, pytest.approx(80.0 - now)) for now in (8.0, 40.0, 79.0)]
 
 
 def test_share_that_is_done_of_the_point_in_work_counts_beside_whole_points():
     pace = Pace(10)
     for done in range(1, 6):
-        pace.left(done, 10.0 * done)
-    assert pace.left(5, 55.0, 0.5) == pytest.approx(45)
+        pace.remaining(done, 10.0 * done)
+    assert pace.remaining(5, 55.0, 0.5) == pytest.approx(45)
     assert pace._seconds_per_point(5, 90.0, 0.5) > 10, "the point in work takes longer than those before it"
 
 
 def test_memory_does_not_grow_with_the_points():
     pace = Pace(10**6)
     for done in range(1, 10**5):
-        pace.left(done, done * 1e-3)
+        pace.remaining(done, done * 1e-3)
     assert len(pace.records) < 3 * np.log(10**5) / np.log(RECORD_RATIO)
 
 

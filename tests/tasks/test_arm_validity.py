@@ -313,7 +313,7 @@ STATUSES = {
         (
             "not_settled",
             "not_settled",
-            "is not settled: no stable cycle is known, nor that there is none at 2 of 2",
+            "is not settled: no stable cycle was found, but one may exist at 2 of 2",
         ),
         ("torus", "left_the_model", "beats without repeating at 1 of 2", "is crushed somewhere"),
         ("failed", "unstable", "is not known: the integration failed at 1 of 2", "leaves at the least"),

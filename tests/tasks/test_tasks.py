@@ -273,7 +273,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 @pytest.mark.parametrize(
     ("task", "words"),
     {
-        "spectrum": ["stable at all 4 points", "proved at 4 of 4 points", "unknowns a point: 60"],
+        "spectrum": ["stable at all 4 points", "proved at 4 of 4 points", "unknowns per point: 60"],
         "thresholds": [
             "F** (straight rod starts to beat): F = 2 (",
             "at all 6 rods; frequency 20 to 70 rad/tau2",
@@ -296,7 +296,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 def test_show_tells_what_matters_of_every_task(tmp_path, capsys, task, words):
     show_summary(read_view(filled_file(tmp_path, task)))
     text = " ".join(capsys.readouterr().out.split())
-    for word in ["ok", f"time a {NOUNS.get(task, 'point')}: median 250 ms", *words]:
+    for word in ["ok", f"time per {NOUNS.get(task, 'point')}: median 250 ms", *words]:
         assert word in text
 
 

@@ -291,10 +291,16 @@ def verdict(rod, *forces):
 @pytest.mark.parametrize(
     ("second", "sentences"),
     [
-        (True, ["2 kPa is 28 to 60 % above flutter, at 1.25 to 1.56 kPa", "returns at 2.5 to 2.81 kPa."]),
+        (
+            True,
+            [
+                "2 kPa is 28 to 60 % above flutter, at 1.25 to 1.56 kPa",
+                "is stable again above 2.5 to 2.81 kPa.",
+            ],
+        ),
         (
             False,
-            ["drag decides", "Part of the range of drag has no", "returns at 2.5 kPa, with part"],
+            ["drag decides", "Part of the range of drag has no", "is stable again above 2.5 kPa, with part"],
         ),
     ],
 )
@@ -308,7 +314,7 @@ def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
 def test_beyond_the_return_the_arm_is_straight_again():
     window = found(1.0, (20.0, Kind.hopf, 2), (30.0, Kind.restabilization, 0))
     told = verdict(arm(viscosity=1e3), window)
-    assert told[0] == "2 kPa is beyond flutter, at 1.25 kPa: the straight arm has returned."
+    assert told[0] == "2 kPa is beyond flutter, at 1.25 kPa: the straight arm is stable again."
 
 
 def test_arm_without_flutter_and_failed_search_are_told():
@@ -334,7 +340,7 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
     assert searched.end == 25.0
     told = " ".join(verdict(arm(viscosity=1e3), *searched.forces))
     assert "whether the arm beats at 2 kPa is not known: changes were sought up to 1.56 kPa." in told
-    assert "does not return up to 1.56 kPa, where the search ends" in told
+    assert "does not become stable again up to 1.56 kPa, where the search ends" in told
 
 
 def test_beyond_where_changes_were_sought_nothing_is_claimed():

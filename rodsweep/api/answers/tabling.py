@@ -45,6 +45,8 @@ def view_for(data: Any, example: str) -> View:
     if isinstance(data, str | os.PathLike):
         return read_view(file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):
-        raise InputError(f"{short(data)} is no result; give a Dataset, an answer or a file, as in {example}")
+        raise InputError(
+            f"{short(data)} is not a result; give a Dataset, an answer or a file, as in {example}"
+        )
     whole = data.whole if isinstance(data, Answer) else data
     return view_of(whole, Path(str(whole.attrs.get("title", "data"))))

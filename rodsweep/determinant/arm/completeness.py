@@ -35,8 +35,8 @@ SPREAD = 1.0
 WIDER = 1.3
 """Factor by which the points are moved outwards until every term of R is positive."""
 FARTHEST = 16.0
-"""Largest distance of the last point from 0, in units of the largest known |w|: from farther away the unknown
-ones look like the known."""
+"""Largest distance of the last point from 0, in units of the largest known |w|: from farther away, unknown
+eigenvalues contribute like known ones."""
 SLABS = 24
 """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
 ALLOWED = 0.7
@@ -83,14 +83,18 @@ def is_whole(known: Complex) -> Array:
 
 @compiled
 def proves(found: Remainder) -> bool:
-    """Whether no unknown eigenvalue lies right of the line; R below 0 would say that a known one is none."""
+    """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue
+    is not a root of D.
+    """
     allowed = ALLOWED * found.least
     return found.R + found.blur < allowed and -allowed < found.R
 
 
 @compiled
 def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """k points for a line and a hull with which every term of R is positive, (k,); none where none are."""
+    """k points, (k,), for which the term of R of every w in the hull right of the line is positive; empty if
+    no such points exist.
+    """
     x = max(FIRST_POINT * abs(line), a * a, 1e-6)
     points = np.empty(k)
     for j in range(k):

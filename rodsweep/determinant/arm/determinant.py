@@ -111,7 +111,7 @@ def samples_of(rods: list[Rod]) -> Samples:
 
 
 def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
-    """Elements that resolve each of some arms of one build for |w| <= W."""
+    """Elements that resolve every arm of a list, all of one build, for |w| <= W."""
     edges = _edges(rods, samples, W)
     points, _, _ = gauss_method(STAGES)
     for _ in range(MAX_HALVINGS):

@@ -117,7 +117,8 @@ def value_in(family: ArmFamily, w: complex, p: float) -> Value:
 
 @compiled
 def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
-    """(eigenvalue near the guess, its slope by p, its error) at p by Newton's method, away from double ones.
+    """(eigenvalue near the guess, its slope by p, its error) at p by Newton's method, away from double
+    eigenvalues.
 
     The iteration ends where rounding keeps the steps from getting smaller. What is real stays real.
     """

@@ -59,7 +59,7 @@ every failure."""
 BRANCH_DISTANCE = 3.0
 """Distance to the nearest branch point in units of the radius of a disc, at least."""
 FACTOR_CHANGE = 0.4
-"""Largest relative change of z+- over a disc, so that its exponents change by order one."""
+"""Largest relative change of z+- over a disc, for which its exponents change by order one."""
 NO_ROOT = 1e-3
 """Modulus of z+- below which its root does not limit the radius of a disc."""
 LONGEST_STEP = 1.9

@@ -58,7 +58,9 @@ def slaving_of(rod: Rod) -> float:
 
 
 def _at_right_end(K: Array, before: float) -> float:
-    """d/m at the right end of an element from d/m at the left end; K: stiffness, (nodes, nodes)."""
+    """The ratio d/m of `slaving_of` at the right end of an element, from the ratio at the left end. K:
+    stiffness, (nodes, nodes).
+    """
     if before == 0:
         K = K[1:, 1:]
     else:

@@ -1,14 +1,18 @@
 """The arm bent by the tip, and the motion after the release."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from ...api.arm import Arm
 from ...errors import InputError
+from ...post.figures.cycle.motion_film import FilmedMotion, motion_film
 from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
+from ..scales import length_axis
 from ..state import LAWS, PageState, rod_of
 
 Tip = tuple[float, float]
@@ -38,6 +42,25 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
         raise InputError("the motion after the release could not be integrated")
     own = {"tip": tip, "frames": FRAMES, "period": float(found.cycle["period"])}
     return vars(found) | _shapes(found) | own
+
+
+def film_of_motion(state: PageState, tip: Tip) -> dict[str, Any]:
+    """gif: the film of the motion from there."""
+    return {"gif": motion_film(filmed(state, motion(state, tip)))}
+
+
+def filmed(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
+    """A motion in the units of the page. found: answer to the question `motion`."""
+    subject = state.subject()
+    length = length_axis(state)
+    tau2, time = (subject.tau2, "s") if isinstance(subject, Arm) else (1.0, "tau2")
+    return FilmedMotion(
+        x=found["x"] * length.factor,
+        y=found["y"] * length.factor,
+        step=found["step"] * tau2,
+        length=length.factor,
+        units=(length.label, time),
+    )
 
 
 def _shapes(found: ReleasedMotion) -> dict[str, Any]:

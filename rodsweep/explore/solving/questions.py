@@ -21,7 +21,7 @@ from ...post.branch_curves import curves_of
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches, straight_pieces
 from .diagrams import cycle_diagram, diagram, words_of
-from .letting_go import Tip, bent, motion, straight
+from .letting_go import Tip, bent, film_of_motion, motion, straight
 
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
@@ -137,7 +137,11 @@ ANSWERS: dict[str, Callable[[PageState], Found]] = {
     "cycles": cycle_diagram,
     "film": film,
 }
-ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {"bent": bent, "motion": motion}
+ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {
+    "bent": bent,
+    "motion": motion,
+    "film": film_of_motion,
+}
 
 
 def answer_to(question: Question) -> Found:

@@ -131,7 +131,7 @@ def least_drag(arm: SlenderArm) -> Drag:
 
 
 def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
-    """A frequency in rad/tau2, of any shape, in rad/s for the least drag of the arm's range."""
+    """Converts a frequency, of any shape, from rad/tau2 to rad/s, with the least drag of the arm's range."""
     return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
 
 

@@ -76,7 +76,7 @@ def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
 
 
 def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
-    """(name with unit, texts of the values, (points,), in this unit); a drag is stored as an index in DRAGS."""
+    """(name with unit, texts of (points,) values in this unit); a drag is stored as an index in DRAGS."""
     if name == "drag":
         return word(name), [DRAGS[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit

@@ -54,7 +54,7 @@ def _cut(view: View, name: str, value: float) -> View:
         known = ", ".join(axes)
         close = nearest(name, list(axes))
         hint = f"did you mean {close[0]}?" if close else f"the points differ in {known}"
-        followed = f"; {name} is no axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
+        followed = f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
         raise InputError(f"--at {name}={value:.15g}: {view.path} has no such axis{followed}; {hint}")
     values = view.variables[name]
     chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)

@@ -68,11 +68,13 @@ def _smooth(own: Array, extent: Array) -> Array:
     At a Hopf point a branch is symmetric under the change from y to -y. The cycles are therefore mirrored
     beyond the point, which gives the curve the square root.
     """
-    before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
+    before = own[MIRRORED:0:-1] * IMAGE
+    behind = own[-2 : -MIRRORED - 2 : -1] * IMAGE
     first = len(before) if own[0, 1] == 0 else 0
     last = len(behind) if own[-1, 1] == 0 else 0
     whole = np.concatenate([before[:first], own, behind[:last]])
-    s = min((_lengths(whole, extent, power) for power in POWERS), key=lambda s: _roughness(s, whole / extent))
+    variables = [_lengths(whole, extent, power) for power in POWERS]
+    s = min(variables, key=lambda variable: _roughness(variable, whole / extent))
     ends = s[first : first + len(own)]
     finer = np.append(np.linspace(ends[:-1], ends[1:], PIECES, endpoint=False, axis=1).ravel(), ends[-1])
     places: Array = CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)

@@ -55,7 +55,7 @@ class OneRod:
         return None if column is None or column.absent[0] else column
 
     def text(self, name: str) -> str:
-        """A number of the rod for a sentence, with its unit; empty where there is none."""
+        """A number of the rod for a sentence, with its unit; empty for a missing number."""
         column = self.column(name)
         return "" if column is None else self.points.short(column.name)
 

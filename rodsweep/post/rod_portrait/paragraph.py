@@ -7,7 +7,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...wording import counted
+from ...wording import counted, is_or_are
 from ..branch_curves import Range, coexistence_is_decided, count_incomplete_branches, curves_of
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
@@ -79,7 +79,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     if clauses:
         yield f"Straight, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
-        yield f"Straight, it has no threshold up to F = {v['F_end']:.6g}."
+        yield f"The straight rod has no threshold up to F = {v['F_end']:.6g}."
     if v["crossing_count"] >= 0:
         range_ = f" up to F = {v['F_end']:.6g}" if ended_early(view).all() else ""
         proof = "proved complete" if v["certified"] else "not proved complete"
@@ -108,7 +108,10 @@ def _branches(results: RodResults) -> Iterator[str]:
     curves = curves_of(view, 0)
     hidden = count_incomplete_branches(view, 0)
     if hidden:
-        yield f"Of {hidden} of its branches of cycles the special points are not stored; they are not drawn."
+        yield (
+            f"{hidden} of its branches of cycles {is_or_are(hidden)} not drawn: not all special points are "
+            "stored."
+        )
     if not curves:
         yield "No branch of cycles begins at a Hopf point in this range."
         return

@@ -32,16 +32,9 @@ class DescribedRod:
 class RodResults:
     """Results of one rod, each a view of a single point.
 
-    <<<<<<< HEAD
-        F_max: largest force asked for. views: thresholds, and criticality and
-        branch unless missing. modes: (force, modes there) at the first thresholds, by kind. cycles: (force, limit
-        cycle there), increasing. missing: for every task without a result, the reason in a sentence.
-    =======
-        parameters: the rod's parameters, by name. F_max: largest requested force. views: thresholds, and
-        criticality and branch unless missing. modes: (force, modes there) at the first thresholds, by kind.
-        cycles: (force, limit cycle there), increasing. missing: for every task without a result, the reason in a
-        sentence.
-    >>>>>>> wip-stranger2
+    F_max: largest requested force. views: thresholds, and criticality and branch unless missing. modes:
+    (force, modes there) at the first thresholds, by kind. cycles: (force, limit cycle there), increasing.
+    missing: for every task without a result, the reason in a sentence.
     """
 
     rod: DescribedRod

@@ -34,7 +34,7 @@ def require_portrait(output: Path) -> None:
 
 
 def write_portrait(results: RodResults, output: Path) -> str:
-    """Writes the portrait and returns a sentence; InputError for a name that is none for a portrait."""
+    """Writes the portrait and returns a sentence; InputError for a name that does not fit a portrait."""
     require_portrait(output)
     if output.suffix == PAGE:
         with written_whole(output) as stream:

@@ -39,10 +39,10 @@ SPECIAL_WORDS = {
 }
 """Words for special points at which a branch changes; Hopf points and ends have separate sentences."""
 ENDS = {
-    "left_the_model": "where h1 = 0",
+    "left_the_model": "a cycle with h1 = 0",
     "range_end": "the end of the range",
-    "crushed": "where F all but crushes the rod",
-    "no_cycle_found": "where no further cycle is found",
+    "crushed": "a force that almost crushes the rod",
+    "no_cycle_found": "a cycle beyond which none is found",
     "list_full": "the last cycle that is stored",
     "none": "an end",
 }
@@ -133,7 +133,7 @@ def _ends(curve: StoredBranch, along: str) -> str:
     if last.kind == "symmetry_breaking":
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
-        return f"{start} to where h1 = 0, {end}"
+        return f"{start} to a cycle with h1 = 0, {end}"
     return f"{start} to {ENDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
 
 

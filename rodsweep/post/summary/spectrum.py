@@ -11,8 +11,9 @@ from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region
 
 HOW_FOUND = (
-    "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
-    "eigenvalue changes so between two forces of the file; `task: thresholds` proves that none is missing"
+    "located where the leading eigenvalue changes between two forces of the file: F** by a zero of the "
+    "characteristic determinant D(i eta; F), F* by a double zero of D; `task: thresholds` proves that none "
+    "is missing"
 )
 """Explanation of the forces in `threshold_lines`."""
 NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
@@ -107,7 +108,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["eigenvalues of every point were followed from the first point of its stretch, or it failed"]
     without = f"; none at {followed} that were followed or failed" if followed else ""
-    return [f"unknowns a point: {span(unknowns[unknowns > 0])}{without}"]
+    return [f"unknowns per point: {span(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:

@@ -54,7 +54,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 
 def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
-    """A column with its heading lines above its aligned cells, all of one width."""
+    """A column: heading lines above aligned cells, all of one width."""
     aligned = point_aligned(cells)
     width = max(map(len, (*heads, *aligned)))
     return [f"{cell:{width}}" for cell in (*heads, *aligned)]

@@ -105,7 +105,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
         if not isinstance(data, h5py.Dataset):
             if is_users(name) and isinstance(data, h5py.Group):
                 continue
-            raise ValueError(f"{shown} is no variable")
+            raise ValueError(f"{shown} is not a variable")
         if data.is_virtual or data.external:
             raise ValueError(f"{shown} lies in another file")
         place = h5py.h5o.get_info(data.id).addr

@@ -66,7 +66,7 @@ def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
 def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
     """Writes the points computed so far into a separate file; returns (points computed, all points).
 
-    Raises InputError if `path` is no result, or if `output` exists and is no snapshot. Raises
+    Raises InputError if `path` is no result, or if `output` exists and is not a snapshot. Raises
     EnvironmentIncomplete if the disk fails.
     """
     read_header(path)
@@ -74,7 +74,7 @@ def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
         if os.path.samefile(path, output):
             raise InputError(f"{output} is the file itself; name another with -o")
         if not _is_snapshot(output):
-            raise InputError(f"{output} exists and is no snapshot; name another file with -o")
+            raise InputError(f"{output} exists and is not a snapshot; name another file with -o")
     with disk_refusals(output):
         exchange = Exchange(output)
     try:

@@ -92,7 +92,7 @@ class Store:
     def _create(self, fresh: bool) -> None:
         """Creates the file of the plan, with the points of its journals unless `fresh`."""
         if self.path.exists() and not is_ours(self.path):
-            raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
+            raise InputError(f"{self.path} is not a result file, so --fresh leaves it alone")
         require_room(self.path, self.plan)
         own = journals_of(self.journals, self.plan.fingerprint)
         if fresh:
@@ -103,7 +103,7 @@ class Store:
             create_file(copy, self.plan)
         if own and not fresh:
             self.fold({})
-            self.notes.append("the file was missing, and is made anew with the points of its journal")
+            self.notes.append("the file was missing; a new file holds the points of its journal")
 
     def _extend(self, header: Header) -> None:
         """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
@@ -180,7 +180,7 @@ class Store:
         if not self.path.exists():
             with self.exchange.replacing(None) as copy:
                 create_file(copy, self.plan)
-            self.notes.append("the file was moved or deleted, and is made anew with the points since then")
+            self.notes.append("the file was moved or deleted; a new file holds the points since then")
             return
         try:
             header = self._header()

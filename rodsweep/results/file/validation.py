@@ -109,7 +109,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header
     """
     attributes = {name: cleaned(value) for name, value in file.attrs.items()}
     if attributes.get("program") != PROGRAM:
-        raise ValueError("it is no result of rodsweep")
+        raise ValueError("it is not a result of rodsweep")
     _refuse_other_format(path, attributes)
     if check_content:
         refuse_changed(file)

@@ -32,7 +32,7 @@ SPECIAL_MEANINGS = {
     "end": "the branch ends here for the reason in special_reason",
     "period_doubling": "a multiplier of a cycle without the symmetry is -1; cycles of twice the period begin",
 }
-"""Kinds of special points with meanings; the file stores the place in the list."""
+"""Kinds of special points with meanings; the file stores the index in the list."""
 SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
 """Kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")

@@ -29,7 +29,7 @@ CLASSES = (
 )
 """Behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
-"""Reasons for the end of a curve of generalised Hopf points; the file stores the place in this list."""
+"""Reasons for the end of a curve of generalised Hopf points; the file stores the index in this list."""
 CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",
@@ -38,7 +38,7 @@ CURVE_ENDS = {
     "not_followed": "no further point was found",
     "list_full": "the curve has the maximum number of points",
 }
-"""Ends of a boundary curve; the file stores the place in this list."""
+"""Reasons for the end of a boundary curve; the file stores the index in this list."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """Kinds of boundary curves: double real eigenvalues, where oscillations set in or end, or Hopf points."""
 
@@ -68,7 +68,8 @@ CYCLE_CURVE_ENDS = {
     "closed": "the curve returns to its first point",
     "not_followed": "no further point was found",
 }
-"""Ends of a curve of folds of cycles or of torus points; the file stores the place in this list."""
+"""Reasons for the end of a curve of folds of cycles or of torus points; the file stores the index in this
+list."""
 
 INCREASES = {
     "crossings": CROSSINGS,

@@ -42,7 +42,7 @@ CROSSING_MEANINGS = {
 }
 """Kinds of crossings and their meanings, as the parameter grows."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
-"""Kinds of crossings; the file stores the place in this list."""
+"""Kinds of crossings; the file stores the index in this list."""
 
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:

@@ -42,7 +42,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),
     "change": ("1", "number of the change on the lines over F between the points, line by line"),
-    "hopf": ("1", "order along the lines between the points, line by line"),
+    "hopf": ("1", "number of the Hopf point on the lines between the points, line by line"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
     "multiplier_number": ("1", "order by descending modulus, without the trivial Floquet multiplier"),
     "sample": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
@@ -88,7 +88,7 @@ def integer(name: str, long_name: str, *extra: str) -> Variable:
 
 
 def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
-    """Variable that stands for a word: by the word's place in a list, or by given numbers.
+    """Variable that stands for a word: by the word's index in a list, or by given numbers.
 
     The fill value is -1 if a word has the number -1, for a missing value; else 0, the first word of a list.
     """

@@ -47,8 +47,8 @@ class ArcPoint:
     """A cycle of a branch.
 
     length: length of the next step. before: the previous cycle. calibration: errors of the last measured
-    cycle. unmeasured: number of steps since that measured cycle, 0 if this cycle is measured. way: arc length
-    since the measured cycle.
+    cycle. unmeasured: number of steps since that measured cycle, 0 if this cycle is measured.
+    arc_since_measured: arc length of the branch from that cycle to this one.
     """
 
     cycle: RefinedCycle
@@ -56,7 +56,7 @@ class ArcPoint:
     length: float
     calibration: BranchCalibration
     unmeasured: int = 0
-    way: float = 0.0
+    arc_since_measured: float = 0.0
     before: PreviousCycle | None = None
 
     @property
@@ -196,6 +196,6 @@ def cycle_ahead(
         length=ahead,
         calibration=start.calibration,
         unmeasured=start.unmeasured + 1,
-        way=start.way + length,
+        arc_since_measured=start.arc_since_measured + length,
         before=PreviousCycle(start.orbit, start.tangent),
     )

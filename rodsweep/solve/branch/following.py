@@ -158,7 +158,7 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
-    """Adds the special points between two cycles, of which the second is not stored yet."""
+    """Adds the special points between the last stored cycle and the next cycle, which is not stored yet."""
 
     step = partial(point_at, accuracy=limits.accuracy)
     curve.add_found(*special_points(start, end, step, limits.accuracy))

@@ -73,7 +73,7 @@ def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
     """The cycle with errors from a calibration."""
     cycle = judged_by(calibration.known, point.cycle.fine, accuracy)
-    return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, way=0.0)
+    return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
 def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None) -> ArcPoint:
@@ -127,9 +127,12 @@ def settled(
     the last cycle.
     """
     *between, end = points
-    whole = end.way
+    whole = end.arc_since_measured
     end = measured(end, accuracy)
-    known = [_with_errors_between(last, point, end, point.way / whole, accuracy) for point in between]
+    known = [
+        _with_errors_between(last, point, end, point.arc_since_measured / whole, accuracy)
+        for point in between
+    ]
     end = refined(end, accuracy, condition)
     again = [
         point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)

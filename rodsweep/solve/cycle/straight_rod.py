@@ -63,7 +63,7 @@ class StraightRod:
         rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.error:.0e}"
         if self.stable is None:
             return f"{rate}, so whether it stays straight is not decided"
-        return f"{rate}, so it leaves the straight state, to which its motion on a mesh decays"
+        return f"{rate}, so it leaves the straight state, although its motion on a mesh decays to it"
 
 
 def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest = SPECTRUM) -> StraightRod:

@@ -168,7 +168,9 @@ class Search:
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def search_more(self, number: int, here: int) -> None:
-        """Requests more eigenvalues after a count of `number`, of which `here` are found."""
+        """Requests more eigenvalues or a finer mesh: the winding number counts `number`, and `here` are
+        found.
+        """
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer(self.mesh)
             return

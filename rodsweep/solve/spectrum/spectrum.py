@@ -66,9 +66,8 @@ class Spectrum:
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """The first n points of what is left of a stretch: eigenvalues and errors, shape (n, modes).
-
-    unstable: how many are unstable, good: whether certified and accurate, both of shape (n,).
+    """Eigenvalues and errors, shape (n, modes), at the next n points of a stretch. unstable: number of
+    unstable modes, (n,). good: whether a point is certified and accurate, (n,).
     """
 
     w: Complex

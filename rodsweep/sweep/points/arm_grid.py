@@ -48,9 +48,9 @@ def grid_of_arms(
     units = {name: _of_each(arms, attrgetter(name)) for name in ARM_UNITS}
     forces = _forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
-    covered = np.broadcast_to(_along(0, statuses), shape).copy()
+    coverage = np.broadcast_to(_along(0, statuses), shape).copy()
     if section.load_axis in RELATIVE:
-        covered = _with_flutter(covered, scale)
+        coverage = _with_flutter(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
         if section.load_axis in RELATIVE:
@@ -60,15 +60,15 @@ def grid_of_arms(
     if "F" in table:
         shares = _crushing_shares(arms) if builds else build.crushing_shares(table.get("taper", np.ones(1)))
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
-        covered[(covered == SLENDER) & crushed] = CRUSHED
-    if (covered != SLENDER).all():
-        _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()), forces)
+        coverage[(coverage == SLENDER) & crushed] = CRUSHED
+    if (coverage != SLENDER).all():
+        _refuse_all(section, beside, bool((coverage == NO_FLUTTER).any()), forces)
     axes = {name: section.given[name].array() for name in section.several}
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
-    codes, failures = covered.astype(np.int8).ravel(), _failures(covered, forces)
-    return Points(names, columns, False, over, at_points, builds=builds, covered=codes, failures=failures)
+    codes, failures = coverage.astype(np.int8).ravel(), _failures(coverage, forces)
+    return Points(names, columns, False, over, at_points, builds=builds, coverage=codes, failures=failures)
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
@@ -112,20 +112,20 @@ def _force_of(
     return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load]))
 
 
-def _with_flutter(covered: Array, flutter: Array) -> Array:
+def _with_flutter(coverage: Array, flutter: Array) -> Array:
     """Codes of points with those of a load relative to flutter, (arms, loads, replaced parameters) each.
 
     flutter: F of flutter, which is the same for all loads.
     """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    codes: Array = np.where(covered == SLENDER, found, covered)
+    codes: Array = np.where(coverage == SLENDER, found, coverage)
     return codes
 
 
-def _failures(covered: Array, forces: Forces) -> dict[int, str]:
-    """Why no flutter is found, by flat index; covered: codes over (arms, loads, replaced parameters)."""
-    each = np.broadcast_to(forces, covered.shape).ravel()
-    return {int(index): each[index].failure for index in np.flatnonzero(covered == FLUTTER_UNKNOWN)}
+def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
+    """Why no flutter is found, by flat index; coverage: codes over (arms, loads, replaced parameters)."""
+    each = np.broadcast_to(forces, coverage.shape).ravel()
+    return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:

@@ -50,13 +50,13 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         except ValueError as error:
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.names}
-    covered = None if parameters.arm is None else _partly_crushed(named, config.build)
-    refuse_axes(axes, config.into_crushed or covered is not None, config.build)
-    return Points(config.names, tuple(named.values()), is_grid=True, covered=covered)
+    coverage = None if parameters.arm is None else _partly_crushed(named, config.build)
+    refuse_axes(axes, config.into_crushed or coverage is not None, config.build)
+    return Points(config.names, tuple(named.values()), is_grid=True, coverage=coverage)
 
 
 def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
-    """Codes of `covered`, (points,), for a grid of parameters with some points crushed by an arm's load.
+    """Codes of `coverage`, (points,), for a grid of parameters with some points crushed by an arm's load.
 
     None if all points are crushed or no point is, and for grids of more than MOST_POINTS points.
     """

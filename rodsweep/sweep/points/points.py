@@ -43,8 +43,9 @@ class Points:
     builds: tuple[Build, ...] = ()
     """Law and profile of each arm of a grid over quantities, in the order of the points, if arms differ by
     them; each is that of equally many points. Empty if `build` is that of all."""
-    covered: NDArray[np.int8] | None = None
-    """Codes of `rodsweep.config.arm.axes`: whether a rod covers each point of an arm, (points,)."""
+    coverage: NDArray[np.int8] | None = None
+    """Whether the rod model covers each point of an arm, (points,): SLENDER, or the reason why not, from
+    `rodsweep.config.arm.axes`."""
     failures: dict[int, str] = field(default_factory=dict)
     """Why the flutter of a relative load is not found, by the flat index of the point."""
 
@@ -71,13 +72,13 @@ class Points:
     @property
     def of_rods(self) -> dict[str, Array]:
         """Columns by parameter, without points that no rod covers."""
-        if self.covered is None:
+        if self.coverage is None:
             return self.by_name
-        return self.values_of(np.flatnonzero(self.covered == SLENDER))
+        return self.values_of(np.flatnonzero(self.coverage == SLENDER))
 
     def has_rod(self, index: int) -> bool:
         """Whether a rod covers a point."""
-        return self.covered is None or self.covered[index] == SLENDER
+        return self.coverage is None or self.coverage[index] == SLENDER
 
     @property
     def by_name(self) -> dict[str, Array]:
@@ -120,7 +121,7 @@ class Points:
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]
-        return different, numbers if self.covered is None else numbers[self.covered == SLENDER]
+        return different, numbers if self.coverage is None else numbers[self.coverage == SLENDER]
 
     def build_of(self, index: int) -> Build:
         """Law and profile of the rod at a flat index."""

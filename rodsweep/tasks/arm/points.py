@@ -20,7 +20,7 @@ from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
 MODEL_APPLIES = VALIDITY[0].name
-REMEMBERED = 1e8
+OUTCOME_MEMORY = 1e8
 """Memory of the outcomes kept on a rank, in bytes, approximately."""
 SMALLEST_OUTCOME = 10_000
 """Smallest assumed memory of an outcome in bytes, because an outcome has fields beside its variables."""
@@ -58,7 +58,7 @@ class Uncovered:
 
 
 @dataclass(frozen=True, slots=True)
-class Again:
+class RepeatedOutcome:
     """Outcome of a point with a rod that was already solved at an earlier point."""
 
     outcome: Any
@@ -92,7 +92,7 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
     return None if rods.max() + 1 == len(rods) else rods
 
 
-def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
+def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver:
     """A solver that keeps outcomes: a rank solves a rod once, even if the rod occurs at several points.
 
     In chains, two points are equal if their rods are equal and both start from the state of one kept outcome.
@@ -101,14 +101,14 @@ def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
     rods = None if solver.stretched else same_rods(points)
     if rods is None:
         return solver
-    memory = _Outcomes(max(1, int(REMEMBERED // max(layout.bytes_per_point, SMALLEST_OUTCOME))))
+    memory = _Outcomes(max(1, int(OUTCOME_MEMORY // max(layout.bytes_per_point, SMALLEST_OUTCOME))))
 
     def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         (outcome, state), again = memory.of((int(rods[index]), start), solve)
-        return Again(outcome) if again else outcome, state
+        return RepeatedOutcome(outcome) if again else outcome, state
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
-        if isinstance(outcome, Again):
+        if isinstance(outcome, RepeatedOutcome):
             return solver.record(index, outcome.outcome) | {SECONDS.name: 0.0}
         return solver.record(index, outcome)
 
@@ -133,21 +133,21 @@ class _Outcomes:
         return found, False
 
 
-def around(solver: Solver, points: Points, layout: Layout) -> Solver:
+def skipping_points_without_rod(solver: Solver, points: Points, layout: Layout) -> Solver:
     """A solver that skips points without a rod; the variables of skipped points get fill values."""
-    if points.covered is None or not points.covered.any():
+    if points.coverage is None or not points.coverage.any():
         return solver
-    return _Around(solver, points.covered, points.failures, layout).solver()
+    return _SkippingSolver(solver, points.coverage, points.failures, layout).solver()
 
 
 @dataclass(frozen=True, slots=True)
-class _Around:
-    """A solver for points with and without rods; `covered`, (points,), has the status of points without a
-    rod. failures: why, where a status does not say all.
+class _SkippingSolver:
+    """A solver for points with and without rods. coverage: as in `Points`, (points,). failures: messages for
+    points whose status does not say all.
     """
 
     inner: Solver
-    covered: NDArray[np.int8]
+    coverage: NDArray[np.int8]
     failures: Mapping[int, str]
     layout: Layout
 
@@ -157,13 +157,13 @@ class _Around:
         return self.inner.within(self._solve, self._together, record=self._record, statuses=statuses)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
-        if self.covered[index] == SLENDER:
+        if self.coverage[index] == SLENDER:
             return solve()
         return Uncovered(self._status(index), self.failures.get(index, "")), None
 
     def _status(self, index: int) -> NoRod:
         """Status of a point without a rod."""
-        return next(status for status in NoRod if status == self.covered[index])
+        return next(status for status in NoRod if status == self.coverage[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, Uncovered):
@@ -178,19 +178,19 @@ class _Around:
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         """Results for the points of a stretch; only points with a rod are solved."""
         assert self.inner.stretched is not None
-        covered = self.covered[indices]
-        places = np.flatnonzero(covered == SLENDER)
+        coverage = self.coverage[indices]
+        places = np.flatnonzero(coverage == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._empty.items()}
-        values[STATUS.name][...] = covered
+        values[STATUS.name][...] = coverage
         found = self.inner.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column
-        succeeded = covered != FLUTTER_UNKNOWN
+        succeeded = coverage != FLUTTER_UNKNOWN
         if found:
             succeeded[places] = found.succeeded
 
         def message(i: int) -> str:
-            if covered[i] != SLENDER:
+            if coverage[i] != SLENDER:
                 index = int(indices[i])
                 return f"{self._status(index).name} {self.failures.get(index, '')}"
             return found.message(int(np.searchsorted(places, i))) if found else ""

@@ -116,8 +116,8 @@ class ArmValidity:
         found = []
         for first in range(0, self.points.count, self.each):
             indices = np.arange(first, first + self.each)
-            if self.points.covered is not None:
-                indices = indices[self.points.covered[indices] == SLENDER]
+            if self.points.coverage is not None:
+                indices = indices[self.points.coverage[indices] == SLENDER]
             if len(indices):
                 nothing = ArmMotion(np.full(len(indices), np.nan))
                 found.append(self._validity(self._arm_of(first), nothing, indices))

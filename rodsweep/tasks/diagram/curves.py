@@ -90,9 +90,11 @@ class DiagramCurves:
         plane = self.plane
         if plane is None:
             return []
-        (line, row), options = self.task.config.plane, self.task.config.phase_diagram
+        line, row = self.task.config.plane
         names = (line, row)
-        found, limit = self._boundaries(plane, view, self.task.points.by_name[row]), {}
+        options = self.task.config.phase_diagram
+        found = self._boundaries(plane, view, self.task.points.by_name[row])
+        limit = {}
         if names == CRUSHING and self.task.config.standard:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_hopf
@@ -127,6 +129,7 @@ class DiagramCurves:
         if len(finite) < 2:
             return None
         axes = self.task.config.parameters.axes
+        # A rod of the plane must be valid: take the corner of the grid that is farthest from crushing.
         not_crushed: dict[str, Any] = {
             name: float(axis.array()[-1 if name in ("k1", "taper") else 0]) for name, axis in axes.items()
         }
@@ -183,12 +186,16 @@ class DiagramCurves:
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 
-        options, (line, row) = self.task.config, self.task.config.plane
-        asked, here = axis.array(), float(getattr(plane.rod, name))
-        third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
-        space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
+        line, row = self.task.config.plane
+        values = axis.array()
+        value_in_plane = float(getattr(plane.rod, name))
+        third = PlaneAxis(name, float(values[0]), float(values[-1]), axis.logarithmic)
+        all_values = np.append(values, value_in_plane)
+        space = BautinSpace(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
         curves: list[BautinCurve] = []
-        for point in (on_curve(found, here) for curve in criticalities for found in curve.points):
-            if not any(lies_on(space, point, curve) for curve in curves):
-                curves.append(bautin_curve(space, point))
+        starts = [on_curve(found, value_in_plane) for curve in criticalities for found in curve.points]
+        for start in starts:
+            # A curve may return to the plane: its further points need no curve of their own.
+            if not any(lies_on(space, start, curve) for curve in curves):
+                curves.append(bautin_curve(space, start))
         return bautin_curve_record(curves, (line, row), name)

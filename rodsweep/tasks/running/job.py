@@ -19,7 +19,7 @@ from ...sweep.points.grid import grid_size, points_of
 from ...sweep.points.points import Points
 from ...sweep.points.stretches import StretchResult
 from .. import TASKS
-from ..arm.points import around, shared
+from ..arm.points import sharing_equal_rods, skipping_points_without_rod
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
@@ -61,8 +61,8 @@ class Job:
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
-        once = shared(self._in_si(solver), self.points, self.layout)
-        return around(once, self.points, self.layout)
+        once = sharing_equal_rods(self._in_si(solver), self.points, self.layout)
+        return skipping_points_without_rod(once, self.points, self.layout)
 
     def _in_si(self, solver: Solver) -> Solver:
         """The solver, with results in SI units and the validity of the model added to every record."""

@@ -12,10 +12,11 @@ from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.accuracy.refinement import refine
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
-from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
+from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
 from rodsweep.solve.orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, path_differences
 from rodsweep.solve.point import Unsolvable
 
@@ -91,3 +92,15 @@ def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
     assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
     assert alone.errors.largest <= ACCURACY and alone.fine.distance <= ACCURACY
+
+
+def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
+    """Orders 19 and 21 have nearly the same period of this cone, which is off by 1.9 times the accuracy."""
+    accuracy = 1e-4
+    rod = Rod(F=40.20452, k1=float("inf"), k2=149.6991, gamma3=0.0, gamma1=0.2582922, taper=0.5194033)
+    start = orbit_from_hopf(StressForm(rod, coarse_mesh(rod)), hopf_point_below(rod), MEMORY)
+    found = refine(start, accuracy, MEMORY)
+    own = mesh_of(found.orbit)
+    finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
+    exact = newton(finer.carry(found.orbit), 1e-10, MEMORY).orbit
+    assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= accuracy

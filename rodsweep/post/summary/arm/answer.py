@@ -26,7 +26,7 @@ NO_CYCLE = {
     "straight": "does not beat",
     "unstable": "has a cycle that it leaves at the least disturbance",
     "torus": "beats without repeating",
-    "not_settled": "is not settled: no stable cycle is known, nor that there is none",
+    "not_settled": "is not settled: no stable cycle was found, but one may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
     FAILED: "is not known: the integration failed",
 }
@@ -168,7 +168,7 @@ def _with_status(view: View, *words: str) -> np.ndarray:
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
-    """Share of the points in a mask, as an ending; empty where there is one point only."""
+    """Ending of a sentence with the share of the points in a mask; empty for a single point."""
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 

@@ -22,7 +22,7 @@ class CurveIdentitySettings:
     """A special point of a row this close to a curve lies on it; in units of the line's axis."""
     near_chord: float = 0.1
     """Distance from a chord of a curve, in units of the line's axis, beyond which a special point is not on
-    the part."""
+    the part of the curve that the chord spans."""
     near_period: float = 0.1
     """Relative difference of the period beyond which a special point is not on a part of a curve."""
     equal_period: float = 1e-4

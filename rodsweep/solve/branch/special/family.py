@@ -79,7 +79,7 @@ class CycleFamily:
         rates: approximate derivatives across the curve. same: whether `rates` belong to the point sought, on
         another mesh.
         """
-        known = rates if rates and rates.way @ across >= ACROSS_CURVE.min_cosine else None
+        known = rates if rates and rates.direction @ across >= ACROSS_CURVE.min_cosine else None
         search = _SecantAcross(self, start, place, across, known, same)
         for _ in range(ACROSS_CURVE.max_secants):
             found = search.next()
@@ -125,11 +125,17 @@ class _SecantAcross:
     """The secant method across a curve; all its cycles are corrected with the factors of the first."""
 
     def __init__(
-        self, family: CycleFamily, start: Orbit, place: float, way: Array, rates: Across | None, same: bool
+        self,
+        family: CycleFamily,
+        start: Orbit,
+        place: float,
+        direction: Array,
+        rates: Across | None,
+        same: bool,
     ) -> None:
         self.family = family
         self.place = place
-        self.way = way
+        self.direction = direction
         self.rates = rates
         self.orbit = family.placed(start, place)
         self.at = 0.0
@@ -169,8 +175,8 @@ class _SecantAcross:
         """The cycle at the present length across the curve; raises Unsolvable."""
         family = self.family
         rates = self.rates
-        length = self.length + self.at * float(self.way[0])
-        self.orbit = family.placed(self.orbit, self.place + self.at * float(self.way[1]))
+        length = self.length + self.at * float(self.direction[0])
+        self.orbit = family.placed(self.orbit, self.place + self.at * float(self.direction[1]))
         slope = abs(rates.test) if rates else 1.0
         enough = AUGMENTED.tolerance if rates else AUGMENTED.function_share * ACROSS_CURVE.first_secant
         condition = Condition(family.scale, family.border, length)
@@ -191,7 +197,7 @@ class _SecantAcross:
         other = present.orbit
         change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
         orbit = np.append(other.values - one.values, change) / span
-        return Across(self.way, (present.test - before.test) / span, orbit, mesh_of(one), abs(span))
+        return Across(self.direction, (present.test - before.test) / span, orbit, mesh_of(one), abs(span))
 
     def _moved(self, step: float, rates: Across) -> Orbit:
         """The last cycle moved by a step across the curve."""
@@ -202,7 +208,7 @@ class _SecantAcross:
         family = self.family
         matrix = self.near.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
-        place = self.place + (self.at + step) * float(self.way[1])
+        place = self.place + (self.at + step) * float(self.direction[1])
         orbit = family.placed(self._moved(step, rates), place)
         scale = Scale.of(orbit, family.scale.name, family.scale.least)
         ahead = scale.moved(orbit, tangent)

@@ -61,13 +61,15 @@ ACROSS_CURVE = CrossingSettings()
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Derivatives of a family's cycles by the length across its curve. way: unit direction across, (along the
-    branch, along the rows), (2,). test: derivative of the test function. orbit: derivative of the orbit's
-    values and the line's coordinate, (N + 1,). mesh: mesh of the orbit. span: length between the two cycles
-    of the difference quotient. contraction: contraction of corrections, as in `NearbyCycles`.
+    """Derivatives of a family's cycles by the length across its curve.
+
+    direction: unit direction across, (along the branch, along the rows), (2,). test: derivative of the test
+    function. orbit: derivative of the orbit's values and the line's coordinate, (N + 1,). mesh: mesh of the
+    orbit. span: length between the two cycles of the difference quotient. contraction: contraction of
+    corrections, as in `NearbyCycles`.
     """
 
-    way: Array
+    direction: Array
     test: float
     orbit: Array
     mesh: OrbitMesh
@@ -79,8 +81,8 @@ class Across:
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit
-        direction = replace(self.mesh.carry(orbit), values=self.orbit[:-1])
-        return np.append(mesh.carry(direction).values, self.orbit[-1])
+        derivative = replace(self.mesh.carry(orbit), values=self.orbit[:-1])
+        return np.append(mesh.carry(derivative).values, self.orbit[-1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -114,7 +114,7 @@ class SpecialPoint:
     message: str = ""
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     amplitude_coefficient: float = nan
-    """At a Hopf point: largest tip y in L over the square root of the relative distance of the parameter, as
+    """Largest tip y in L over the square root of the relative distance of the parameter from a Hopf point, as
     in `HopfBirth`."""
     coefficient_error: float = nan
     """Relative error of amplitude_coefficient."""

@@ -16,7 +16,7 @@ class RefinementSettings:
     multiplier_factor: float = 10.0
     """Error of the multipliers in units of the matrix's distance plus the trivial multiplier's error."""
     finest_accuracy: float = 1e-12
-    """Finest accuracy for which a mesh is chosen by measured errors; finer ones are rounding."""
+    """Finest accuracy for which a mesh is chosen by measured errors; smaller errors are rounding errors."""
     first_accuracy: float = 1e-7
     """Finest accuracy for which a mesh is chosen by the tails of a nearby orbit."""
     nearby_tolerance: float = 1e-3

@@ -17,7 +17,7 @@ class ShapeTraceSettings:
     """Settings for the shapes of a motion that are kept for a moving picture."""
 
     max_steps: int = 4000
-    """Time steps after which no more are kept: some 50 to 100 returns of the tip, or 4 MB."""
+    """Largest number of time steps whose shapes are kept: some 50 to 100 returns of the tip, or 4 MB."""
     max_frames: int = 1600
     """Largest number of shapes: 50 periods of 32 shapes."""
     at_rest: float = 2e-3
@@ -44,7 +44,9 @@ class ShapeTrace:
         return self.steps >= SHAPE_TRACE.max_steps
 
     def shows(self, z: Array) -> bool:
-        """Whether the motion is kept further at a state z, (unknowns,), of which the outcome is known."""
+        """Whether to record the motion from a state z, (unknowns,), on although its outcome is known: until
+        the arm is at rest or the trace is full.
+        """
         return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.at_rest
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:

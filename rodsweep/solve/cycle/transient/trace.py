@@ -24,7 +24,9 @@ class TipTrace:
     """A path has any length."""
 
     def shows(self, z: Array) -> bool:
-        """Always False: the path ends at a state z, (unknowns,), whose outcome is known."""
+        """Always False: unlike a moving picture, the path ends as soon as the outcome is known. z: state,
+        (unknowns,).
+        """
         return False
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:

@@ -90,7 +90,8 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
 @compiled_for_vectors
 def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """Other stages' blocks, and right sides for x_0 = M^-1, after elimination of the first two stages.
+    """Eliminates the first two stages: computes the blocks and the right sides, for x_0 = M^-1, of all
+    further stages.
 
     parts: (5, n, n), of which the first is M X; the others are computed here.
     """
