@@ -158,4 +158,6 @@ class PhaseDiagramTask(ProvedTask):
 def record(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
     """A row as variables of the file; line: the row's parameter, most: length of the list of crossings."""
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    return classes | search_record(result.changes, most, line, "crossing_at") | {"seconds": result.seconds}
+    changes = search_record(result.changes, most, line, "crossing_at")
+    certified = result.changes.transitions.proved_to_the_end
+    return classes | changes | {"certified": certified, "seconds": result.seconds}

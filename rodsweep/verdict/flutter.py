@@ -5,7 +5,7 @@ from math import inf, pi
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
-from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
+from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind
 from ..solve.exclusive import solving
 from .relative import ENDS_OF_VARIED, FARTHEST, rod_with
@@ -43,6 +43,13 @@ class FlutterForces:
         before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
         return bool(before) and before[-1] != 0
 
+    def up_to(self, end: float) -> "FlutterForces":
+        """The same without the changes beyond the force `end`."""
+        found = self.thresholds
+        crossings = tuple(c for c in found.crossings if c.at <= end)
+        cut = replace(found, transitions=replace(found.transitions, crossings=crossings), end=end)
+        return replace(self, thresholds=cut)
+
 
 @dataclass(frozen=True, slots=True)
 class Span:
@@ -61,9 +68,10 @@ class FlutterRange:
 
     @property
     def failures(self) -> list[str]:
-        """Messages of failed searches, without repetition."""
+        """Messages of failed searches, without repetition. A search that ended early has not failed."""
         searches = [f.thresholds for f in self.forces]
-        return sorted({t.message or t.status.sentence for t in searches if not t.status.succeeded})
+        usable = (ThresholdStatus.ok, ThresholdStatus.ended_early)
+        return sorted({t.message or t.status.sentence for t in searches if t.status not in usable})
 
     @property
     def end(self) -> float:
@@ -97,10 +105,15 @@ def flutter_forces(arm: SlenderArm, drag: Drag, end: float = FARTHEST) -> Flutte
 
 @solving
 def flutter_range(arm: SlenderArm) -> FlutterRange:
-    """All changes of stability of an arm for each drag; the search with the likeliest drag sets the end."""
+    """All changes of stability of an arm for each drag, up to one force for all.
+
+    The search with the likeliest drag sets the force; a search that ends early lowers it.
+    """
     likeliest, *others = arm.drags
     end, first = _first_search(arm, likeliest)
-    return FlutterRange((first, *(flutter_forces(arm, drag, end) for drag in others)))
+    found = (first, *(flutter_forces(arm, drag, end) for drag in others))
+    common = min(forces.thresholds.end for forces in found)
+    return FlutterRange(tuple(forces.up_to(common) for forces in found))
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:

@@ -126,9 +126,10 @@ def _first_of_varied(path: Path, end: float) -> float:
         raise FlutterUnknown(
             f"the search for the flutter threshold of a relative load fails: {cause_of(error)}"
         ) from error
-    if not found.proved:
+    first = min((crossing.at for crossing in found.crossings if crossing.kind == Kind.hopf), default=inf)
+    if not found.proved or (found.ended_early and first == inf):
         raise FlutterUnknown("the flutter threshold of a relative load is not decided")
-    return min((crossing.at for crossing in found.crossings if crossing.kind == Kind.hopf), default=inf)
+    return first
 
 
 def _grows(path: Path, zero: Zero) -> bool:

@@ -38,6 +38,8 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
     back = found.force(Kind.restabilization)
     if flutter is None:
         stays = f": it stays straight at {load.given}" if load.given else ""
+        if found.end < arm.F:
+            stays = f": whether it beats at {load.given} is not known"
         return [f"The arm does not flutter {_until(plane, load)}{stays}."]
     rate = found.frequency(Kind.hopf)
     beats = "" if rate is None else f" begins to beat at {rounded(rate.low, rate.high)} Hz"

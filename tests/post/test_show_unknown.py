@@ -9,6 +9,7 @@ from shown import shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
+from rodsweep.determinant.arm import hull
 from rodsweep.post.summary import show_summary
 from rodsweep.results.layouts.phase_diagram import CLASSES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -119,3 +120,28 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     shown = told(changed(view, **{"class": classes}))
     assert "on none of" not in shown
     assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown
+
+
+EARLY = {"k1": np.inf, "gamma3": 0.0, "F_max": 60.0} | {
+    "profile": {"u": [0.0, 0.5, 0.5, 1.0], "k2": [1.0, 1.0, 0.5, 0.5], "k3": [1.0, 1.0, 0.5, 0.5]}
+}
+
+
+def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch):
+    """A smaller limit of the a-priori bound leaves none for the stepped arm beyond a force."""
+    monkeypatch.setattr(hull, "LARGEST_SHARE", 0.005)
+    view = view_of_sweep(tmp_path, "thresholds", k2=1e4, **EARLY)
+    end = float(view.variables["F_end"].ravel()[0])
+    lines = told(view)
+    assert 30.0 < end < 60.0
+    assert "beats from F = 27.0372; 2 crossings up to F = " in lines
+    assert f"; not known beyond F = {end:.6g}, where the search ended early" in lines
+    assert f"searched up to F = {end:.15g}; the list of crossings is confirmed by counts" in lines
+    answer = rs.Rod(k2=1e4, **{n: v for n, v in EARLY.items() if n != "F_max"}).thresholds(F_max=60.0)
+    first = " ".join(str(answer).split("Rod(", 1)[0].split())
+    assert first.endswith(f"; not known beyond F = {end:.6g} k3/L^2, where the search ended early")
+    rods = told(view_of_sweep(tmp_path, "thresholds", k2=[5e3, 1e4], **EARLY))
+    assert "starts to beat): F = 27.0372 (k2 = 10000), at 1 of 2 rods, not known at 1 rod" in rods
+    assert "stable again: at none of 2 rods, not known at 2 rods" in rods
+    forms = told(view_of_sweep(tmp_path, "criticality", k2=[5e3, 1e4], **EARLY))
+    assert "Hopf points at 1 of 2 rods (k2 = 10000), not known at 1 rod" in forms

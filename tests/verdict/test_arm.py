@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -15,6 +16,7 @@ from rodsweep.model.units import share_of_flutter
 from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import Crossing, Kind
+from rodsweep.verdict import flutter
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
 from rodsweep.verdict.planes import PlaneOfMotion, Planes
 from rodsweep.verdict.sentences import verdict_sentences
@@ -322,6 +324,23 @@ def test_arm_without_flutter_and_failed_search_are_told():
     ]
     failed = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.failed, 200.0, "no box"))
     assert verdict(arm(), failed) == ["The thresholds could not be found with every drag: no box."]
+
+
+def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatch):
+    """With one drag the search ends before the arm returns with another, and before the load."""
+    early = replace(found(1.0, (20.0, Kind.hopf, 2), end=25.0).thresholds, status=ThresholdStatus.ended_early)
+    whole = found(1.0, (21.0, Kind.hopf, 2), (30.0, Kind.restabilization, 0))
+
+    def forces(arm, drag, end=200.0):
+        return whole if drag == arm.drags[0] else FlutterForces(tau2=2.0, thresholds=early)
+
+    monkeypatch.setattr(flutter, "flutter_forces", forces)
+    searched = flutter.flutter_range(arm(viscosity=1e3))
+    assert len(searched.forces) > 1
+    assert searched.end == 25.0
+    told = " ".join(verdict(arm(viscosity=1e3), *searched.forces))
+    assert "whether the arm beats at 2 kPa is not known: changes were sought up to 1.56 kPa." in told
+    assert "does not become stable again up to 1.56 kPa, where the search ends" in told
 
 
 def test_beyond_where_changes_were_sought_nothing_is_claimed():

@@ -22,6 +22,8 @@ FACTORS = (0.0, 0.5, 1.0)
 """Trial f."""
 HALF_WIDTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 """Trial h, in L."""
+TRIALS = 2 * len(FACTORS) * len(HALF_WIDTHS)
+"""Number of trial regions: two for each f and h."""
 BESIDE = 1e-12
 """Distance from the places where a slope jumps, in L, of the points on both their sides."""
 
@@ -32,7 +34,7 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     u: points of an arm from base to tip, (points,), two at a jump. local: the `LocalCoefficients` there, (6,
     points), with c2 > 0 and g > 0.
     """
-    regions = np.full((len(FACTORS) * len(HALF_WIDTHS) * 2, 2), math.inf)
+    regions = np.full((TRIALS, 2), math.inf)
     jumps = (u[1:] + u[:-1])[np.diff(u) < 1e-6] / 2
     row = 0
     for h in HALF_WIDTHS:

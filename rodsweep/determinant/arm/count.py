@@ -57,6 +57,9 @@ SHARP = 1e-3
 NONE_KNOWN: Complex = np.empty(0, complex)
 SMALLEST_ARM_REACH = 1e-12
 """Reach in units of |w| below which the line counts as running through a zero of D."""
+LEVELS_ABOVE = 1
+"""Number of levels of elements above the own one that serve a node: the many evaluations of a count are worth
+elements of their own."""
 MAX_NODES = 5000
 """Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
 STRIDE = 1.9
@@ -109,10 +112,9 @@ def count_right_of(
     """
     if not math.isfinite(hull.a):
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
-    real, imag = hull.box(max(-line, 0.0))
-    if line >= real:
+    if line >= hull.box(max(-line, 0.0))[0]:
         return Count(0, 0)
-    corner = complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
+    corner = _corner(line, hull)
     top = complex(line, corner.imag)
     known = known[error < SHARP * np.abs(known.real - line)]
     known = known[is_whole(known)]
@@ -133,6 +135,23 @@ def count_right_of(
     if abs(total / math.pi - number) > COUNT.not_an_integer:
         return Count(None, nodes, "the winding number is not an integer within rounding")
     return Count(number + int((known.real > line).sum()), nodes)
+
+
+def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
+    """Whether eigenvalues right of a line at most 0 can be counted: a bound is known, and D resolved."""
+    if not math.isfinite(hull.a):
+        return False
+    try:
+        determinant.level(abs(_corner(0.0, hull)), LEVELS_ABOVE)
+    except FloatingPointError:
+        return False
+    return True
+
+
+def _corner(line: float, hull: Hull) -> complex:
+    """The corner of the box about all eigenvalues right of the line, with the largest |w|."""
+    real, imag = hull.box(max(-line, 0.0))
+    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
 
 
 def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> tuple[float, int]:
@@ -182,7 +201,7 @@ def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIU
     """
     determinant, hull, known = divided
     length = determinant.length(w)
-    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length)
+    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length, LEVELS_ABOVE)
     return _node(w, known, (length, radius), hull, level)
 
 

@@ -68,12 +68,15 @@ class ArmDeterminant:
         """Change of w that changes an exponent of D, integrated along the arm, by about one."""
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
 
-    def level(self, size: float) -> tuple[float, Array]:
-        """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists."""
+    def level(self, size: float, above: int = REUSED) -> tuple[float, Array]:
+        """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists.
+
+        above: number of levels above the own one that serve in its place if they exist.
+        """
         level = MIN_LEVEL
         if size > 4.0**MIN_LEVEL:
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)
-        for existing in range(level, level + REUSED + 1):
+        for existing in range(level, level + above + 1):
             if existing in self._levels:
                 return self._levels[existing]
         W = max(4.0**level, size)

@@ -32,7 +32,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
-from .averaged_weight import averaged_regions
+from .averaged_weight import TRIALS, averaged_regions
 
 POINTS = 25
 """Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
@@ -140,13 +140,15 @@ def _size(a: Any, c: Any) -> Any:
 class Arms(NamedTuple):
     """n arms: F, (n, 1, 1); lengths of the smooth pieces, (pieces,); coefficients, (n, pieces, POINTS).
 
-    The points of a piece are its Chebyshev points, with increasing u.
+    The points of a piece are its Chebyshev points, with increasing u. averaged: `averaged_regions` of each,
+    (n, trials, 2), inf for an arm that allows none, without trials for arms without jumps.
     """
 
     F: Array
     lengths: Array
     local: LocalCoefficients
     continuous: bool
+    averaged: Array
 
 
 def _arms(rods: Sequence[Rod]) -> Arms:
@@ -155,12 +157,27 @@ def _arms(rods: Sequence[Rod]) -> Arms:
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
     F = np.array([rod.F for rod in rods])[:, None, None]
-    return Arms(F, lengths * (1 - 2 * INSIDE), Rod.local_of_all(rods, u), build.continuous)
+    lengths, local = lengths * (1 - 2 * INSIDE), Rod.local_of_all(rods, u)
+    averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
+    return Arms(F, lengths, local, build.continuous, averaged)
+
+
+def _averaged_of_each(F: Array, lengths: Array, local: LocalCoefficients) -> Array:
+    """`Arms.averaged` of arms with jumps, from their other fields."""
+    starts = np.cumsum(lengths) - lengths
+    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
+    along = np.stack(local).reshape(6, len(F), -1)
+    regions = np.full((len(F), TRIALS, 2), inf)
+    for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
+        regions[i] = averaged_regions(u, along[:, i], float(F[i, 0, 0]))
+    return regions
 
 
 def _part(arms: Arms, chosen: slice) -> Arms:
     """Some of the arms."""
-    return arms._replace(F=arms.F[chosen], local=LocalCoefficients(*(x[chosen] for x in arms.local)))
+    local = LocalCoefficients(*(x[chosen] for x in arms.local))
+    return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
 
 
 def _constant(arms: Arms) -> Iterator[Hull]:
@@ -197,15 +214,10 @@ def _following(arms: Arms) -> Iterator[Hull]:
 
 def _averaged(arms: Arms) -> Iterator[Hull]:
     """The best region for alpha averaged over windows; no region unless alpha has jumps and g > 0."""
-    if arms.continuous or not (arms.local.g > 0).all() or not (arms.local.c2 > 0).all():
+    if arms.continuous:
         return
-    starts = np.cumsum(arms.lengths) - arms.lengths
-    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
-    u = (starts[:, None] + arms.lengths[:, None] * (x + 1) / 2).ravel()
-    local = np.stack(arms.local).reshape(6, len(arms.F), -1)
-    regions = [averaged_regions(u, local[:, i], float(F)) for i, F in enumerate(arms.F.ravel())]
-    a, c = np.max(regions, axis=0).T
-    c *= MARGIN
+    a, c = arms.averaged.max(axis=0).T
+    c = MARGIN * c
     with np.errstate(invalid="ignore"):
         best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
     if c[best] < LARGEST_SHARE:

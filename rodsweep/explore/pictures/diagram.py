@@ -9,11 +9,9 @@ from bokeh.models import Legend, LegendItem, Range1d
 
 from ...arrays import Array
 from ..scales import ControlScale
-from ..solving.diagrams import CRUSHED
+from ..solving.diagrams import CRUSHED, NOT_KNOWN
 from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure
 
-NOT_KNOWN = -1
-"""Stored in `unstable_count` where the number is not known."""
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
 """Colours of boundaries; areas have the colours of stable states."""
 OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}

@@ -24,6 +24,8 @@ ARM_ROWS = 12
 ARM_SPAN = 2.0
 """Ratio of the largest value of an arm's quantity to the present value; small, so that all arms are
 slender."""
+NOT_KNOWN = -1
+"""Value of `unstable_count` where the number is not known."""
 CRUSHED = -2
 """Value of `unstable_count` for a load that crushes the rod."""
 SPAN = 10.0
@@ -174,10 +176,12 @@ def of_rows(data: Dataset, values: np.ndarray, name: str, largest: float) -> dic
     kind = words_of(data["crossing_kind"])
     x = np.linspace(0, largest, COLUMNS)
     counts = np.zeros((len(values), COLUMNS), dtype=int)
+    ends = data[name.replace("crossing_", "") + "_end"].values
     for row in range(len(values)):
         for load, count in zip(at[row], after[row], strict=True):
             if np.isfinite(load):
                 counts[row, x > load] = count
+        counts[row, ~(x <= ends[row])] = NOT_KNOWN
     known = np.isfinite(at) & (at <= largest)
     rows = np.broadcast_to(values[:, None], at.shape)
     return {

@@ -47,7 +47,8 @@ def threshold_sentence(rod: OneRod) -> str:
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
             parts.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
-    return ", ".join(parts) or (f"no threshold up to {_end(rod)}" if not rod.count("crossing_count") else "")
+    none = "" if rod.count("crossing_count") else f"no threshold up to {_end(rod)}"
+    return (", ".join(parts) or none) + _not_known_beyond(rod)
 
 
 def hopf_sentence(rod: OneRod) -> str:
@@ -56,10 +57,10 @@ def hopf_sentence(rod: OneRod) -> str:
     if count is None:
         return ""
     if count == 0:
-        return f"no Hopf point up to {_end(rod)}"
+        return f"no Hopf point up to {_end(rod)}{_not_known_beyond(rod)}"
     sides = Counter(word or "of unknown criticality" for word in rod.words("crossings", "criticality"))
     kinds = ", ".join(f"{number} {word}" for word, number in sides.items())
-    return f"{counted(count, 'Hopf point')}: {kinds}"
+    return f"{counted(count, 'Hopf point')}: {kinds}{_not_known_beyond(rod)}"
 
 
 def branch_sentence(rod: OneRod) -> str:
@@ -99,6 +100,12 @@ def _end(rod: OneRod) -> str:
     """Largest load of the search."""
     column = rod.column("F_end")
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
+
+
+def _not_known_beyond(rod: OneRod) -> str:
+    """Clause on the loads beyond the end of a search that ended early; empty for a search to its end."""
+    early = rod.view.flags[int(rod.view.variables["status"].ravel()[0])] == "ended_early"
+    return f"; not known beyond {_end(rod)}, where the search ended early" if early else ""
 
 
 EIGENVALUES = ("mode", "growth_rate", "frequency")

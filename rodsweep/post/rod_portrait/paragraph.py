@@ -13,6 +13,7 @@ from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
 from ..summary.criticality import SIDES
 from ..summary.ranges import listed, rounded
+from ..summary.thresholds import ended_early
 from .results import RodResults
 
 SAME_FORCE = 1e-6
@@ -78,9 +79,11 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     if clauses:
         yield f"Straight, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
-        yield "The straight rod has no threshold in this range."
+        yield f"The straight rod has no threshold up to F = {v['F_end']:.6g}."
     if v["crossing_count"] >= 0:
-        yield f"This list of thresholds is {'proved complete' if v['certified'] else 'not proved complete'}."
+        range_ = f" up to F = {v['F_end']:.6g}" if ended_early(view).all() else ""
+        proof = "proved complete" if v["certified"] else "not proved complete"
+        yield f"This list of thresholds{range_} is {proof}."
 
 
 def _side(results: RodResults, F: float) -> str:

@@ -11,7 +11,7 @@ from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
-from .thresholds import not_known, not_stored
+from .thresholds import ended_early, not_known, not_known_beyond, not_stored
 
 Number = Callable[[Mapping[str, np.ndarray], int], tuple[float, float]]
 
@@ -30,6 +30,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
         flat = {name: values.ravel() for name, values in v.items()}
         lines = list(_hopf_lines(flat)) or [none]
+        lines[0] += not_known_beyond(view, float(flat["F_end"][0]))
         trust = [_searched(view, done)]
         return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(flat))
     side = v["criticality"][done]
@@ -37,7 +38,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    unknown = int((v["crossing_count"][done] < 0).sum())
+    unknown = int(((v["crossing_count"] < 0) | (ended_early(view) & ~with_hopf))[done].sum())
     lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])

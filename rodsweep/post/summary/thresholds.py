@@ -20,6 +20,8 @@ EVENTS = {
 }
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
 
+ENDED_EARLY = "ended_early"
+"""Status of a search that ended before the requested force."""
 FIRSTS = {
     "onset": "oscillates from",
     "hopf": "beats from",
@@ -51,7 +53,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     found = np.isfinite(F)
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(v["open_from"].ravel())
+    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~ended_early(view).ravel()
     unknown = not_known(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
@@ -62,6 +64,17 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     forces = " to ".join(places if places[0] != places[1] else places[:1])
     where = f"all {counted(rods, 'rod')}" if found.sum() == rods else some_of(int(found.sum()), rods, "rod")
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
+
+
+def ended_early(view: View) -> np.ndarray:
+    """Mask of the points whose search ended before the requested F, of the points' shape."""
+    early = [value for value, word in view.flags.items() if word == ENDED_EARLY]
+    return np.isin(view.variables["status"], early)
+
+
+def not_known_beyond(view: View, F: float) -> str:
+    """Clause on the forces beyond the end of the search of a single rod, if this search ended early."""
+    return f"; not known beyond F = {F:.6g}, where the search ended early" if ended_early(view).all() else ""
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
@@ -82,7 +95,8 @@ def crossing_lines(view: View) -> list[str]:
     if not lines and v["crossing_count"][0] < 0:
         return ["its thresholds are not known"]
     none = "no threshold is located" if np.isfinite(v["open_from"][0]) else "no threshold"
-    return lines or [f"{none} up to F = {v['F_end'][0]:.15g}"]
+    lines = lines or [f"{none} up to F = {v['F_end'][0]:.15g}"]
+    return [lines[0] + not_known_beyond(view, v["F_end"][0]), *lines[1:]]
 
 
 def crossing_table(view: View) -> TextTable | None:

@@ -72,7 +72,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
-        boolean("certified", "whether the list of crossings is proved complete"),
+        boolean("certified", "whether the list of crossings is proved complete in the searched range"),
         integer("boxes", "number of evaluations of D over a box"),
         integer("solves", "number of eigenproblems solved"),
         SECONDS,

@@ -62,7 +62,8 @@ class BranchStatus(PointStatus):
     search_open = (
         4,
         "the branches are complete, but a Hopf point may be missing: two may nearly coincide within an open "
-        "range, or a count disagrees; `certify: false` accepts a count that disagrees",
+        "range, the search for them may have ended early, or a count disagrees; `certify: false` accepts a "
+        "count that disagrees",
     )
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
 
@@ -151,8 +152,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
         status=status,
         message=message,
         crossings=found.crossings,
-        unstable_at_start=found.unstable_at_start,
-        proved=found.proved,
+        unstable_at_start=found.unstable_at_start if found.searched[0] == low else -1,
+        proved=found.proved_to_the_end,
         curves=tuple(curves),
     )
 
@@ -239,7 +240,7 @@ def _judged(
         or any(not curve.complete and not curve.full for curve in curves),
         BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
         BranchStatus.special_undecided: inaccurate or any(not curve.explained for curve in curves),
-        BranchStatus.search_open: request.certify and not found.proved,
+        BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
     return status, "; ".join(filter(None, [*failures, *messages, found.why_not]))

@@ -37,6 +37,7 @@ class CoexistenceStatus(PointStatus):
     accuracy_not_reached = _as(ThresholdStatus.accuracy_not_reached)
     list_full = _as(ThresholdStatus.list_full)
     failed = _as(ThresholdStatus.failed)
+    ended_early = _as(ThresholdStatus.ended_early)
     branches_stopped = (
         6,
         "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: the "

@@ -16,6 +16,7 @@ from ..point import Unsolvable
 from .arm_crossings import CrossingSearch
 from .leading_eigenvalue import Tracer
 from .path_problem import PathProblem, UniformPath, path_problem
+from .search_range import Reach
 from .unstable_modes import Counts, Crossing, Kind
 
 
@@ -36,13 +37,17 @@ TRANSITIONS = TransitionSettings()
 class Transitions:
     """All changes along a path, in increasing order of its parameter.
 
-    open_range: smallest interval that contains all places where two further crossings are possible; nan if
-    there is no such place. oscillates_at_start: whether a pair leads there. proved: whether the covering is
-    complete, every count agrees, and no eigenvalue lies right of a leading eigenvalue. boxes: evaluations of
-    D by the covering. solves: number of eigenproblems. why_not: reasons why the list is not proved.
+    searched: interval of the parameter to which all other fields refer. ended_early: whether this interval is
+    smaller than requested, because a place beyond its end could not be solved. open_range: smallest interval
+    that contains all places where two further crossings are possible; nan if there is no such place.
+    oscillates_at_start: whether a pair leads there. proved: whether the covering is complete, every count
+    agrees, and no eigenvalue lies right of a leading eigenvalue. boxes: evaluations of D by the covering.
+    solves: number of eigenproblems. why_not: reasons why the list is not proved or the search ended early.
     """
 
     crossings: tuple[Crossing, ...] = ()
+    searched: tuple[float, float] = (math.nan, math.nan)
+    ended_early: bool = False
     open_range: tuple[float, float] = (math.nan, math.nan)
     unstable_at_start: int = -1
     unstable_at_end: int = -1
@@ -52,23 +57,61 @@ class Transitions:
     solves: int = 0
     why_not: str = ""
 
+    @property
+    def proved_to_the_end(self) -> bool:
+        """Whether the list is proved complete in the whole requested interval."""
+        return self.proved and not self.ended_early
+
+
+@dataclass(frozen=True, slots=True)
+class AxisCrossings:
+    """Crossings of the imaginary axis, intervals that may contain further ones, and the reach of the search.
+
+    boxes: evaluations of D by the covering.
+    """
+
+    path: Path
+    crossings: list[Crossing]
+    gaps: list[tuple[float, float]]
+    reach: Reach
+    boxes: int = 0
+
+    def up_to(self, reach: Reach) -> "AxisCrossings":
+        """The part of a search that ended earlier; itself if the search `reach` ended at the same place."""
+        if reach.p == self.reach.p:
+            return self
+        crossings = [c for c in self.crossings if self.path.variable(c.at) <= reach.p]
+        gaps = [gap for gap in self.gaps if min(map(self.path.variable, gap)) <= reach.p]
+        return replace(self, crossings=crossings, gaps=gaps, reach=reach)
+
+    def searched(self, start: float, stop: float) -> tuple[float, float]:
+        """The searched part of the interval of the parameter from `start` to `stop`."""
+        if not self.reach.reason:
+            return start, stop
+        end = self.path.parameter.value(self.reach.p)
+        return (end, stop) if self.path.inverse else (start, end)
+
 
 def transitions(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
     """All changes from the value `start` of the path's parameter up to `stop`.
 
-    Raises Unsolvable if no a-priori bound applies or a spectrum cannot be solved.
+    The search ends early before a place that cannot be solved. Raises Unsolvable if it has no part without
+    such a place, or if no a-priori bound applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
-    hopfs, gaps, examined = _crossings(problem, low, high, certify)
+    found = _crossings(problem, low, high, certify)
     tracer = Tracer(problem, certify)
-    counts = Counts(problem, gaps, certify)
-    unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, hopfs)
-    oscillates = tracer.anchor(path.variable(start)).oscillates
     edges = problem.edges(low, high)
     for _ in range(2):
-        ordered = sorted(tracer.changes(edges) + hopfs, key=lambda c: c.at)
-        crossings, at_end = counts.along(ordered, (start, stop), unstable)
+        changes, reach = tracer.changes([*(p for p in edges if p < found.reach.p), found.reach.p])
+        found = found.up_to(reach) if reach.reason else found
+        ends = found.searched(start, stop)
+        counts = Counts(problem, found.gaps, certify)
+        unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, found.crossings)
+        oscillates = tracer.anchor(path.variable(ends[0])).oscillates
+        ordered = sorted(changes + found.crossings, key=lambda c: c.at)
+        crossings, at_end = counts.along(ordered, ends, unstable)
         missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
         if not missed:
             break
@@ -78,31 +121,31 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
     if certify and not tracer.proved:
         counts.doubts.append("it is not proved which eigenvalue leads everywhere")
-    counted = _counted(counts, unstable, crossings, at_end, examined)
+    counted = _counted(counts, unstable, crossings, at_end)
+    counted = _with_range(counted, found, (start, stop))
     return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
 
 
 def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
     """Crossings of the axis by pairs only, without any spectrum: this takes half the time.
 
-    proved: the covering is complete and every count agrees. Raises Unsolvable if no a-priori bound applies.
+    proved: the covering is complete and every count agrees. Ends early and raises Unsolvable as `transitions`
+    does.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
-    hopfs, gaps, examined = _crossings(problem, low, high, certify)
-    counts = Counts(problem, gaps, certify)
-    ordered = sorted(hopfs, key=lambda c: c.at)
-    unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, ordered)
-    crossings, at_end = counts.along(ordered, (start, stop), unstable)
-    return _counted(counts, unstable, crossings, at_end, examined)
+    found = _crossings(problem, low, high, certify)
+    counts, ends = Counts(problem, found.gaps, certify), found.searched(start, stop)
+    ordered = sorted(found.crossings, key=lambda c: c.at)
+    unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, ordered)
+    crossings, at_end = counts.along(ordered, ends, unstable)
+    return _with_range(_counted(counts, unstable, crossings, at_end), found, (start, stop))
 
 
-def _counted(
-    counts: Counts, unstable: int, crossings: tuple[Crossing, ...], at_end: int, examined: int
-) -> Transitions:
+def _counted(counts: Counts, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
     """The counted crossings as `Transitions`, without the leading eigenvalue at the start.
 
-    unstable, at_end: number of unstable modes at the two ends of the path. examined: evaluations of D.
+    unstable, at_end: number of unstable modes at the two ends of the searched interval.
     """
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
@@ -111,33 +154,44 @@ def _counted(
         unstable_at_start=unstable,
         unstable_at_end=at_end,
         proved=counts.certify and not counts.gaps and not counts.doubts and known,
-        boxes=examined,
         why_not="; ".join(counts.doubts),
     )
 
 
-Found = tuple[list[Crossing], list[tuple[float, float]], int]
-"""(crossings of the axis, intervals that may contain further crossings, evaluations of D)."""
+def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
+    """The changes with the interval that was searched of the one that was `asked` for, and why it is
+    smaller."""
+    searched, reason = found.searched(*asked), found.reach.reason
+    end = found.path.parameter.value(found.reach.p)
+    early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
+    return replace(
+        counted,
+        searched=searched,
+        ended_early=bool(reason),
+        boxes=found.boxes,
+        why_not="; ".join(filter(None, (early, counted.why_not))),
+    )
 
 
-def _crossings(problem: PathProblem, low: float, high: float, certify: bool) -> Found:
+def _crossings(problem: PathProblem, low: float, high: float, certify: bool) -> AxisCrossings:
     """Crossings of a path: by the covering, or between counts for nonuniform arms."""
     if isinstance(problem, UniformPath):
         return _covered(problem.path, low, high)
     search = CrossingSearch(problem, certify)
-    found = search.crossings(problem.edges(low, high))
-    gaps = [tuple(sorted(map(problem.path.parameter.value, gap))) for gap in search.gaps]
-    return found, [(a, b) for a, b in gaps], 0
+    found, reach = search.crossings(problem.edges(low, high))
+    value = problem.path.parameter.value
+    gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
+    return AxisCrossings(problem.path, found, gaps, reach)
 
 
-def _covered(path: Path, low: float, high: float) -> Found:
+def _covered(path: Path, low: float, high: float) -> AxisCrossings:
     """Crossings, open intervals and number of evaluations, from the covering."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies")
     zeros, left, examined = cover(boxes, path.origin, path.direction)
     hopfs = [_hopf(path, zero) for zero in zeros if low <= zero.p <= high]
-    return hopfs, _gaps(path, left), examined
+    return AxisCrossings(path, hopfs, _gaps(path, left), Reach(high), examined)
 
 
 def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:

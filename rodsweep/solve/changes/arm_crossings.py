@@ -13,6 +13,7 @@ from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
 from .anchors import ANCHORS, lowest_between
 from .path_problem import PathProblem
+from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
 
 MAX_KNOWN_MODES = 200
@@ -51,12 +52,13 @@ class AxisPlace:
 class CrossingSearch:
     """The search for crossings along a path.
 
-    gaps: intervals of p that may contain two undecided crossings.
+    found: crossings by their p. gaps: intervals of p that may contain two undecided crossings.
     """
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem, self.certify = problem, certify
         self.places: dict[float, AxisPlace] = {}
+        self.found: dict[float, Crossing] = {}
         self.gaps: list[tuple[float, float]] = []
 
     def place(self, p: float) -> AxisPlace:
@@ -68,6 +70,8 @@ class CrossingSearch:
             )
             found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             while modes < _needed(found) <= MAX_KNOWN_MODES:
+                if self.certify and found.unstable_count < 0:
+                    break  # a count that fails does not succeed with more modes
                 modes = _needed(found)
                 found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             if found.unstable_count < 0:
@@ -78,34 +82,43 @@ class CrossingSearch:
             self.places[p] = AxisPlace(p, found.eigenvalues, slopes, found.unstable_count)
         return self.places[p]
 
-    def crossings(self, edges: list[float]) -> list[Crossing]:
-        """All crossings from the first of `edges` to the last, in increasing order of p."""
-        found: list[Crossing] = []
-        stack = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
-        length = edges[-1] - edges[0]
-        while stack:
-            a, b = stack.pop()
-            left, right = self.place(a), self.place(b)
-            if left.unstable == right.unstable:
-                share = hidden(left, right)
-                if share == 0.0:
-                    continue
-                if b - a <= SMALLEST_INTERVAL * length:
-                    self.gaps.append((a, b))
-                    continue
-            else:
-                share = 0.5
-                crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
-                beside = self._confirmed(crossing, left, right, length) if crossing is not None else None
-                if crossing is not None and beside is not None:
-                    found.append(crossing)
-                    stack += [(beside[1], b), (a, beside[0])]
-                    continue
-                if b - a <= 1e-12 * max(abs(a), abs(b)):
-                    raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
-            middle = a + share * (b - a)
-            stack += [(middle, b), (a, middle)]
-        return sorted(found, key=lambda crossing: crossing.at)
+    def crossings(self, edges: list[float]) -> tuple[list[Crossing], Reach]:
+        """All crossings from the first of `edges` up to the reach of the search, in increasing order of p.
+
+        Raises Unsolvable if the search does not reach beyond the first edge.
+        """
+        intervals = SearchedIntervals(edges)
+        self.place(edges[0])
+        for a, b in intervals:
+            try:
+                self._search(a, b, intervals)
+            except Unsolvable as why:
+                intervals.end_within((a, b), str(why))
+                self.found = {p: crossing for p, crossing in self.found.items() if p <= a}
+        return [self.found[p] for p in sorted(self.found)], intervals.reach
+
+    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
+        """Searches one interval: keeps its crossing, or divides the interval."""
+        left, right = self.place(a), self.place(b)
+        if left.unstable == right.unstable:
+            share = hidden(left, right)
+            if share == 0.0:
+                return
+            if b - a <= SMALLEST_INTERVAL * intervals.length:
+                self.gaps.append((a, b))
+                return
+        else:
+            share = 0.5
+            crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
+            beside = self._confirmed(crossing, left, right, intervals.length) if crossing else None
+            if crossing is not None and beside is not None:
+                self.found[self.problem.path.variable(crossing.at)] = crossing
+                intervals.divide((a, beside[0]), (beside[1], b))
+                return
+            if b - a <= 1e-12 * max(abs(a), abs(b)):
+                raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
+        middle = a + share * (b - a)
+        intervals.divide((a, middle), (middle, b))
 
     def _confirmed(
         self, crossing: Crossing, left: AxisPlace, right: AxisPlace, length: float

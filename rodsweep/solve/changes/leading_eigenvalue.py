@@ -19,6 +19,7 @@ from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
 from .anchors import Anchor, unexplained
 from .path_problem import PathProblem
+from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
 
 ANCHOR_MODES = 4
@@ -97,35 +98,43 @@ class Tracer:
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
-    def changes(self, edges: list[float]) -> list[Crossing]:
-        """All changes between the first and the last of `edges`, in increasing order of p."""
+    def changes(self, edges: list[float]) -> tuple[list[Crossing], Reach]:
+        """All changes from the first of `edges` up to the reach of the search, in increasing order of p.
+
+        Raises Unsolvable if the search does not reach beyond the first edge.
+        """
         found: list[Crossing] = []
-        stack = [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)][::-1]
-        length = abs(edges[-1] - edges[0])
-        while stack:
-            a, b = stack.pop()
-            left = self.anchor(a)
-            right = self.anchor(b)
-            if left.oscillates == right.oscillates:
-                share, hides = unexplained(left, right)
-                if share == 0.0:
-                    continue
-                smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
-                if b - a <= smallest * length:
-                    self.proved = False
-                    continue
-            else:
-                change = self._between(left, right)
-                if change is not None:
-                    found.append(change)
-                    continue
-                if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
-                    where = self.path.at(a)
-                    raise Unsolvable(f"the change of the leading eigenvalue near {where} is not found")
-                share = 0.5
-            middle = a + share * (b - a)
-            stack += [(middle, b), (a, middle)]
-        return found
+        intervals = SearchedIntervals(edges)
+        self.anchor(edges[0])
+        for a, b in intervals:
+            try:
+                found += self._search(a, b, intervals)
+            except Unsolvable as why:
+                intervals.end_within((a, b), str(why))
+        return found, intervals.reach
+
+    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
+        """The change of one interval; none if there is none, or if the interval is divided."""
+        left, right = self.anchor(a), self.anchor(b)
+        share = 0.5
+        if left.oscillates == right.oscillates:
+            share, hides = unexplained(left, right)
+            smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
+            if share == 0.0:
+                return []
+            if b - a <= smallest * intervals.length:
+                self.proved = False
+                return []
+        else:
+            change = self._between(left, right)
+            if change is not None:
+                return [change]
+            if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
+                where = self.path.at(a)
+                raise Unsolvable(f"the change of the leading eigenvalue near {where} is not found")
+        middle = a + share * (b - a)
+        intervals.divide((a, middle), (middle, b))
+        return []
 
     def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
         """The only change between two anchors of different kind; None unless found and proved to be of the

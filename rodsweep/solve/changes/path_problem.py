@@ -1,7 +1,7 @@
 """The transverse eigenvalue problem along a path of one parameter, for uniform rods and nonuniform arms."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ...determinant.parameter_path import Path, coefficients_at
 from ..spectrum.arm_stretch import FollowedArms
 from ..spectrum.problem import ArmProblem
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
+from ..spectrum.status import SpectrumStatus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +26,11 @@ class ArmPathSettings:
     """Steps in which eigenvalues are followed through each of these intervals."""
     followed_modes: int = 4
     """Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
+    spare_pair: int = 2
+    """Number of modes solved for beyond those requested, of an arm with many unstable modes."""
+    amid: float = 0.25
+    """Largest distance of a counted place from the middle of an interval, in units of the interval's length,
+    at which the count stands for a count in the middle."""
 
 
 ARM_PATH = ArmPathSettings()
@@ -63,6 +69,10 @@ class PathProblem(ABC):
     def count(self, line: float, p: float) -> Count:
         """Number of eigenvalues with Re w > line at p."""
 
+    def counted_amid(self, low: float, high: float) -> int | None:
+        """Number of unstable modes that is proved already at a place amid low and high; None without one."""
+        return None
+
     @abstractmethod
     def relaxation(self, p: float) -> tuple[float, float]:
         """(a relaxation time of the rod, smooth along the path, its slope by p)."""
@@ -100,6 +110,10 @@ class ArmPath(PathProblem):
     def __init__(self, path: Path):
         super().__init__(path)
         self._followed: FollowedArms | None = None
+        self._solutions: dict[float, Spectrum] = {}
+        """Spectra that are solved, not followed, by p; each with as many modes as were requested last."""
+        self._counts: dict[float, int] = {}
+        """Numbers of unstable modes that are proved, by p."""
         self._along = ArmAlongPath(path, lambda p: self._followed.family(p) if self._followed else None)
 
     def edges(self, low: float, high: float) -> list[float]:
@@ -111,13 +125,37 @@ class ArmPath(PathProblem):
         return edges.tolist()
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p, followed, or solved where they are not."""
+        """The leading eigenvalues at p: followed, part of those of an earlier request, or solved."""
         key = p, request
-        if key not in self._spectra and self._followed is not None:
-            found = self._followed.spectrum(p, request.modes)
-            if found is not None and len(found.eigenvalues) == request.modes:
-                self._spectra[key] = found
-        return super().spectrum(p, request)
+        if key not in self._spectra:
+            followed = self._followed.spectrum(p, request.modes) if self._followed is not None else None
+            found = self._spectra[key] = followed if followed is not None else self._solved(p, request)
+            if found.certified:
+                self._counts[p] = found.unstable_count
+        return self._spectra[key]
+
+    def _solved(self, p: float, request: SpectrumRequest) -> Spectrum:
+        """The leading eigenvalues at p, out of an earlier solve at p if it has as many, else of a new one.
+
+        Who asks for many modes asks for one pair more next, beside a crossing: this pair is solved for, too.
+        """
+        earlier = self._solutions.get(p)
+        if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
+            spare = ARM_PATH.spare_pair if request.modes > ARM_PATH.followed_modes else 0
+            earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
+            if spare and earlier.status != SpectrumStatus.ok:
+                earlier = super().spectrum(p, request)
+            self._solutions[p] = earlier
+        return replace(
+            earlier,
+            eigenvalues=earlier.eigenvalues[: request.modes],
+            error_estimate=earlier.error_estimate[: request.modes],
+        )
+
+    def counted_amid(self, low: float, high: float) -> int | None:
+        places = [p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.amid * (high - low)]
+        nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
+        return None if nearest is None else self._counts[nearest]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         return self._along.eigenvalue(guess, p)

@@ -104,7 +104,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     unstable[crushed] = -1
     motion[~alive & ~crushed] = Motion.undecided
     unstable[~alive & ~crushed] = -1
-    changes = judged(found, stop, request.accuracy, request.certify, request.crossings)
+    changes = judged(found, request.accuracy, request.certify, request.crossings)
     return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
 
 
@@ -119,7 +119,7 @@ def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: st
 
 def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """(class, number of unstable modes) at each value of a path's parameter, (values,) each, from the
-    changes."""
+    changes. Values beyond the end of a search that ended early are undecided."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)
@@ -130,6 +130,8 @@ def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArra
         else:
             unstable[beyond] = crossing.unstable_after
         blurred |= np.abs(values - crossing.at) <= crossing.error
+    if found.ended_early:
+        blurred |= (values < found.searched[0]) | (values > found.searched[1])
     low, high = found.open_range
     if not math.isnan(low):
         blurred |= (values >= low) & (values <= high)

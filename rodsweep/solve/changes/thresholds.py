@@ -36,6 +36,11 @@ class ThresholdStatus(PointStatus):
     )
     list_full = 4, "there are more changes than the list holds; raise the option crossings"
     failed = 5, "the search failed and nothing is stored; the log has the message"
+    ended_early = (
+        9,
+        "the search ends before the requested range, at a rod whose unstable modes could not be counted; the "
+        "list holds the changes up to this end, those beyond are not known; the log has the message",
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +77,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
     def search() -> Thresholds:
         found = transitions(Path(rod, "F"), 0.0, end, request.certify)
-        return judged(found, end, request.accuracy, request.certify, request.crossings)
+        return judged(found, request.accuracy, request.certify, request.crossings)
 
     return solved(search, lambda cause: nothing_found(ThresholdStatus.failed, end, cause))
 
@@ -83,10 +88,12 @@ def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thr
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
-def judged(found: Transitions, end: float, accuracy: float, certify: bool, most: int) -> Thresholds:
+def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
     """The changes along a path with a status; the gravest problem determines the status."""
     status = ThresholdStatus.ok
-    if not math.isnan(found.open_range[0]):
+    if found.ended_early:
+        status = ThresholdStatus.ended_early
+    elif not math.isnan(found.open_range[0]):
         status = ThresholdStatus.window_open
     elif len(found.crossings) > most:
         status = ThresholdStatus.list_full
@@ -94,7 +101,7 @@ def judged(found: Transitions, end: float, accuracy: float, certify: bool, most:
         status = ThresholdStatus.accuracy_not_reached
     elif certify and not found.proved:
         status = ThresholdStatus.not_certified
-    return Thresholds(status=status, transitions=found, end=end, message=found.why_not)
+    return Thresholds(status=status, transitions=found, end=found.searched[1], message=found.why_not)
 
 
 def warm_up() -> None:

@@ -100,6 +100,9 @@ class Counts:
 
     def amid(self, a: float, b: float) -> int:
         """The winding number between two values; -1 if undecided at all of CHANGE_COUNTS.places."""
+        known = self.problem.counted_amid(*sorted((self.path.variable(a), self.path.variable(b))))
+        if known is not None:
+            return known
         for share in CHANGE_COUNTS.places:
             number = self.at(a + share * (b - a))
             if number >= 0:

@@ -47,6 +47,11 @@ class CriticalityStatus(PointStatus):
         "at a Hopf point the sign of Re c is within its error, as next to a generalised Hopf point: c is "
         "correct, but the criticality is undecided; move a parameter slightly",
     )
+    ended_early = (
+        9,
+        "the search ends before the requested force, at a rod whose unstable modes could not be counted; the "
+        "list holds the Hopf points up to this end, those beyond are not known; the log has the message",
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +97,11 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
         )
         status, message = _judged(found, coefficients, request)
         return Criticality(
-            status=status, transitions=found, coefficients=coefficients, end=end, message=message
+            status=status,
+            transitions=found,
+            coefficients=coefficients,
+            end=found.searched[1],
+            message=message,
         )
 
     return solved(search, lambda cause: _nothing(end, cause))
@@ -136,6 +145,7 @@ def _judged(
         c.largest_error > request.accuracy for c in known
     )
     verdicts = {
+        CriticalityStatus.ended_early: found.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
         CriticalityStatus.window_open: not math.isnan(found.open_range[0]),
         CriticalityStatus.list_full: len(found.crossings) > request.crossings,

@@ -5,6 +5,7 @@ easy. The propagators of all arms are interpolated from a few arms (`rodsweep.de
 interval short enough for smooth polynomials.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -35,10 +36,16 @@ PROVED_ENOUGH = 0.5
 """Fraction of points that must be proved complete; below this fraction more modes are followed."""
 HEADROOM = 2.0
 """Largest |w| of the propagators, in units of the largest |w| of the first point."""
+REUSED_HEADROOM = 1.25
+"""`HEADROOM` of the propagators of an earlier interval that serve again."""
+MORE_ARMS = 2
+"""Largest number of points for which a family is tried, in units of those inside the previous family."""
 FEWEST = 4
 """Minimum number of points of a family of arms."""
 ACCURACY = 1e-8
 """Relative accuracy of eigenvalues along a path."""
+MODES_BEYOND_GROWING = 2
+"""Number of modes beyond the growing ones that a search for crossings asks for."""
 STEPS_FROM_NEAREST = (1, 4)
 """Numbers of steps tried from the nearest point of the path to a point between."""
 HULL_ARMS = 7
@@ -46,13 +53,19 @@ HULL_ARMS = 7
 
 
 class Interval(NamedTuple):
-    """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`."""
+    """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`.
+
+    arms: number of points inside the family, of which `p` are those that are followed. further: number of
+    modes that were followed beyond those wanted.
+    """
 
     p: Array
     track: Track
     known: NDArray[np.int64]
     family: ArmFamily
     hulls: Hulls
+    arms: int
+    further: int
 
     def proved(self, modes: int) -> int:
         """Number of points at which `modes` leading modes are proved complete."""
@@ -72,14 +85,17 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | N
     return Reached(*leading(found.track, request.modes), unstable, good)
 
 
-def _interval(path: Path, p: Array, request: SpectrumRequest) -> Interval | None:
+def _interval(
+    path: Path, p: Array, request: SpectrumRequest, before: Interval | None = None
+) -> Interval | None:
     """The points of p, (n,), that are reached with one family of arms; None if following fails at the first.
 
-    If too few points are proved, more eigenvalues are followed.
+    If too few points are proved, more eigenvalues are followed. before: the previous interval of the path,
+    whose family serves again where it contains enough of the points.
     """
     best: Interval | None = None
-    for further in FURTHER_ARM_MODES:
-        found = _followed(path, p, request, further) if len(p) >= FEWEST else None
+    for further in (number for number in FURTHER_ARM_MODES if before is None or number >= before.further):
+        found = _followed(path, p, request, further, before) if len(p) >= FEWEST else None
         if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
             best = found
         if best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
@@ -87,9 +103,17 @@ def _interval(path: Path, p: Array, request: SpectrumRequest) -> Interval | None
     return best
 
 
-def _followed(path: Path, p: Array, request: SpectrumRequest, further: int) -> Interval | None:
+def _followed(
+    path: Path, p: Array, request: SpectrumRequest, further: int, before: Interval | None
+) -> Interval | None:
     """`_interval` with `further` modes in addition to the wanted modes."""
     first, n, made = first_eigenvalues(path, float(p[0]), request, further), len(p), None
+    if first is not None and before is not None:
+        inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
+        if inside >= FEWEST and REUSED_HEADROOM * np.abs(first).max() <= before.family.W:
+            made, n = (before.family, before.hulls), inside
+        else:
+            n = min(n, max(MORE_ARMS * before.arms, FEWEST))
     while first is not None and made is None and n >= FEWEST:
         made = arms_between(path, p[:n], first, request.modes)
         n = n if made is not None else n // 2
@@ -100,7 +124,8 @@ def _followed(path: Path, p: Array, request: SpectrumRequest, further: int) -> I
     reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
-    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls)
+    arms = before.arms if before is not None and family is before.family else n
+    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls, arms, further)
 
 
 def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, Hulls] | None:
@@ -153,10 +178,11 @@ class FollowedArms:
         """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
         self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
         self.intervals: list[Interval] = []
-        self._spectra: dict[tuple[float, int], Spectrum | None] = {}
+        self._judged: dict[float, list[JudgedPlace]] = {}
         place, patience = 0, 1
         while place < len(p):
-            found = _interval(path, p[place:], self.request)
+            before = self.intervals[-1] if self.intervals else None
+            found = _interval(path, p[place:], self.request, before)
             if found is not None:
                 self.intervals.append(found)
             place += max(len(found.p) - 1, 1) if found is not None else patience
@@ -168,14 +194,41 @@ class FollowedArms:
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The leading eigenvalues at p; None unless followed, accurate and proved complete."""
-        if (p, modes) not in self._spectra:
-            within = (one for one in self.intervals if one.p.min() <= p <= one.p.max())
-            tried = (self._from_nearest(one, p, min(modes, one.track.w.shape[1])) for one in within)
-            self._spectra[p, modes] = next((found for found in tried if found is not None), None)
-        return self._spectra[p, modes]
+        judged = self._judged.setdefault(p, [])
+        if not any(modes <= one.asked for one in judged):
+            judged += self._judge(p, modes)
+        found = (one.spectrum(modes, self.request.accuracy) for one in judged)
+        return next((spectrum for spectrum in found if spectrum is not None), None)
 
-    def _from_nearest(self, one: Interval, p: float, modes: int) -> Spectrum | None:
-        """The leading eigenvalues at p, followed from the nearest point of an interval."""
+    def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
+        """Yields the eigenvalues at p of every interval that contains p, up to the first that are complete.
+
+        Two modes more than grow are judged at once, because they are asked for next.
+        """
+        for one in self.intervals:
+            followed = one.track.w.shape[1]
+            if not one.p.min() <= p <= one.p.max() or followed < modes:
+                continue
+            here, known, wanted = None, 0, 0
+            growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
+            while wanted < (needed := min(max(modes, growing + MODES_BEYOND_GROWING), followed)):
+                wanted = needed
+                here, known = self._from_nearest(one, p, wanted)
+                growing = 0 if here is None else int((here.w.real > 0).sum())
+            if here is None:
+                continue
+            for number in sorted({wanted, modes}, reverse=True):
+                if known < number:
+                    known = max(known, _counted(self.path, one.hulls, p, number, here))
+            yield JudgedPlace(max(modes, min(known, wanted)), here, known)
+            if known >= modes:
+                return
+
+    def _from_nearest(self, one: Interval, p: float, modes: int) -> tuple[Track | None, int]:
+        """(eigenvalues at p followed from the nearest point, how many are proved complete there).
+
+        The track is of p alone, None where following fails.
+        """
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
         for steps in STEPS_FROM_NEAREST:
@@ -183,23 +236,28 @@ class FollowedArms:
             track, known = track_from(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
             if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-                return self._judged(one, p, modes, part(track, len(grid) - 1, len(grid)), known[-1:])
-        return None
+                return part(track, len(grid) - 1, len(grid)), int(known[-1])
+        return None, 0
 
-    def _judged(
-        self, one: Interval, p: float, modes: int, here: Track, known: NDArray[np.int64]
-    ) -> Spectrum | None:
-        """The leading eigenvalues at p; None unless accurate and complete. A count decides if following
-        proved too few.
 
-        here: track of this point alone. known: `all_right_of_line` at this point, (1,).
-        """
-        if known[0] < modes:
-            known = np.array([_counted(self.path, one.hulls, p, modes, here)])
-        good, unstable = judge_points(here, known, modes, self.request.accuracy)
+class JudgedPlace(NamedTuple):
+    """Eigenvalues at one place of a path, of which the leading `known` are proved complete.
+
+    asked: the number for which they need not be judged again.
+    """
+
+    asked: int
+    here: Track
+    known: int
+
+    def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
+        """The leading eigenvalues if followed, accurate and complete; else None."""
+        if self.here.w.shape[1] < modes:
+            return None
+        good, unstable = judge_points(self.here, np.array([self.known]), modes, accuracy)
         if not good[0]:
             return None
-        w, error = leading(here, modes)
+        w, error = leading(self.here, modes)
         return Spectrum(
             status=SpectrumStatus.ok,
             eigenvalues=w[0],

@@ -5,12 +5,14 @@ every other arm, D comes from propagators and the pencil is assembled anew.
 """
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from math import isfinite, sqrt
 from typing import Any, ClassVar
 
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
+from ...determinant.arm.count import is_countable
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
@@ -69,6 +71,11 @@ class TransverseProblem(ABC):
         """(whether a proof without a count says that all right of a line are found, evaluations of D)."""
         return False, 0
 
+    @cached_property
+    def countable(self) -> bool:
+        """Whether a count is possible; False if it fails for every line at most 0."""
+        return True
+
 
 class UniformProblem(TransverseProblem):
     """The problem of a uniform rod of linear material."""
@@ -125,6 +132,10 @@ class ArmProblem(TransverseProblem):
     def count(self, line: float, found: Roots | None = None) -> Count:
         known = () if found is None else (found.w, found.error)
         return count_of_arm(line, self._determinant, self._hull, *known)
+
+    @cached_property
+    def countable(self) -> bool:
+        return is_countable(self._determinant, self._hull)
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
         return none_is_missing(line, found.w, found.error, self._determinant, self._hull)

@@ -29,6 +29,9 @@ class SearchSettings:
     """Number of eigenvalues requested beyond the count of the winding number."""
     unknowns_a_mode: int = 6
     """Fewest unknowns of a mesh for each requested eigenvalue."""
+    enough_unproved: int = 50
+    """Number of growing modes after which no more are solved for if no count is possible: each doubling costs
+    several times as much, and nothing is proved in the end."""
     max_meshes: int = 12
     """Maximum number of attempts."""
     max_failures: int = 3
@@ -138,7 +141,7 @@ class Search:
             self.wanted = self.wanted + self.modes
             self.mesh = self.problem.finer(self.mesh)
             return None
-        if self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all():
+        if self.wants_the_axis(found):
             self.reach_the_axis(len(found.roots.w))
             return None
         verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
@@ -176,6 +179,12 @@ class Search:
             more = self.wanted + number - here + SEARCH.spare_modes
             self.mesh = self.problem.finer(self.mesh)
         self.request_more(more)
+
+    def wants_the_axis(self, found: Candidates) -> bool:
+        """Whether eigenvalues beyond the axis are needed for a count, or for a list that nothing proves."""
+        if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
+            return False
+        return len(found.roots.w) < SEARCH.enough_unproved or self.problem.countable
 
     def reach_the_axis(self, number: int) -> None:
         """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""

@@ -112,7 +112,9 @@ def hopf_variables(
     ]
     counts = {
         "hopf_lines": len(lines),
-        "hopf_lines_proved": sum(transitions is not None and transitions.proved for transitions in found),
+        "hopf_lines_proved": sum(
+            transitions is not None and transitions.proved_to_the_end for transitions in found
+        ),
     }
     return tuple(
         (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))

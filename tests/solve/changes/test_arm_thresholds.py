@@ -1,16 +1,24 @@
 """Thresholds of tapered, stepped and rubber arms: published digits, dense scans, and the uniform rod."""
 
+from math import inf, isfinite
+
 import numpy as np
 import pytest
 from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
+from rodsweep.determinant.arm import hull
+from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.spectrum import arm_stretch
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
 ACROSS = (Kind.hopf, Kind.hopf_reverse, Kind.restabilization)
@@ -83,3 +91,84 @@ def test_search_of_a_cone_ends_where_its_tip_is_crushed():
     )
     assert found.end == pytest.approx(10.0, rel=2e-6)
     assert found.status == ThresholdStatus.ok
+
+
+SOFT_TIP = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
+STEP = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, SOFT_TIP, SOFT_TIP))
+STEPPED = Rod(F=0.0, k1=inf, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
+
+
+@pytest.fixture
+def no_bound_beyond_some_force(monkeypatch):
+    """The a-priori bound of the stepped arm grows with F; a smaller limit leaves none from F = 36 on."""
+    monkeypatch.setattr(hull, "LARGEST_SHARE", 0.005)
+
+
+def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_some_force, monkeypatch):
+    found = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
+    assert found.status == ThresholdStatus.ended_early
+    assert 30.0 < found.end < 60.0
+    assert not isfinite(hull.hull_of(STEPPED.changed(F=found.end + 60 / 12)).a)
+    assert f"ends at F = {found.end:.12g}: " in found.message
+    assert "no a-priori bound" in found.message
+    assert found.transitions.proved
+    assert not found.transitions.proved_to_the_end
+    monkeypatch.undo()
+    whole = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
+    assert whole.status == ThresholdStatus.ok
+    expected = [c for c in whole.crossings if c.at < found.end]
+    assert [c.kind for c in found.crossings] == [c.kind for c in expected] == [Kind.onset, Kind.hopf]
+    np.testing.assert_allclose([c.at for c in found.crossings], [c.at for c in expected], rtol=1e-11)
+    assert found.transitions.unstable_at_end == 2
+
+
+def test_a_search_that_cannot_begin_has_failed(monkeypatch):
+    monkeypatch.setattr(hull, "LARGEST_SHARE", 0.0)
+    found = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
+    assert (found.status, found.crossings) == (ThresholdStatus.failed, ())
+    assert "no a-priori bound" in found.message
+
+
+def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_some_force):
+    row = solve_row(STEPPED, RowRequest("F", np.linspace(0.0, 60.0, 13), 1e-8, True, 16))
+    assert row.status == ThresholdStatus.ended_early
+    known = np.linspace(0.0, 60.0, 13) <= row.changes.end
+    assert (row.motion[~known] == Motion.undecided).all()
+    assert row.motion[known].tolist() == [0] * 3 + [1] * 3 + [2] * int(known.sum() - 6)
+
+
+def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force):
+    """Along k2 the path variable is the compliance: a bound is known for stiff arms only."""
+    found = transitions(Path(STEPPED.changed(F=30.0), "k2"), 1e3, 1e5)
+    assert found.ended_early
+    assert 1e3 < found.searched[0] < 1e5
+    assert found.searched[1] == 1e5
+    assert (found.unstable_at_start, found.unstable_at_end) == (2, 2)
+
+
+def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
+    """Intervals right of an unsolvable place are dropped, and parts of them are searched anew."""
+    intervals, seen = SearchedIntervals([0.0, 1.0, 2.0, 3.0]), []
+    for a, b in intervals:
+        if b > 1.7:
+            intervals.end_within((a, b), "no")
+        else:
+            seen.append((a, b))
+    assert seen == [(0.0, 1.0), (1.0, 1.5), (1.5, 1.625), (1.625, 1.6875)]
+    assert intervals.reach == (1.6875, "no")
+
+
+def test_each_load_of_a_search_is_counted_once(monkeypatch):
+    """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
+    counted, whole = [], arm_stretch._counted
+
+    def count(path, hulls, p, modes, here):
+        counted.append(p)
+        return whole(path, hulls, p, modes, here)
+
+    monkeypatch.setattr(arm_stretch, "_counted", count)
+    rod = STEPPED.changed(k2=100.0)
+    found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
+    assert found.status == ThresholdStatus.ok
+    assert len(counted) > 5
+    assert len(counted) == len(set(counted))

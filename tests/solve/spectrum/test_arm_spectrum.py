@@ -8,11 +8,13 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
+from rodsweep.determinant.arm import hull
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.roots import refined
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum import search
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
@@ -91,3 +93,25 @@ def test_many_growing_modes_of_a_soft_segment_are_all_found():
     assert np.array([found.eigenvalues.real, np.abs(found.eigenvalues.imag)]) == pytest.approx(
         np.array([dense.real, np.abs(dense.imag)]), rel=1e-6
     )
+
+
+@pytest.mark.parametrize("countable", [True, False])
+def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch, countable):
+    """A count needs all growing modes of a stepped arm; where no count is possible the first are enough."""
+    soft = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
+    step = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
+    rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=step))
+    wanted, whole = [], search.attempt
+
+    def attempt(problem, mesh, number, vectors, tight):
+        wanted.append(number)
+        return whole(problem, mesh, number, vectors, tight)
+
+    monkeypatch.setattr(search, "attempt", attempt)
+    monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, enough_unproved=2))
+    if not countable:
+        monkeypatch.setattr(hull, "LARGEST_SHARE", 0.0)
+    found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))
+    assert found.certified == countable
+    assert found.unstable_count > 2 if countable else found.status == SpectrumStatus.not_certified
+    assert (max(wanted) > 2) == countable

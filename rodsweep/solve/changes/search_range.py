@@ -1,0 +1,58 @@
+"""Intervals of a path that are searched from left to right, and how far the search reaches.
+
+A place whose eigenvalues cannot be computed or proved ends the search before this place, not the whole
+search: what lies left of it is complete.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ..point import Unsolvable
+
+LAST_HALVINGS = 4
+"""Number of halvings of the interval in which a search ends early, to come closer to its end."""
+
+
+class Reach(NamedTuple):
+    """The last path variable of a search, and why the search ended there; the reason is empty at the
+    requested end."""
+
+    p: float
+    reason: str = ""
+
+
+class SearchedIntervals:
+    """Intervals of the path variable still to be searched, leftmost first.
+
+    reach: everything from the first edge to `reach.p` is searched once no interval is left.
+    """
+
+    def __init__(self, edges: list[float]):
+        self.first, self.length = edges[0], edges[-1] - edges[0]
+        self.reach = Reach(edges[-1])
+        self._left = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
+        self._unsolvable, self._halvings = edges[-1], 0
+
+    def __iter__(self) -> Iterator[tuple[float, float]]:
+        """Yields each interval once; raises Unsolvable if nothing beyond the first edge can be searched."""
+        while True:
+            if not self._left and self.reach.reason and self._halvings < LAST_HALVINGS:
+                self._halvings += 1
+                middle = (self.reach.p + self._unsolvable) / 2
+                self._left.append((self.reach.p, middle))
+                self.reach = Reach(middle, self.reach.reason)
+            if not self._left:
+                break
+            yield self._left.pop()
+        if self.reach.reason and self.reach.p <= self.first:
+            raise Unsolvable(self.reach.reason)
+
+    def divide(self, *intervals: tuple[float, float]) -> None:
+        """Adds the parts of the present interval that are still to be searched, in increasing order."""
+        self._left += intervals[::-1]
+
+    def end_within(self, interval: tuple[float, float], reason: str) -> None:
+        """Ends the search in the present interval, which cannot be searched to its end."""
+        self._left.clear()
+        self._unsolvable = interval[1]
+        self.reach = Reach(interval[0], reason)
