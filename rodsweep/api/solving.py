@@ -41,7 +41,8 @@ def solve_here(
     """
     shown = display(progress, job.points.count, job.name)
     require_solvers()
-    solver, started = job.solver(), now()
+    solver = job.solver()
+    started = now()
     if note is not None:
         solver = guarded(solver, job.layout, note)
     plan = plan_of(job, solver, Shard(), blas_kernels())
@@ -67,7 +68,8 @@ def solve_here(
 
 def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[str, np.ndarray], list[str]]:
     """(variables of the layout, shape (points, own dimensions); messages of points solved on their own)."""
-    count, layout = job.points.count, plan.layout
+    count = job.points.count
+    layout = plan.layout
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
     messages = [""] * count
     if solver.stretched is not None:
@@ -90,7 +92,8 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
 
 def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
     """Variables that need all points, for example curves."""
-    units, results = together.units(view), dict[int, Arrays]()
+    units = together.units(view)
+    results = dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
         name = units.where(wanted[0])
         with part(name), reporting_to(listener(shown, name)):
@@ -115,7 +118,8 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
                 outcome = solver.solve(done)
             yield done, outcome
         return
-    chains, solve_from = solver.chained.chains, solver.chained.solve_from
+    chains = solver.chained.chains
+    solve_from = solver.chained.solve_from
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):

@@ -82,7 +82,8 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
     if points is not None:
         tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
     with TemporaryDirectory(prefix="rodsweep-") as place:
-        config, output = Path(place, f"{task}.yaml"), Path(place, f"{task}.h5")
+        config = Path(place, f"{task}.yaml")
+        output = Path(place, f"{task}.h5")
         config.write_text(yaml_of(tree), encoding="utf-8")
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]

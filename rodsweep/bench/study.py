@@ -174,7 +174,8 @@ def tournament(
     raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, raced, strict=True):
-        least, failed = min(timed.seconds), isinstance(timed.outcome, Exception)
+        least = min(timed.seconds)
+        failed = isinstance(timed.outcome, Exception)
         empty = Measurement(entry.name, c.method, c.setting, timed.median, inf, c.group, least_seconds=least)
         failure = {"failure": f"failed ({type(timed.outcome).__name__})"}
         measurements.append(replace(empty, **(failure if failed else entry.judge(timed.outcome))))

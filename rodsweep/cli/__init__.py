@@ -45,7 +45,8 @@ def _one_line(message: str) -> str:
 
 def main() -> None:
     """Runs the command line; every error is reported as one sentence on standard error."""
-    code, message = 0, ""
+    code = 0
+    message = ""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a file's name may be any bytes
@@ -54,23 +55,29 @@ def main() -> None:
     try:
         commands.main(standalone_mode=False)
     except click.exceptions.Abort:
-        code, message = 130, "interrupted"
+        code = 130
+        message = "interrupted"
     except click.UsageError as error:
-        code, message = 2, error.format_message()
+        code = 2
+        message = error.format_message()
     except click.ClickException as error:
-        code, message = 3, error.format_message()
+        code = 3
+        message = error.format_message()
     except Refusal as error:
-        code, message = error.exit_status, str(error)
+        code = error.exit_status
+        message = str(error)
     except OSError as error:  # such as a name that is too long, or a directory without permission
         if error.filename is None and error.errno not in (errno.ENOSPC, errno.EIO):
             raise
         code = 2 if error.errno in (errno.ENAMETOOLONG, errno.ELOOP) else 3
         message = f"{error.filename or 'standard output'}: {error.strerror}"
     except MemoryError:
-        code, message = 3, "there is not enough memory"
+        code = 3
+        message = "there is not enough memory"
     except Exception:
         traceback.print_exc()
-        code, message = BUG_STATUS, "this is a bug; please report it with the lines above"
+        code = BUG_STATUS
+        message = "this is a bug; please report it with the lines above"
     if message and speaks():
         with suppress(OSError):  # standard error may also be on the full disk
             click.echo(f"rodsweep: {_one_line(message)}", err=True)

@@ -45,7 +45,8 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         "limit_cycle": limit_cycle_study,
         "sweep": lambda quick, _: sweep_study(quick, MEASURED),
     }
-    package, names = peer_package(directory), [what] if what else list(studies)
+    package = peer_package(directory)
+    names = [what] if what else list(studies)
     tables = {}
     blocks = [HEADING, where_and_when(package.versions() if package else {})]
     if package is None and (sentence := left_out(names)):

@@ -94,7 +94,8 @@ def _wall_lines(arm: ArmSection) -> list[str]:
 
 def _uncovered_lines(points: Points) -> list[str]:
     """Lines on the number of different rods, and on points without a rod, with the reasons."""
-    lines, rods = list[str](), same_rods(points)
+    lines = list[str]()
+    rods = same_rods(points)
     if rods is not None:
         there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")

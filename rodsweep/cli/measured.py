@@ -41,7 +41,8 @@ class InstantSpectra(SpectrumTask):
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import SpectrumStatus
 
-        points, modes = self.points, self.config.spectrum.modes
+        points = self.points
+        modes = self.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
         outcomes = [
             Spectrum(

@@ -82,7 +82,8 @@ class BranchConfig(Config):
         refused.
         """
         sections = given if isinstance(given, dict) else {}
-        options, parameters = sections.get("branch"), sections.get("parameters")
+        options = sections.get("branch")
+        parameters = sections.get("parameters")
         along = options.get("along") if isinstance(options, dict) else None
         if not isinstance(parameters, dict) or not isinstance(along, str) or along not in DEFAULTS:
             return given

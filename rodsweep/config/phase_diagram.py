@@ -55,8 +55,10 @@ class PhaseDiagramOptions(Strict):
         given = [name for name in THIRD_PARAMETERS if getattr(self.bautin_along, name) is not None]
         if len(given) != 1:
             raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
-        name, axis = given[0], getattr(self.bautin_along, given[0])
-        allowed, values = PARAMETERS[name].allowed, axis.array()
+        name = given[0]
+        axis = getattr(self.bautin_along, given[0])
+        allowed = PARAMETERS[name].allowed
+        values = axis.array()
         if axis.size < 2 or not (values < inf).all() or not all(map(allowed.contains, values)):
             raise ValueError(
                 f"bautin_along.{name} needs at least two values, all {allowed.phrase} and none of them inf"
@@ -106,7 +108,9 @@ class PhaseDiagramConfig(LinearConfig):
     @property
     def meaning(self) -> dict[str, Any]:
         """Adds the values along every row and, if curves are drawn, which axes are logarithmic."""
-        meant, axes, line = super().meaning, self.parameters.axes, self.plane[0]
+        meant = super().meaning
+        axes = self.parameters.axes
+        line = self.plane[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
         meant |= {"parameters": meant["parameters"] | asked}
         # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
@@ -160,7 +164,8 @@ class PhaseDiagramConfig(LinearConfig):
                 f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
                 f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters beside the arm"
             )
-        long, names = self.plane, words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
+        long = self.plane
+        names = words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
         if len(long) != 2:
             raise ValueError(
                 f"parameters has {len(long)} {'axis' if len(long) == 1 else 'axes'} with more than one value "

@@ -195,7 +195,9 @@ def _range(value: dict) -> Axis:
     for key in known[:3]:
         if key not in value:
             raise ValueError(f"a range needs start, stop and num, and {key} is missing")
-    start, stop, num = as_number(value["start"]), as_number(value["stop"]), value["num"]
+    start = as_number(value["start"])
+    stop = as_number(value["stop"])
+    num = value["num"]
     spacing = value.get("spacing", "linear")
     if spacing not in ("linear", "log"):
         raise ValueError(f"spacing = {short(spacing)} is neither linear nor log")

@@ -144,7 +144,8 @@ class RodOnMesh(ABC):
 
         Where it is not, the equations are ill-posed: the shortest waves on the mesh grow fastest.
         """
-        S, c = self.stresses(x), self.nodal
+        S = self.stresses(x)
+        c = self.nodal
         sections = np.stack([c.rest[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
         for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
             before, behind = np.column_stack([numbers[:, :3], sides])

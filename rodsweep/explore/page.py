@@ -45,7 +45,8 @@ class Page:
     ):
         self.document = document
         self.solvers = solvers
-        self.state, self.stored = state, stored
+        self.state = state
+        self.stored = stored
         self.session = f"page-{id(self)}"
         self.is_open = True
         self.solving: set[str] = set()

@@ -37,7 +37,10 @@ class StoredResults:
     """
 
     def __init__(self, path: Path, data: Dataset, state: PageState, diagram: Found | None):
-        self.path, self.data, self.state, self.diagram = path, data, state, diagram
+        self.path = path
+        self.data = data
+        self.state = state
+        self.diagram = diagram
         self.dims = data["status"].dims
         """Dimensions of the points; none of a single point."""
         self.has_cycles = "tip_y_max" in data and data["tip_y_max"].dims == self.dims
@@ -96,7 +99,8 @@ class StoredResults:
             return None
         point = self._at(numbers[:1]).isel({POINT: 0})
         status = _word(point["status"])
-        F, k1 = float(point["F"]), float(point["k1"])
+        F = float(point["F"])
+        k1 = float(point["k1"])
         is_drawn = np.isfinite(point["shape_x"].values).all()
         if status == "missing" or (not is_drawn and not (state.law == "linear" and "taper" not in point)):
             return None
@@ -114,7 +118,8 @@ class StoredResults:
         if len(numbers) < 2:
             return None
         line = self._at(numbers)
-        y, status = line["tip_y_max"].values, line["status"]
+        y = line["tip_y_max"].values
+        status = line["status"]
         at_rest = status.values == code_of(status, "straight")
         y = np.where(at_rest, 0.0, y)
         known = np.isfinite(y)

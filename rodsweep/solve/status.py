@@ -17,5 +17,6 @@ class PointStatus(IntEnum):
     def __new__(cls, value: int, sentence: str, succeeded: bool = False) -> Self:
         member = int.__new__(cls, value)
         member._value_ = value
-        member.sentence, member.succeeded = sentence, succeeded
+        member.sentence = sentence
+        member.succeeded = succeeded
         return member

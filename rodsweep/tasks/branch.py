@@ -28,7 +28,8 @@ class BranchTask(NonlinearTask):
 
     def headline(self) -> str:
         options = self.config.branch
-        along, short = options.along, before_crushed(self.config) * (options.along == "F")
+        along = options.along
+        short = before_crushed(self.config) * (options.along == "F")
         ends = f"from {options.start:g} to {options.stop:g}"
         return each_point(self.points, f"followed in {along} {ends}{short}")
 
@@ -64,7 +65,8 @@ class BranchTask(NonlinearTask):
         from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        options, workspace = self.config.branch, NewtonWorkspace()
+        options = self.config.branch
+        workspace = NewtonWorkspace()
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
         return Solver(
             statuses=tuple(BranchStatus),

@@ -86,7 +86,8 @@ class LimitCycleTask(Task):
         return hopf_variables(self.points.names, lines, in_order(lines, HopfLine.search))
 
     def headline(self) -> str:
-        options, chains = self.config.limit_cycle, self.chains
+        options = self.config.limit_cycle
+        chains = self.chains
         start = f"the leading mode with tip deflection {options.amplitude:g} L"
         if options.start == "hopf":
             start = "the Hopf point below its force"
@@ -114,7 +115,8 @@ class LimitCycleTask(Task):
 
     def parts(self) -> list[Part]:
         options = self.config.limit_cycle
-        gamma1, marched = np.unique(self.points.of_rods["gamma1"])[:5], options.method == "integration"
+        gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
+        marched = options.method == "integration"
         return [
             *rod_parts(self.points.of_rods),
             *material_parts(self.config, self.points.of_rods),
@@ -156,7 +158,8 @@ class LimitCycleTask(Task):
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         request = self.request()
-        along, workspace = self.config.along if self.chains else None, NewtonWorkspace()
+        along = self.config.along if self.chains else None
+        workspace = NewtonWorkspace()
 
         def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
             return solve_cycle(self.points.rod(index), request, start, along, workspace)

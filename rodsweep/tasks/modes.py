@@ -95,7 +95,8 @@ def record(result: "Modes", growth: bool) -> dict[str, Any]:
     values |= recorded(MODE_NUMBERS, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     for name, field in zip(fields, (*vectors.right, *vectors.deformation, *vectors.left), strict=True):
-        values[f"{name}_real"], values[f"{name}_imag"] = field.real, field.imag
+        values[f"{name}_real"] = field.real
+        values[f"{name}_imag"] = field.imag
     if growth:
         values |= recorded(GROWTH, result.growth)
     return values

@@ -165,10 +165,12 @@ def arms_line(
     shapes = _shapes(config, columns) or ["a uniform arm"]
     if len(shapes) == 1 and shapes[0].startswith(("a profile", "a smooth profile")):
         shapes = ["an arm", *shapes]
-    arms, mesh = f"{' with '.join(shapes)} of {_law(config)}", first_mesh()
+    arms = f"{' with '.join(shapes)} of {_law(config)}"
+    mesh = first_mesh()
     if mesh is None:
         return arms
-    count, several = counted(mesh.elements, "element"), any(len(np.unique(c)) > 1 for c in columns.values())
+    count = counted(mesh.elements, "element")
+    several = any(len(np.unique(c)) > 1 for c in columns.values())
     return f"{arms}; at first {count} of order {mesh.order}{', for the arm that needs most' * several}"
 
 
@@ -200,12 +202,14 @@ def _law(config: Config) -> str:
 
 def _span(values: np.ndarray) -> str:
     """The range of several numbers in words."""
-    low, high = float(values.min()), float(values.max())
+    low = float(values.min())
+    high = float(values.max())
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def _deformation(parameter: Parameter, values: np.ndarray) -> Part:
-    name, what = parameter.name, parameter.meaning.removesuffix(" stiffness")
+    name = parameter.name
+    what = parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)
     if rigid.all():
         return what, False, f"{name} = inf: the rod is {parameter.rigid}"

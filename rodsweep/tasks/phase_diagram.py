@@ -85,7 +85,8 @@ class PhaseDiagramTask(ProvedTask):
         return [*linear[:-1], nonlinear, ("gravity, inertia", False, "not part of the model")]
 
     def cost(self) -> Estimate:
-        options, rows = self.config.phase_diagram, self.points.count
+        options = self.config.phase_diagram
+        rows = self.points.count
         lines = estimate_lines(rows, options.certify)
         if not self.config.standard:
             lines = estimate_diagram_of_arms(rows, options.curves, options.criticality)
@@ -100,7 +101,8 @@ class PhaseDiagramTask(ProvedTask):
         from ..solve.changes.thresholds import ThresholdStatus, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        options, request = self.config.phase_diagram, self.row_request()
+        options = self.config.phase_diagram
+        request = self.row_request()
         if options.cycles:
             return self._with_cycles(request)
         return Solver(

@@ -81,7 +81,8 @@ class Solver:
         """The solver with `around` wrapped about the solve of every point, and with `together` for
         stretches.
         """
-        chained, stretched = self.chained, self.stretched
+        chained = self.chained
+        stretched = self.stretched
         if chained is not None:
             step = chained.solve_from
             chained = replace(

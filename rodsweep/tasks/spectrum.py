@@ -70,7 +70,8 @@ class SpectrumTask(ProvedTask):
         if gamma1 is None:
             return ()
         along, shape, columns = self._longitudinal_points()
-        modes, standard = self.config.spectrum.modes, self.config.standard
+        modes = self.config.spectrum.modes
+        standard = self.config.standard
         variables = longitudinal(gamma1, *along, in_closed_form=standard)
         if standard:
             rates = [longitudinal_rates(float(k1), gamma1, modes) for k1 in columns["k1"]]
@@ -102,7 +103,8 @@ class SpectrumTask(ProvedTask):
 
     def asked(self) -> list[Part]:
         options = self.config.spectrum
-        vectors, longitudinal = "spectrum.vectors adds them", "they decouple; spectrum.longitudinal adds them"
+        vectors = "spectrum.vectors adds them"
+        longitudinal = "they decouple; spectrum.longitudinal adds them"
         if options.vectors:
             vectors = f"on {options.nodes} nodes"
         if options.longitudinal:
@@ -191,5 +193,6 @@ def record(result: "Spectrum") -> dict[str, Any]:
     values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
-            values[f"{field}_real"], values[f"{field}_imag"] = vector.real, vector.imag
+            values[f"{field}_real"] = vector.real
+            values[f"{field}_imag"] = vector.imag
     return values

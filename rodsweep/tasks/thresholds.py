@@ -80,7 +80,8 @@ def search_record(result: "Thresholds | Criticality", most: int, line: str, at: 
     """Variables of a search along `line`: at most `most` crossings; `at`: name of the variable with their
     places.
     """
-    found, variables = result.transitions, crossing_variables(line, at)
+    found = result.transitions
+    variables = crossing_variables(line, at)
     rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]
     return listed(variables, rows, most) | {
         "crossing_count": len(found.crossings),

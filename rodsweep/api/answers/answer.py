@@ -52,7 +52,9 @@ class Answer:
     """
 
     def __init__(self, rod: str, whole: xr.Dataset, message: str):
-        self.rod, self.whole, self.message = rod, whole, message
+        self.rod = rod
+        self.whole = whole
+        self.message = message
         self.config: dict[str, Any] = json.loads(whole.attrs["config_resolved"])
         """The complete config of this answer, defaults included."""
         points = ("point",) if "point" in whole.dims else layout_of(self.config).parameters

@@ -46,12 +46,15 @@ from .tracking import (
     work_precision,
 )
 
-ROUNDS, QUICK_ROUNDS = 9, 1
-FOLLOWING, WAITING = "following", "waiting"
+ROUNDS = 9
+QUICK_ROUNDS = 1
+FOLLOWING = "following"
+WAITING = "waiting"
 DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
 NEAR_HOPF = 27.43
 """Force 0.003 above the Hopf point, where waiting takes very long."""
-SOLVE, WAITS = "solve_cycle", "waiting, "
+SOLVE = "solve_cycle"
+WAITS = "waiting, "
 PERIODS_OF_WAIT = 15
 """Length, in periods, of a run that waits for a cycle."""
 
@@ -112,7 +115,8 @@ def target_table(measurements: Sequence[Measurement]) -> str:
     at = {}
     for (method,), own in grouped(measurements, "method").items():
         errors = [m.error for m in own]
-        median, least = [m.seconds for m in own], [m.least_seconds for m in own]
+        median = [m.seconds for m in own]
+        least = [m.least_seconds for m in own]
         at[method] = time_at(TARGET, errors, median), time_at(TARGET, errors, least)
     default, by_least = at[DEFAULT.name]
     rows = [
@@ -239,7 +243,8 @@ def _near_hopf(settled: Sequence[Contender]) -> list[Wait]:
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     waits = [Wait(NEAR_HOPF, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
     for contender in settled:
-        run, times = partial(contender.run, leg), count / FOLLOWED_PERIODS
+        run = partial(contender.run, leg)
+        times = count / FOLLOWED_PERIODS
         way = WAITS + contender.method
         waits.append(Wait(NEAR_HOPF, way, contender.setting, count, SETTLED_WITHIN, run, times))
     return waits

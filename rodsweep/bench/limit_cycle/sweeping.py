@@ -43,8 +43,10 @@ BEFORE = 6
 """Number of points solved before the timed points, so that the mesh is already chosen."""
 STRETCH = 22
 """Number of timed points: one calibration of the mesh errors, and all points served by it."""
-ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
-SWEEP, COLD = "sweep over ", "cold, "
+ACCURACY = 1e-7
+REFERENCE_ACCURACY = 1e-11
+SWEEP = "sweep over "
+COLD = "cold, "
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
 """Starts without a neighbour, by their values of the option `start`."""
 NOTHING = dict.fromkeys(

@@ -142,10 +142,13 @@ class Returns:
 
 def returns_of(beam: Beam, run: Trajectory) -> Returns:
     """All returns of a run."""
-    row, y = angle_weights(beam), beam.tip(run.states)[1]
+    row = angle_weights(beam)
+    y = beam.tip(run.states)[1]
     angle = run.states @ row
     rising = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
-    times, states, heights = [], [], []
+    times = []
+    states = []
+    heights = []
     for k in rising:
         again = _again(beam, run.states[k], OVERSHOOT * (run.times[k + 1] - run.times[k]))
         when = float(_spline(again.times, again.states @ row).roots(extrapolate=False)[0])

@@ -23,7 +23,8 @@ FARTHEST_ROOT = 20
 
 def determinant(rod: Rod) -> Callable[[Any], Any]:
     """D(w) of `rodsweep.determinant.value` for numbers of mpmath; the parameters are exact."""
-    F, gamma3 = mp.mpf(rod.F), mp.mpf(rod.gamma3)
+    F = mp.mpf(rod.F)
+    gamma3 = mp.mpf(rod.gamma3)
     c1, c2 = (0 if np.isinf(k) else 1 / mp.mpf(k) for k in (rod.k1, rod.k2))
     nu = 1 - F * c1
     g = nu + F * c2
@@ -34,7 +35,8 @@ def determinant(rod: Rod) -> Callable[[Any], Any]:
     def D(w: Any) -> Any:
         P = mp.sqrt(w * (g * nu + c2 * gamma3 * w))
         slope = (g * nu + 2 * c2 * gamma3 * w) / (2 * P)
-        middle, drag = (c2 + gamma3) * w - F * g, c2 + gamma3
+        middle = (c2 + gamma3) * w - F * g
+        drag = c2 + gamma3
         return 1 + w / 2 * (term(middle + 2 * P, drag + 2 * slope) + term(middle - 2 * P, drag - 2 * slope))
 
     return D

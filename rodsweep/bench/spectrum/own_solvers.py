@@ -23,7 +23,8 @@ ACCURACY = 1e-12
 """Accuracy requested from rodsweep; its error does not depend on the request."""
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Sizes of the pencil."""
-PLAIN, PROVED = "rodsweep, certificate off", "rodsweep, certificate on"
+PLAIN = "rodsweep, certificate off"
+PROVED = "rodsweep, certificate on"
 KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
 THIS_TOOL, PENCIL = "this tool", "the same pencil"
 """Groups of methods in the figure."""

@@ -48,7 +48,8 @@ HARD_RODS = {
 }
 TARGETS = (1e-12, 1e-10, 1e-6)
 """Errors at which the methods are compared, smallest first."""
-ROUNDS, QUICK_ROUNDS = 25, 2
+ROUNDS = 25
+QUICK_ROUNDS = 2
 QUICK_STRIDE = 3
 """Stride of the sizes on the hard rods in a quick run."""
 

@@ -18,7 +18,8 @@ parameters:
   gamma3: {{start: 1.0e-4, stop: 1.0e-2, num: {3}, spacing: log}}
 spectrum: {{modes: 4, follow: {4}}}
 """
-FOLLOWED, ALONE = "followed", "alone"
+FOLLOWED = "followed"
+ALONE = "alone"
 
 
 @dataclass(frozen=True, slots=True)

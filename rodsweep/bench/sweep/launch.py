@@ -24,7 +24,8 @@ from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
 """Names of the result file and of the folder of notes of ranks in the directory of a benchmarked sweep."""
-FIRST_RANK, OTHER_RANKS = "first", "other"
+FIRST_RANK = "first"
+OTHER_RANKS = "other"
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; instant random outcomes; instant outcomes and a kill at the last
 point."""
@@ -77,7 +78,9 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
 
 def uneven_forces(count: int) -> np.ndarray:
     """Forces far below the Hopf point, just below it, just above it, and far above, shape (count,)."""
-    below, close, above = count // 5, count // 6, count // 4
+    below = count // 5
+    close = count // 6
+    above = count // 4
     forces = np.concatenate(
         [
             np.linspace(5, 27, below),
@@ -119,7 +122,8 @@ def launcher(ranks: int) -> list[str]:
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
     """Runs a case on several ranks; EnvironmentIncomplete if the command fails without having been killed."""
-    others, began = _seconds_of_others(), time.monotonic()
+    others = _seconds_of_others()
+    began = time.monotonic()
     words = [*launcher(ranks), *command]
     started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
     said = [_inside(process, case.kind) for process in started]

@@ -30,9 +30,13 @@ SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Numbers of points of the sweeps with the instant solver."""
 ONCE_FROM = 10**6
 """Number of points from which an instant sweep is run only once, because its start hardly counts."""
-SPECTRA, QUICK_SPECTRA = 200_000, 6_000
-CYCLES, QUICK_CYCLES = 200, 10
-ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
+SPECTRA = 200_000
+QUICK_SPECTRA = 6_000
+CYCLES = 200
+QUICK_CYCLES = 10
+ROUNDS = 3
+CYCLE_ROUNDS = 2
+QUICK_ROUNDS = 1
 
 APART = "spectra, two commands"
 """Case of two commands, each with half of the spectra on one rank: the upper bound for two ranks."""
@@ -56,7 +60,8 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
 
     command: words that start the measured command, see `rodsweep.bench.sweep.launch`.
     """
-    run, ranks = partial(run_case, command), (1, 2) if launcher(2) else (1,)
+    run = partial(run_case, command)
+    ranks = (1, 2) if launcher(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as place:
         solved = solved_sweeps(Path(place), run, quick, ranks)
         followed = followed_sweeps(Path(place), run, quick)
@@ -112,7 +117,8 @@ def interleaved(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> 
 
 def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
     """Medians over all runs of one case on some ranks. No error applies."""
-    seconds, processes = middle(run.seconds for run in runs), ranks * len(case.directories)
+    seconds = middle(run.seconds for run in runs)
+    processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.memory for run in runs), strict=True)]
     extra = {
         "ranks": float(ranks),
@@ -181,7 +187,9 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
         if case == KILLED:
             continue
         for less, more in pairwise(sizes):
-            few, many, start = less.extra["points"], more.extra["points"], totals(less)
+            few = less.extra["points"]
+            many = more.extra["points"]
+            start = totals(less)
             row: dict[str, object] = {"case": case, "method": method, "less": few, "more": many}
             row |= {name: (end - start[name]) / (many - few) for name, end in totals(more).items()}
             rows.append(row | {"power": growth_power(sizes[0], less, more)})

@@ -15,7 +15,8 @@ from ..study import Contender, Measurement, Study, contest, grouped, middle, plu
 from .cases import CASES, HOPF, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
 
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
-ROUNDS, QUICK_ROUNDS = 5, 1
+ROUNDS = 5
+QUICK_ROUNDS = 1
 MOST_DIGITS = 16
 F_MAX = 200.0
 RODSWEEP = "rodsweep"

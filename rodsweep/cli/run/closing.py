@@ -27,7 +27,8 @@ class RunEnd:
 
     def times(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
-        sentences, ranks = [], counted(self.ranks, "rank")
+        sentences = []
+        ranks = counted(self.ranks, "rank")
         if self.asked:
             points = self.asked - self.left
             each = self.seconds * self.ranks / max(points, 1)

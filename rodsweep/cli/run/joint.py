@@ -49,8 +49,11 @@ class JointWork:
         stop: StopRequest,
     ):
         """note: called with an unforeseen exception; the unit then contributes no curve."""
-        self.team, self.together, self.output = team, together, output
-        self.note, self.stop = note, stop
+        self.team = team
+        self.together = together
+        self.output = output
+        self.note = note
+        self.stop = stop
         self.kept = UnitResults(journal_directory(output), fingerprint)
         self.results: dict[int, Arrays] = {}
         """Results of all finished units, on the first rank only."""

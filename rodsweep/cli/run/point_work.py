@@ -52,7 +52,8 @@ class PointWork:
         if self.solver.chained is None:
             units = self.shard.part(missing, self.job.points.count)
             return units, total(units)
-        lacks, chains = IndexSet(missing), self.solver.chained.chains
+        lacks = IndexSet(missing)
+        chains = self.solver.chained.chains
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
@@ -62,7 +63,8 @@ class PointWork:
     ) -> Contribution:
         """Solves the units of this rank and writes the results into the rank's journal."""
         failures: list[str] = []
-        solver, plan = self.solver, self.plan
+        solver = self.solver
+        plan = self.plan
 
         def keep(index: Indices, result: Any) -> None:
             if isinstance(result, StretchResult):

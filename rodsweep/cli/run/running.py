@@ -56,8 +56,12 @@ class _Run:
     def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
         from ...solve.backend.blas_kernel import blas
 
-        self.team, self.job, self.output, self.stop = team, job, output, stop
-        self.options, self.shard = options, options.shard
+        self.team = team
+        self.job = job
+        self.output = output
+        self.stop = stop
+        self.options = options
+        self.shard = options.shard
         self.began, self.started, self.seconds = time.monotonic(), provenance.now(), 0.0
         self.log = Log(output, team.rank, self._where)
         self.solver = guarded(job.solver(), job.layout, self._note)
@@ -91,7 +95,8 @@ class _Run:
         missing = self.team.on_first(self._open)
         units, count = self.work.units(missing)
         if self.team.first:
-            points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
+            points = self.job.points.count
+            shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - total(missing)} kept" if points > total(missing) else ""
             if self.joint and self._lacks_curves(total(missing) - count):
                 kept += ", then curves through all"

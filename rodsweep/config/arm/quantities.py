@@ -113,7 +113,8 @@ def typed_unit(name: str, axis: Axis) -> str:
 
 def given_text(quantities: Mapping[str, Axis]) -> str:
     """Quantities of an arm in words, in the typed units, with a remark on quantities given without a unit."""
-    words, bare = [], []
+    words = []
+    bare = []
     for name, axis in quantities.items():
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":

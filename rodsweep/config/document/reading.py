@@ -21,7 +21,8 @@ from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
     """(config, its YAML text with the overrides listed); raises InputError for any error in the file."""
-    text, where = read_text(path), named(path)
+    text = read_text(path)
+    where = named(path)
     tree = parse(text, where)
     if not isinstance(tree, dict):
         problem = "is empty" if tree is None else f"is {short(tree)}, not a mapping of keys to values"
@@ -101,7 +102,8 @@ def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> d
 
 def yaml_of(tree: dict[str, Any]) -> str:
     """Text of a config file with a given tree."""
-    text, yaml = StringIO(), YAML()
+    text = StringIO()
+    yaml = YAML()
     yaml.default_flow_style = None  # lists of numbers on one line
     yaml.dump(tree, text)
     return text.getvalue()
@@ -147,7 +149,8 @@ def _override(tree: dict, override: str) -> None:
     for i, name in enumerate(path[:-1]):
         node = node.setdefault(name, {})
         if not isinstance(node, dict):
-            parent, rest = dotted(path[: i + 1]), dotted(path[i + 1 :])
+            parent = dotted(path[: i + 1])
+            rest = dotted(path[i + 1 :])
             raise InputError(f"{where}: {parent} is {short(node)}, which has no key {rest}")
     node[path[-1]] = parse(value, where)
 

@@ -29,7 +29,8 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     """A pydantic error as a sentence with the key, the value, and the allowed values."""
     location = tuple(str(part) for part in problem["loc"])
     key = dotted(location)
-    kind, value = problem["type"], problem["input"]
+    kind = problem["type"]
+    value = problem["input"]
     if kind == "extra_forbidden":
         fields = _section(config, location[:-1]).model_fields
         known = [

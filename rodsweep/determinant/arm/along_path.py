@@ -32,7 +32,8 @@ class ArmAlongPath:
     """
 
     def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
-        self.path, self.family = path, family
+        self.path = path
+        self.family = family
 
     def determinant(self, p: float) -> ArmDeterminant:
         """D of the arm at p."""

@@ -52,19 +52,26 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
     """The two regions of a trial (F, f, h): (t - alpha) nu bounded by the clamp, and by the drag."""
     F, f, h = trial
     count = len(u)
-    log_t, integral = np.empty(count), np.zeros(count)
+    log_t = np.empty(count)
+    integral = np.zeros(count)
     for i in range(count):
         nu, c2, c3, gamma2, gamma3, g = local[:, i]
         log_t[i] = math.log(g / (nu + f * abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)))
         if i > 0:
             integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    ahead, behind = np.interp(u + h, u, log_t), np.interp(u - h, u, log_t)
+    ahead = np.interp(u + h, u, log_t)
+    behind = np.interp(u - h, u, log_t)
     means = np.interp(u + h, u, integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
     means -= np.interp(u - h, u, integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
-    split, whole, bend, share, before = 0.0, 0.0, 0.0, 0.0, 0.0
+    split = 0.0
+    whole = 0.0
+    bend = 0.0
+    share = 0.0
+    before = 0.0
     for i in range(count):
         nu, c2, c3, gamma2, gamma3, g = local[:, i]
-        alpha, t = math.exp(means[i] / (2 * h)), math.exp(log_t[i])
+        alpha = math.exp(means[i] / (2 * h))
+        t = math.exp(log_t[i])
         A2 = ((ahead[i] - behind[i]) / (2 * h)) ** 2 / (gamma2 * c2)
         B2 = F * F * alpha * c3 / gamma2
         split = max(split, _squared_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))

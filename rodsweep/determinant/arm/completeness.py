@@ -109,7 +109,8 @@ def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 @compiled
 def _turn_of_hull(points: Array, a: float, c: float) -> float:
     """An upper bound of sum_j arg(x_j - v) over the hull."""
-    b, total = 1 - c, 0.0
+    b = 1 - c
+    total = 0.0
     for x in points:
         if not x > a * a / (4 * b):
             return math.inf
@@ -131,7 +132,8 @@ def remainder(
     level: (W, propagators) for |w| up to the last point.
     """
     k = len(points)
-    R, blur = 0.0, 0.0
+    R = 0.0
+    blur = 0.0
     for j in range(k):
         weight = 1.0
         for i in range(k):
@@ -143,7 +145,8 @@ def remainder(
         blur += abs(weight * slope) * ROUNDING_OF_SLOPE * value.noise / abs(value.D)
     for n in range(len(known)):
         w = known[n]
-        phi, rate = 1 + 0j, 0.0
+        phi = 1 + 0j
+        rate = 0.0
         for x in points:
             phi /= x - w
             rate += 1 / abs(x - w)
@@ -166,7 +169,8 @@ def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n
-        size, turn = 1.0, 0.0
+        size = 1.0
+        turn = 0.0
         for x in points:
             size /= math.hypot(x - start, height)
             turn += math.atan2(height, x - stop)

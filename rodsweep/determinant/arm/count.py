@@ -217,13 +217,15 @@ def _node(
     value = chain_value(w, level[0], level[1])
     if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
         return PhaseNode(w, value.D, 0j, 0.0, 0.0)
-    direction, L = value.D / abs(value.D), value.D_w / value.D
+    direction = value.D / abs(value.D)
+    L = value.D_w / value.D
     for n in range(len(known)):
         away = w - known[n]
         direction *= away.conjugate() / abs(away)
         L -= 1 / away
     distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
-    reach, radius = 0.0, 0.0
+    reach = 0.0
+    radius = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
         reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
@@ -249,7 +251,9 @@ def _reach_inside(
     unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))
     room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
-    best, best_radius, radius = 0.0, 0.0, max(trial[1], SMALLEST_RADIUS)
+    best = 0.0
+    best_radius = 0.0
+    radius = max(trial[1], SMALLEST_RADIUS)
     while radius >= SMALLEST_RADIUS:
         rho = radius * unit
         size = -math.inf  # log of the largest |f| of the points of the circle
@@ -262,7 +266,8 @@ def _reach_inside(
         reach = rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q < math.inf else 0.0
         if reach <= best:
             break
-        best, best_radius = reach, radius
+        best = reach
+        best_radius = radius
         radius /= 2
     return best, best_radius
 

@@ -165,13 +165,18 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
 
     local: the `LocalCoefficients` at points, (6, points). weights: quadrature weights, (points,).
     """
-    number, rate = 0.0, 0.0
+    number = 0.0
+    rate = 0.0
     for i in range(len(weights)):
         nu, c2, c3, gamma2, gamma3, g = local[:, i]
-        v, T, X = w * gamma2 * c3, c2 / c3 + gamma3 / gamma2, c2 / c3 * gamma3 / gamma2
+        v = w * gamma2 * c3
+        T = c2 / c3 + gamma3 / gamma2
+        X = c2 / c3 * gamma3 / gamma2
         P = cmath.sqrt(v * (g * nu + X * v))
-        M, size = T * v - F * c3 * g, abs(P)
-        first, second = math.sqrt(abs(M + 2 * P)), math.sqrt(abs(M - 2 * P))
+        M = T * v - F * c3 * g
+        size = abs(P)
+        first = math.sqrt(abs(M + 2 * P))
+        second = math.sqrt(abs(M - 2 * P))
         towards = P.conjugate() / size if size > 0 else 1 + 0j
         # Where both squares are close D depends on P^2, which has no branch point, and not on P.
         turn = (g * nu + 2 * X * v) * towards / max(size, 1.0, first, second)

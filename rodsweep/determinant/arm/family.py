@@ -91,7 +91,11 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
     t = (p - (family.low + family.high) / 2) / half
     values = polynomials.reshape(-1)
     slopes = changes.reshape(-1)
-    here, before, rate, rate_before = 1.0, t, 0.0, -1.0  # T_0 and T_(-1), as T_(-1) = T_1
+    # T_0 and T_(-1), as T_(-1) = T_1
+    here = 1.0
+    before = t
+    rate = 0.0
+    rate_before = -1.0
     values[:] = 0.0
     slopes[:] = 0.0
     for k in range(len(family.coefficients)):
@@ -100,7 +104,10 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
             values[i] += here * own[i]
             slopes[i] += rate / half * own[i]
         if k == 0:
-            here, before, rate, rate_before = t, 1.0, 1.0, 0.0
+            here = t
+            before = 1.0
+            rate = 1.0
+            rate_before = 0.0
         else:
             rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
             here, before = 2 * t * here - before, here
@@ -110,7 +117,8 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
 def value_in(family: ArmFamily, w: complex, p: float) -> Value:
     """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
     shape = family.coefficients.shape[1:]
-    polynomials, changes = np.empty(shape), np.empty(shape)
+    polynomials = np.empty(shape)
+    changes = np.empty(shape)
     propagators_at(family, p, polynomials, changes)
     return chain_value(w, family.W, polynomials)
 
@@ -123,9 +131,11 @@ def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex,
     The iteration ends where rounding keeps the steps from getting smaller. What is real stays real.
     """
     shape = family.coefficients.shape[1:]
-    polynomials, changes = np.empty(shape), np.empty(shape)
+    polynomials = np.empty(shape)
+    changes = np.empty(shape)
     propagators_at(family, p, polynomials, changes)
-    w, last = guess, math.inf
+    w = guess
+    last = math.inf
     for _ in range(MAX_REFINEMENTS):
         value = chain_value(w, family.W, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j

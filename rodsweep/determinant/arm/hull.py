@@ -60,7 +60,8 @@ class Hull(NamedTuple):
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """(max Re w, max |Im w|) of the eigenvalues with Re w >= -depth, depth >= 0."""
-        a, b = self.a, 1 - self.c
+        a = self.a
+        b = 1 - self.c
         if not isfinite(a):
             return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
@@ -80,7 +81,8 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     The distance is at most 0 for w inside. <normal, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
-    best, normal = -inf, 1 + 0j
+    best = -inf
+    normal = 1 + 0j
     for k in range(DIRECTIONS):
         # Close to the imaginary axis the support function grows without bound.
         T = (k / (DIRECTIONS - k)) ** 2
@@ -90,7 +92,8 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
         support = a * a * (1 + T) * (1 + T) / (4 * (b - c * T))
         distance = (w.real + T * w.imag - support) / size
         if distance > best:
-            best, normal = distance, complex(1 / size, T / size)
+            best = distance
+            normal = complex(1 / size, T / size)
     return best, normal
 
 
@@ -157,7 +160,8 @@ def _arms(rods: Sequence[Rod]) -> Arms:
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
     F = np.array([rod.F for rod in rods])[:, None, None]
-    lengths, local = lengths * (1 - 2 * INSIDE), Rod.local_of_all(rods, u)
+    lengths = lengths * (1 - 2 * INSIDE)
+    local = Rod.local_of_all(rods, u)
     averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
     return Arms(F, lengths, local, build.continuous, averaged)
 
@@ -235,7 +239,8 @@ def _norm(arms: Arms, factor: float) -> float:
     B = F * np.sqrt(alpha * c3 / gamma2)
     e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
     C = np.where(e == 0, 0.0, e / np.sqrt(np.where(e == 0, 1.0, gamma3 * alpha * c2)))
-    total, product = A**2 + B**2 + C**2, B * C
+    total = A**2 + B**2 + C**2
+    product = B * C
     largest = (total + np.sqrt(np.maximum(total**2 - 4 * product**2, 0.0))) / 2
     return sqrt(float(largest.max()))
 
@@ -258,7 +263,8 @@ def _by_clamp(arms: Arms) -> Iterator[Hull]:
     along = c3 @ _chebyshev()[1].T * lengths / 2  # integrals of c3 from the start of each piece
     below = np.cumsum(along[..., -1:], axis=1) - along[..., -1:]
     weights = (_chebyshev()[1][-1] * lengths / 2 * (below + along)).ravel()
-    nu, c2 = nu.ravel(), c2.ravel()
+    nu = nu.ravel()
+    c2 = c2.ravel()
     pull = (arms.F * arms.local.c2).ravel()
     alphas = _constants(g / arms.local.nu)[:, None] if c2.all() else np.ones((1, 1))
     with np.errstate(invalid="ignore"):

@@ -30,7 +30,9 @@ BY_W, BY_P = range(2)
 @compiled_for_vectors
 def _propagator(polynomial: Array, z: complex, value: Array, slope: Array) -> None:
     """Phi and dPhi/dz at z, both (2, 16), of a polynomial, (terms, 16)."""
-    x, y, terms = z.real, z.imag, polynomial.shape[0]
+    x = z.real
+    y = z.imag
+    terms = polynomial.shape[0]
     for k in range(16):
         value[0, k] = polynomial[terms - 1, k]
         value[1, k] = slope[0, k] = slope[1, k] = 0.0
@@ -47,7 +49,9 @@ def _propagator(polynomial: Array, z: complex, value: Array, slope: Array) -> No
 @compiled_for_vectors
 def _propagator_alone(polynomial: Array, z: complex, value: Array) -> None:
     """Phi at z, (2, 16), of a polynomial, (terms, 16)."""
-    x, y, terms = z.real, z.imag, polynomial.shape[0]
+    x = z.real
+    y = z.imag
+    terms = polynomial.shape[0]
     for k in range(16):
         value[0, k] = polynomial[terms - 1, k]
         value[1, k] = 0.0
@@ -62,7 +66,8 @@ def _propagator_alone(polynomial: Array, z: complex, value: Array) -> None:
 def _add_product(Phi: Array, x: Array, out: Array) -> None:
     """Adds Phi x to `out`; Phi: (2, 16), columns: (2, 4)."""
     for j in range(4):
-        a, b = x[0, j], x[1, j]
+        a = x[0, j]
+        b = x[1, j]
         for i in range(4):
             out[0, i] += Phi[0, 4 * j + i] * a - Phi[1, 4 * j + i] * b
             out[1, i] += Phi[0, 4 * j + i] * b + Phi[1, 4 * j + i] * a
@@ -71,7 +76,8 @@ def _add_product(Phi: Array, x: Array, out: Array) -> None:
 @compiled_for_vectors
 def _inner(a: Array, b: Array) -> tuple[float, float]:
     """Real and imaginary part of the inner product of two columns, (2, 4)."""
-    real, imag = 0.0, 0.0
+    real = 0.0
+    imag = 0.0
     for i in range(4):
         real += a[0, i] * b[0, i] + a[1, i] * b[1, i]
         imag += a[0, i] * b[1, i] - a[1, i] * b[0, i]
@@ -104,7 +110,8 @@ def _orthonormal(Q: Array, T: Array, traces: Array) -> float:
     # X -> X R^-1 changes the derivatives alike.
     first = math.sqrt(_inner(Q[0], Q[0])[0])
     x, y = _inner(Q[0], Q[1])
-    x, y = x / first**2, y / first**2
+    x = x / first**2
+    y = y / first**2
     _subtract(x, y, Q[0], Q[1])
     second = math.sqrt(_inner(Q[1], Q[1])[0])
     _scale(1 / first, Q[0])
@@ -141,10 +148,17 @@ def _swept(
     z: complex, W: float, polynomials: Array, changes: Array
 ) -> tuple[complex, complex, complex, float]:
     """(D, dD/dw, dD/dp, S) as of `chain_along`; no dD/dp where `changes` has no element."""
-    elements, along = len(polynomials), 2 if len(changes) else 1
-    Q, ahead = np.zeros((2, 2, 4)), np.empty((2, 2, 4))
-    T, T_ahead, traces = np.zeros((along, 2, 2, 4)), np.empty((along, 2, 2, 4)), np.zeros((along, 2))
-    Phi, slope, change, unused = np.empty((2, 16)), np.empty((2, 16)), np.empty((2, 16)), np.empty((2, 16))
+    elements = len(polynomials)
+    along = 2 if len(changes) else 1
+    Q = np.zeros((2, 2, 4))
+    ahead = np.empty((2, 2, 4))
+    T = np.zeros((along, 2, 2, 4))
+    T_ahead = np.empty((along, 2, 2, 4))
+    traces = np.zeros((along, 2))
+    Phi = np.empty((2, 16))
+    slope = np.empty((2, 16))
+    change = np.empty((2, 16))
+    unused = np.empty((2, 16))
     Q[0, 0, 2] = Q[1, 0, 3] = 1.0
     S = 0.0
     for e in range(elements):
@@ -171,8 +185,11 @@ def _swept(
 @compiled
 def chain_size(w: complex, W: float, polynomials: Array) -> float:
     """log |D| at w, from propagators for |w| <= W, (elements, terms, 16); -inf where D is 0."""
-    Q, ahead = np.zeros((2, 2, 4)), np.empty((2, 2, 4))
-    Phi, no_change, no_trace = np.empty((2, 16)), np.empty((0, 2, 2, 4)), np.empty((0, 2))
+    Q = np.zeros((2, 2, 4))
+    ahead = np.empty((2, 2, 4))
+    Phi = np.empty((2, 16))
+    no_change = np.empty((0, 2, 2, 4))
+    no_trace = np.empty((0, 2))
     Q[0, 0, 2] = Q[1, 0, 3] = 1.0
     S = 0.0
     for e in range(len(polynomials)):

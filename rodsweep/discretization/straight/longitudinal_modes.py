@@ -68,7 +68,8 @@ def _rates(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
 def _displacements(rod: Rod, edges: Array, order: int) -> Array:
     """The matrix A, (elements (order + MORE_POINTS), elements order)."""
     (strains, of_strains), (points, weights) = gauss(order), gauss(order + MORE_POINTS)
-    halves, middles = np.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
+    halves = np.diff(edges)[:, None] / 2
+    middles = (edges[1:] + edges[:-1])[:, None] / 2
     here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))
     tangent = rod.build.constitutive_law.stiffness(here.nu) / here.compliance[0]
     scale = np.sqrt(tangent * (halves * of_strains).ravel())

@@ -89,9 +89,12 @@ class BeatingPicture:
 
     def show_motion(self, found: dict[str, Any]) -> None:
         """Begins the motion of a released arm, and names the end of the motion above the picture."""
-        factor, step = self.length.factor, found["step"]
-        x, y = found["x"] * factor, found["y"] * factor
-        shape_x, shape_y = found["shape_x"] * factor, found["shape_y"] * factor
+        factor = self.length.factor
+        step = found["step"]
+        x = found["x"] * factor
+        y = found["y"] * factor
+        shape_x = found["shape_x"] * factor
+        shape_y = found["shape_y"] * factor
         turn = found["period"] if len(shape_x) else step * found["frames"]
         self.motion.tags = [SECONDS * step / turn, SECONDS]
         self.reached.data = source_of(shape_x, shape_y)

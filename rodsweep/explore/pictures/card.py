@@ -97,7 +97,8 @@ class Card:
     def tell(self, sentence: str) -> None:
         """Shows a sentence above the picture."""
         self.message.text = escape(sentence)
-        self.message.visible, self.figure.visible = True, True
+        self.message.visible = True
+        self.figure.visible = True
 
     def reveal(self) -> None:
         """Shows the figure."""

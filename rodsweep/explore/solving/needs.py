@@ -14,7 +14,8 @@ OF_TIP = ("bent", "motion")
 
 def needs(question: Question) -> Needs:
     """The state, blank in all fields that do not affect the answer, and the place of the tip."""
-    kind, state = question.kind, question.state
+    kind = question.kind
+    state = question.state
     if kind in ("spectrum", "cycle", "film", *OF_TIP):
         return replace(state, across="", F_max=""), question.tip
     blank = {state.load: ""}

@@ -108,8 +108,10 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1
     t = T.N1 * T.M3 - T.N3 * T.M1
-    (s1, s3) = (sides[0, 3] / s, sides[0, 4] / s)
-    (t1, t3) = (sides[1, 3] / t, sides[1, 4] / t)
+    s1 = sides[0, 3] / s
+    s3 = sides[0, 4] / s
+    t1 = sides[1, 3] / t
+    t3 = sides[1, 4] / t
     return Tangent(
         s1 * S.M3 + t1 * T.M3, -s1 * S.N3 - t1 * T.N3, -s3 * S.M1 - t3 * T.M1, s3 * S.N1 + t3 * T.N1
     )

@@ -75,7 +75,8 @@ def heading(view: View, *lines: str) -> str:
 def material_text(view: View) -> str:
     """Law and profile of the arms of a file; empty for arms of linear material without a profile."""
     material = view.config.get("material", {})
-    law, section = material.get("law", "linear"), material.get("section", "fixed")
+    law = material.get("law", "linear")
+    section = material.get("section", "fixed")
     words = [] if law == "linear" else [f"neo-Hookean, {section} section"]
     return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
 

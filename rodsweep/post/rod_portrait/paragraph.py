@@ -49,7 +49,8 @@ def paragraph(results: RodResults) -> str:
 def _rod(results: RodResults) -> Iterator[str]:
     """Yields sentences on the rod, its units in SI and the searched range."""
     end = float(results.views["thresholds"].of_point(0)["F_end"])
-    reached, wanted = f"{end:.6g}", f"{results.F_max:.6g}"
+    reached = f"{end:.6g}"
+    wanted = f"{results.F_max:.6g}"
     searched = f"was searched up to F = {reached}"
     if not isfinite(end):
         searched = "could not be searched"
@@ -57,7 +58,8 @@ def _rod(results: RodResults) -> Iterator[str]:
         searched += f", not to F = {wanted}: beyond it the rod is crushed, or its modes cannot be counted"
     yield f"The rod with {results.rod.words} {searched}."
     if scales := results.rod.scales:
-        force, pressure = scales["force_scale"], scales["pressure_scale"]
+        force = scales["force_scale"]
+        pressure = scales["pressure_scale"]
         yield (
             f"F = 1 stands for {force:.6g} N, or a pressure of {pressure:.6g} Pa on the face of its tip, "
             f"and tau2 for {scales['tau2']:.6g} s."

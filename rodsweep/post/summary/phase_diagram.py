@@ -143,7 +143,8 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
             lines.append(text)
     undecided = (v["class"] == UNDECIDED) & done[..., np.newaxis]
     if undecided.any():
-        rows, places = undecided.any(axis=-1), np.broadcast_to(v[line], undecided.shape)[undecided]
+        rows = undecided.any(axis=-1)
+        places = np.broadcast_to(v[line], undecided.shape)[undecided]
         on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(places)}"
         lines.append(f"undecided: {on_rows}, {row} = {span(of_row[rows])}")
     flutters = (v["class"] == FLUTTER).any(axis=-1)

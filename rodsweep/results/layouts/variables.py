@@ -216,7 +216,8 @@ def optional_in(config: Mapping[str, Any]) -> tuple[str, ...]:
 def estimates_counts(config: Mapping[str, Any]) -> bool:
     """Whether a resolved config has rods that vary along their length, for which counts are estimates."""
     parameters = config.get("parameters", {})
-    arm, taper = parameters.get("arm", {}), parameters.get("taper")
+    arm = parameters.get("arm", {})
+    taper = parameters.get("taper")
     tapered = "tip_radius" in arm if taper is None else taper.get("values") != [1.0]
     tapered = tapered or "taper" in parameters.get("columns", ())
     followed = config.get("branch", {}).get("along") == "taper"

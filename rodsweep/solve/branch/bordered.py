@@ -95,7 +95,9 @@ class BorderedMatrix:
     """
 
     def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
-        self.orbit, self.scale, self.workspace = orbit, scale, workspace
+        self.orbit = orbit
+        self.scale = scale
+        self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
         p = orbit.semidiscrete
         along = change_along(orbit.form, scale.name)
@@ -112,7 +114,8 @@ class BorderedMatrix:
         self._matrix[:n, n + 1] = ends[2]
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
-        self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift
+        self._matrix[n, :n] = row
+        self._matrix[n, n + 1] = -shift
         self._right = self._jump(orbit, ends[1])
 
     def step(self, border: Array, length: float) -> Array:
@@ -121,7 +124,8 @@ class BorderedMatrix:
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """`step` at a neighbouring orbit, of any nearby parameter, by the factors of this matrix."""
-        factors, p = self._memory.factors, self.orbit.semidiscrete
+        factors = self._memory.factors
+        p = self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, ends[0]), length)
         return self.solved(border, right, columns[:, :, 0], 1.0)
@@ -135,7 +139,9 @@ class BorderedMatrix:
     def varied(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
         """Derivatives of residuals along variations, (m, N + 1), reduced, (K, s, m, n); of the end, (m,
         n)."""
-        along, rod, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete, self.orbit.semidiscrete
+        along = change_along(orbit.form, self.scale.name)
+        rod = orbit.semidiscrete
+        p = self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
             orbit.values, rod, along, variations, p, self._memory.factors
         )
@@ -192,7 +198,8 @@ class BorderedMatrix:
         stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
         stages = np.ascontiguousarray(stages[:, :, None])
         out = np.empty_like(stages)
-        factors, start = self._memory.factors, found[None, :n].copy()
+        factors = self._memory.factors
+        start = found[None, :n].copy()
         substitute(start, stages, self.orbit.semidiscrete, factors, out)
         return np.concatenate([found[:n], out.ravel(), found[n:]])
 
@@ -229,23 +236,29 @@ class Condition:
         tolerance: relative error of the orbit. workspace: memory of the matrices. distance: largest relative
         distance of the matrix from the cycle, an error of its multipliers and tangent.
         """
-        matrix, off, last = BorderedMatrix(orbit, self.scale, workspace), 0.0, np.inf
+        matrix = BorderedMatrix(orbit, self.scale, workspace)
+        off = 0.0
+        last = np.inf
         step = matrix.step(self.border, self.missed(orbit))
         for _ in range(ORBIT_NEWTON.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
             if not change <= ORBIT_NEWTON.longest_step:
                 raise Unsolvable("no cycle of the branch is near the start of Newton's method")
-            orbit, off = moved(orbit, self.scale.name, step), off + change
+            orbit = moved(orbit, self.scale.name, step)
+            off = off + change
             rate = change / last if off > change else np.inf  # known from the second step with one matrix on
             settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON.new_matrix_ratio
             if (settled or change <= tolerance) and off <= distance:
                 return Converged(orbit, matrix, off)
             if settled or change <= tolerance or (off > change and rate > ORBIT_NEWTON.new_matrix_ratio):
-                matrix, off = BorderedMatrix(orbit, self.scale, workspace), 0.0
-                step, last = matrix.step(self.border, self.missed(orbit)), np.inf
+                matrix = BorderedMatrix(orbit, self.scale, workspace)
+                off = 0.0
+                step = matrix.step(self.border, self.missed(orbit))
+                last = np.inf
             else:
-                step, last = matrix.correction(orbit, self.border, self.missed(orbit)), change
+                step = matrix.correction(orbit, self.border, self.missed(orbit))
+                last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
 
     def on(self, mesh: OrbitMesh, found: Converged, tolerance: float, distance: float = np.inf) -> Converged:

@@ -226,7 +226,8 @@ def _range_end(start: ArcPoint, limits: BranchLimits, which: int) -> Condition:
 
 def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: BranchLimits) -> ArcPoint:
     """The cycle at an end of the range, between two cycles; raises Unsolvable."""
-    scale, segment = start.scale, Segment(start, end)
+    scale = start.scale
+    segment = Segment(start, end)
 
     def beyond(length: float) -> float:
         return -range_end.missed(segment.predicted(length))

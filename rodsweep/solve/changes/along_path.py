@@ -135,7 +135,8 @@ def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) 
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
     found = _crossings(problem, low, high, certify)
-    counts, ends = Counts(problem, found.gaps, certify), found.searched(start, stop)
+    counts = Counts(problem, found.gaps, certify)
+    ends = found.searched(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, ordered)
     crossings, at_end = counts.along(ordered, ends, unstable)
@@ -161,7 +162,8 @@ def _counted(counts: Counts, unstable: int, crossings: tuple[Crossing, ...], at_
 def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
     """The changes with the interval that was searched of the one that was `asked` for, and why it is
     smaller."""
-    searched, reason = found.searched(*asked), found.reach.reason
+    searched = found.searched(*asked)
+    reason = found.reach.reason
     end = found.path.parameter.value(found.reach.p)
     early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
     return replace(

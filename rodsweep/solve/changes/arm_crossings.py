@@ -56,7 +56,8 @@ class CrossingSearch:
     """
 
     def __init__(self, problem: PathProblem, certify: bool):
-        self.problem, self.certify = problem, certify
+        self.problem = problem
+        self.certify = certify
         self.places: dict[float, AxisPlace] = {}
         self.found: dict[float, Crossing] = {}
         self.gaps: list[tuple[float, float]] = []
@@ -99,7 +100,8 @@ class CrossingSearch:
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches one interval: keeps its crossing, or divides the interval."""
-        left, right = self.place(a), self.place(b)
+        left = self.place(a)
+        right = self.place(b)
         if left.unstable == right.unstable:
             share = hidden(left, right)
             if share == 0.0:
@@ -126,7 +128,8 @@ class CrossingSearch:
         """(p just before, p just behind) a crossing; None if the counts at these two places do not confirm
         the crossing."""
         p = self.problem.path.variable(crossing.at)
-        before, behind = max(left.p, p - COUNT_DISTANCE * length), min(right.p, p + COUNT_DISTANCE * length)
+        before = max(left.p, p - COUNT_DISTANCE * length)
+        behind = min(right.p, p + COUNT_DISTANCE * length)
         change = self.place(behind).unstable - self.place(before).unstable
         return (before, behind) if change == right.unstable - left.unstable else None
 
@@ -144,12 +147,15 @@ class CrossingSearch:
     def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
         """Newton's method for the p at which eigenvalue i of a place lies on the axis; None without
         convergence."""
-        p, w, slope = start.p, complex(start.w[i]), complex(start.slopes[i])
+        p = start.p
+        w = complex(start.w[i])
+        slope = complex(start.slopes[i])
         for _ in range(MAX_CROSSING_STEPS):
             if slope.real == 0 or not math.isfinite(slope.real):
                 return None
             step = -w.real / slope.real
-            p, guess = p + step, w + slope * step
+            p = p + step
+            guess = w + slope * step
             if not ends[0] <= p <= ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
@@ -179,7 +185,8 @@ def hidden(left: AxisPlace, right: AxisPlace) -> float:
     can."""
     h = right.p - left.p
     for growing in (False, True):
-        a, b = left.nearest(growing), right.nearest(growing)
+        a = left.nearest(growing)
+        b = right.nearest(growing)
         if a is None and b is None:
             continue
         if a is None or b is None:

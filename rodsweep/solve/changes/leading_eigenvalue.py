@@ -115,7 +115,8 @@ class Tracer:
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
         """The change of one interval; none if there is none, or if the interval is divided."""
-        left, right = self.anchor(a), self.anchor(b)
+        left = self.anchor(a)
+        right = self.anchor(b)
         share = 0.5
         if left.oscillates == right.oscillates:
             share, hides = unexplained(left, right)

@@ -28,10 +28,12 @@ class SearchedIntervals:
     """
 
     def __init__(self, edges: list[float]):
-        self.first, self.length = edges[0], edges[-1] - edges[0]
+        self.first = edges[0]
+        self.length = edges[-1] - edges[0]
         self.reach = Reach(edges[-1])
         self._left = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
-        self._unsolvable, self._halvings = edges[-1], 0
+        self._unsolvable = edges[-1]
+        self._halvings = 0
 
     def __iter__(self) -> Iterator[tuple[float, float]]:
         """Yields each interval once; raises Unsolvable if nothing beyond the first edge can be searched."""

@@ -184,7 +184,8 @@ class _Marching:
                 z = self._run(z, left, left, RunLimit()).states[-1]
             rates = self.beam.rate(z[None])[0]
             late = float(row @ z) / float(row @ rates)
-            times[i], states[i] = rough - late, z - late * rates
+            times[i] = rough - late
+            states[i] = z - late * rates
         return times, states
 
     def _path(self, settled: _Settled) -> CyclePath:

@@ -49,12 +49,14 @@ _object_state = petsc_function("PetscObjectStateGet")
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     """R = Udot - f(U), or R = Udot where the context asks for it."""
     c = record_at(context, CONTEXT)
-    n, at = c.unknowns, context + OUTPUTS
+    n = c.unknowns
+    at = context + OUTPUTS
     outputs = integers(at, 3)
     read_array(U, at)
     read_array(Udot, at + 8)
     write_array(R, at + 16)
-    out, dot = floats(outputs[2], n), floats(outputs[1], n)
+    out = floats(outputs[2], n)
+    dot = floats(outputs[1], n)
     c.time = t
     if c.without_rate:
         out[:] = dot
@@ -89,7 +91,8 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
 ) -> int:
     """B = shift - J, with J evaluated as `matrix_due` requires; an unchanged B keeps its factors in PETSc."""
     c = record_at(context, CONTEXT)
-    n, at = c.unknowns, context + OUTPUTS
+    n = c.unknowns
+    at = context + OUTPUTS
     outputs = integers(at, 1)
     _object_state(B, at)
     untouched = c.last_matrix == B and c.matrix_state == outputs[0]
@@ -110,7 +113,8 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     _restore_dense(B, at)
     c.last_matrix = B
     _object_state(B, context + MATRIX_STATE)
-    c.matrix_due, c.shift = UP_TO_DATE, shift
+    c.matrix_due = UP_TO_DATE
+    c.shift = shift
     c.factorisations += 1
     return 0
 

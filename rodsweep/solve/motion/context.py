@@ -83,11 +83,16 @@ def arrays_of(beam: Beam) -> dict[str, Array]:
 
 @compiled
 def rod_of(c: Any) -> NodalRod:
-    d, m = c.components, c.nodes
-    rest, compliance = floats_in(c.rest, (d, m)), floats_in(c.compliance, (d, m))
-    drag, mobility = floats_in(c.drag, (d, m)), floats_in(c.mobility, (d, m))
-    second, none = floats_in(c.second, (d, m, m)), integers(c.rest, 0)
-    jumps, sides = integers(c.jumps, c.jump_count), floats_in(c.sides, (c.jump_count, 2, SIDE))
+    d = c.components
+    m = c.nodes
+    rest = floats_in(c.rest, (d, m))
+    compliance = floats_in(c.compliance, (d, m))
+    drag = floats_in(c.drag, (d, m))
+    mobility = floats_in(c.mobility, (d, m))
+    second = floats_in(c.second, (d, m, m))
+    none = integers(c.rest, 0)
+    jumps = integers(c.jumps, c.jump_count)
+    sides = floats_in(c.sides, (c.jump_count, 2, SIDE))
     tip_stress = floats(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 
@@ -95,7 +100,8 @@ def rod_of(c: Any) -> NodalRod:
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
     all_nodes = (c.nodes, c.nodes)
-    D, D_transposed = floats_in(c.D, all_nodes), floats_in(c.D_transposed, all_nodes)
+    D = floats_in(c.D, all_nodes)
+    D_transposed = floats_in(c.D_transposed, all_nodes)
     return NodeMatrices(D, D_transposed, floats_in(c.weak, all_nodes), floats(c.weights, c.nodes))
 
 

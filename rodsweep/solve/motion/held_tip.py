@@ -43,7 +43,9 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
     first = bending.tip(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     end = np.array([min(hypot(x, y), REACH * bending.length), atan2(y, x)])
-    force, reached, step = np.zeros(2), 0.0, FIRST_STEP
+    force = np.zeros(2)
+    reached = 0.0
+    step = FIRST_STEP
     while reached < 1 and step > LEAST_STEP:
         share = min(1.0, reached + step)
         radius, angle = start + share * (end - start)
@@ -51,7 +53,8 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
         if found is None:
             step /= 2
         else:
-            reached, (Pi, force) = share, found
+            reached = share
+            (Pi, force) = found
     return bending.state(Pi)
 
 
@@ -81,7 +84,8 @@ class _Bending:
 
     def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
         """(curvatures, (nodes + 1,); force, (2,)) with the tip at a place, (2,); None where Newton fails."""
-        size, weights = len(Pi), self.mesh.quadrature
+        size = len(Pi)
+        weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
         for _ in range(MOST_ITERATIONS):
             first, second = self._derivatives(Pi, force)
@@ -92,15 +96,18 @@ class _Bending:
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             if not np.abs(self.angles @ change[:size]).max() < MOST_TURNED:
                 return None
-            Pi, force = Pi + change[:size], force + change[size:]
+            Pi = Pi + change[:size]
+            force = force + change[size:]
             if np.abs(misplaced).max() < PLACED:
                 return Pi, force
         return None
 
     def _derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
         """d(x, y)/dPi, (2, nodes + 1), and d^2(f . (x, y))/dPi^2, (nodes + 1, nodes + 1), by quadrature."""
-        A, w = self.angles, self.mesh.quadrature
-        c, s = np.cos(A @ Pi), np.sin(A @ Pi)
+        A = self.angles
+        w = self.mesh.quadrature
+        c = np.cos(A @ Pi)
+        s = np.sin(A @ Pi)
         reach = np.array([c * self.h1 - s * self.h2, s * self.h1 + c * self.h2])
         turned = np.array([-reach[1], reach[0]])
         return (w * turned) @ A, -A.T @ ((w * (force @ reach))[:, None] * A)

@@ -41,9 +41,13 @@ def begin_step(ts: int) -> int:
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
-    c, at = record_at(context, CONTEXT), context + OUTPUTS
-    outputs, real = integers(at, 3), floats(at, 3)
-    times, states, base = times_of(c), states_of(c), floats(c.base, c.unknowns)
+    c = record_at(context, CONTEXT)
+    at = context + OUTPUTS
+    outputs = integers(at, 3)
+    real = floats(at, 3)
+    times = times_of(c)
+    states = states_of(c)
+    base = floats(c.base, c.unknowns)
     last = c.current * MAX_STAGES
     c.current = 1 - c.current
     now = c.current * MAX_STAGES
@@ -59,10 +63,12 @@ def begin_step(ts: int) -> int:
     base[:] = states[now]
     if c.stages > 0:
         base += (states[now] - states[last]) * (c.middle * c.length / (times[now] - times[last]))
-    c.steps, c.stages = min(c.stages, 1), 1
+    c.steps = min(c.stages, 1)
+    c.stages = 1
     c.matrix_due = AT_BASE
     if c.middle > 0:  # a method of many stages, of which the first measures the contraction of the new matrix
-        c.contraction, c.measured = 1.0, 0
+        c.contraction = 1.0
+        c.measured = 0
     return 0
 
 
@@ -86,7 +92,8 @@ def predict(c: Any, guess: Array) -> None:
         return
     points = integers(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[c.stages]
     points = points[: np.sum(points != NO_POINT)]
-    times, now = times_of(c), c.current * MAX_STAGES
+    times = times_of(c)
+    now = c.current * MAX_STAGES
     last = MAX_STAGES - now
     if len(points) and c.length <= LARGEST_STEP_RATIO * (times[now] - times[last]):
         extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)

@@ -123,14 +123,17 @@ def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     In every method the slope is affine in x. The residual without f at any x, and the shift, which comes with
     the matrix, therefore determine the equation.
     """
-    n, outputs = c.unknowns, integers(at, 3)
+    n = c.unknowns
+    outputs = integers(at, 3)
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
     c.without_rate = 0
     c.error |= stage_matrix(snes, X, c.matrix, c.matrix, c.ts)
     read_array(X, at)
     read_array(c.residual, at + 8)
-    x, residual, constant = floats(outputs[0], n), floats(outputs[1], n), floats(c.constant, n)
+    x = floats(outputs[0], n)
+    residual = floats(outputs[1], n)
+    constant = floats(c.constant, n)
     for i in range(n):
         constant[i] = residual[i] - c.shift * x[i]
     release_read(X, at)
@@ -155,11 +158,14 @@ def norm(x: Array) -> float:
 @compiled
 def newton_step(c: Any, at: int, X: int) -> float:
     """Makes a Newton iteration; returns the 2-norm of the step."""
-    n, outputs = c.unknowns, integers(at, 3)
-    constant, f = floats(c.constant, n), floats(c.rates, n)
+    n = c.unknowns
+    outputs = integers(at, 3)
+    constant = floats(c.constant, n)
+    f = floats(c.rates, n)
     write_array(X, at)
     write_array(c.residual, at + 8)
-    x, residual = floats(outputs[0], n), floats(outputs[1], n)
+    x = floats(outputs[0], n)
+    residual = floats(outputs[1], n)
     rate(x, f, roots_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
@@ -180,15 +186,18 @@ def solve_stage(snes: int, X: int) -> int:
     address = np.empty(1, np.int64)
     context_of_snes(snes, address.ctypes.data)
     context = address[0]
-    c, at = record_at(context, CONTEXT), context + OUTPUTS
+    c = record_at(context, CONTEXT)
+    at = context + OUTPUTS
     step_of(c.ts, at)
     if floats(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
-        c.length, c.stages = floats(at, 1)[0], 1
+        c.length = floats(at, 1)[0]
+        c.stages = 1
     state_equation(c, at, snes, X)
     write_array(X, at)
     predict(c, floats(integers(at, 1)[0], c.unknowns))
     release_write(X, at)
-    reason, iteration = ITERATING, 0
+    reason = ITERATING
+    iteration = 0
     while reason == ITERATING and not c.error:
         if c.matrix_due != UP_TO_DATE:
             c.error |= stage_matrix(snes, X, c.matrix, c.matrix, c.ts)

@@ -30,7 +30,8 @@ STOPPED = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 @compiled
 def keep_step(c: Any, at: int, ts: int) -> int:
     """Stores a row (time, state); ends the run if the rod has left the model."""
-    n, outputs = c.unknowns, integers(at, 3)
+    n = c.unknowns
+    outputs = integers(at, 3)
     if c.stored == c.capacity:
         c.capacity = max(2 * c.capacity, FIRST_CAPACITY)
         rows = resized_memory(c.rows, 8 * c.capacity * (n + 1))
@@ -40,7 +41,8 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     time_of(ts, at)
     solution_of(ts, at + 8)
     read_array(outputs[1], at + 16)
-    row, z = floats(c.rows + 8 * c.stored * (n + 1), n + 1), floats(outputs[2], n)
+    row = floats(c.rows + 8 * c.stored * (n + 1), n + 1)
+    z = floats(outputs[2], n)
     row[0] = floats(at, 1)[0]
     row[1:] = z
     release_read(outputs[1], at + 16)

@@ -50,9 +50,11 @@ class Means(NamedTuple):
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
     """The path from equidistant states, (K, n), over half the period for a symmetric orbit."""
-    size, order = len(p.matrices.weights), len(m.ends) - 1
+    size = len(p.matrices.weights)
+    order = len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
-    tip, velocity = np.empty((len(states), 3)), np.empty((len(states), 3))
+    tip = np.empty((len(states), 3))
+    velocity = np.empty((len(states), 3))
     S = np.empty((3, len(states), size))
     rates = np.empty((3, len(states), size))
     node_stresses(states, S)
@@ -95,8 +97,11 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
     """Means over all stages, (K, s, n), with the weights of the method, (s,)."""
     K, s, n = stages.shape
-    flat, nodes = stages.reshape(K * s, n), len(p.matrices.weights) - 1
-    power, mean, square = np.empty((2, K * s)), np.zeros(2), np.zeros(2)
+    flat = stages.reshape(K * s, n)
+    nodes = len(p.matrices.weights) - 1
+    power = np.empty((2, K * s))
+    mean = np.zeros(2)
+    square = np.zeros(2)
     powers(flat, power, p)
     for a in range(2):
         for i in range(K * s):
@@ -127,7 +132,8 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
     """dE/dt at all nodes, 0 at the tip, of states (m, n) into out, (3, m, nodes + 1)."""
     size = len(p.matrices.weights)
-    V, G = np.empty((3, size)), np.empty((3, size))
+    V = np.empty((3, size))
+    G = np.empty((3, size))
     for k in range(len(states)):
         balance(states[k], V, G, p.rod, p.matrices)
         for a in range(3):
@@ -140,12 +146,16 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
 def powers(states: Array, out: Array, p: Semidiscrete) -> None:
     """Powers of the follower force (by the reaction) and the drag, of states (m, n), into out, (2, m)."""
     size = len(p.matrices.weights)
-    V, G, c = np.empty((3, size)), np.empty((3, size)), p.rod
+    V = np.empty((3, size))
+    G = np.empty((3, size))
+    c = p.rod
     for k in range(len(states)):
         balance(states[k], V, G, c, p.matrices)
-        gained, lost = 0.0, 0.0
+        gained = 0.0
+        lost = 0.0
         for a in range(len(V)):
             gained -= c.tip_stress[a] * G[a, size - 1]
             for i in range(size):
                 lost += p.matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
-        out[0, k], out[1, k] = gained, lost
+        out[0, k] = gained
+        out[1, k] = lost

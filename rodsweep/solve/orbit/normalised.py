@@ -72,9 +72,11 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
     places: place of each datum, (m,). orders: 1 for a slope, 0 for a value minus the value at 0, (m,).
     """
-    m, unit = len(places), np.abs(places).max()
+    m = len(places)
+    unit = np.abs(places).max()
     unit = unit if unit > 0 else 1.0
-    columns, right = np.empty((m, m)), np.empty(m)
+    columns = np.empty((m, m))
+    right = np.empty(m)
     for power in range(1, m + 1):
         right[power - 1] = (step / unit) ** power
         for i in range(m):
@@ -90,7 +92,8 @@ def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array
 
     orders: 1 for a slope, 0 for a value, (m,).
     """
-    out, rest = np.zeros(len(values)), 1.0
+    out = np.zeros(len(values))
+    rest = 1.0
     for k in range(len(weights)):
         rest -= weights[k] if orders[k] == 0 else 0.0
         for i in range(len(values)):

@@ -49,8 +49,10 @@ def tails_of(orbit: Orbit) -> Tails:
 def _decay(c: Array) -> float:
     """Mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
     fields, size = c.shape
-    middle, highest = (size - 1) / 2 + (size // 2) / 2, 1e-16
-    along, squares = 0.0, 0.0
+    middle = (size - 1) / 2 + (size // 2) / 2
+    highest = 1e-16
+    along = 0.0
+    squares = 0.0
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
             highest = max(highest, c[a, k] / max(c[a].max(), 1e-300))
@@ -81,7 +83,8 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
     """Largest moduli of the coefficients of n1, n2, m3, (3, p + 1), over all elements of states (m, n)."""
     size = len(analysis)
     nodes = elements * (size - 1)
-    largest, c = np.zeros((COMPONENTS, size)), np.empty(size)
+    largest = np.zeros((COMPONENTS, size))
+    c = np.empty(size)
     for k in range(len(states)):
         for a in range(COMPONENTS):
             for e in range(elements):
@@ -131,9 +134,12 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
     points: (m, n); analysis: from an element's nodes to the last coefficients, (p + 1, count).
     """
     size, count = analysis.shape
-    nodes, c, worst = elements * (size - 1), np.empty(count), 0.0
+    nodes = elements * (size - 1)
+    c = np.empty(count)
+    worst = 0.0
     for a in range(COMPONENTS):
-        largest, end = 0.0, 0.0
+        largest = 0.0
+        end = 0.0
         for k in range(len(points)):
             for e in range(elements):
                 first = stress_place(a, e * (size - 1), nodes)
@@ -169,9 +175,11 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
     points: start and stages one after the other, (1 + K s, n). row: from an interval's values to the last
     coefficient, (s + 1,). Sizes are 2-norms of a stress over all nodes.
     """
-    s, worst = len(row) - 1, 0.0
+    s = len(row) - 1
+    worst = 0.0
     for a in range(COMPONENTS):
-        largest, tail = 0.0, 0.0
+        largest = 0.0
+        tail = 0.0
         for m in range(len(points)):
             size = 0.0
             for i in range(nodes):

@@ -100,7 +100,8 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 
     The line lies left of the wanted `modes`, so that the proof includes all unstable eigenvalues.
     """
-    w, error = track.w[i], track.error[i]
+    w = track.w[i]
+    error = track.error[i]
     k = track.order[i, modes - 1]
     line = min(w[k].real - BELOW * error[k] - CLOSE_BELOW * abs(w[k]), 0.0)
     here = 0
@@ -125,7 +126,8 @@ def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: 
     family. hulls: regions of all arms of the family. known: (points,), filled with `all_right_of_line`.
     """
     shape = family.coefficients.shape[1:]
-    polynomials, changes = np.empty(shape), np.empty(shape)
+    polynomials = np.empty(shape)
+    changes = np.empty(shape)
     level = (family.W, polynomials, changes)
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)

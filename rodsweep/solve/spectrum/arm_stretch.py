@@ -107,11 +107,14 @@ def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: Interval | None
 ) -> Interval | None:
     """`_interval` with `further` modes in addition to the wanted modes."""
-    first, n, made = first_eigenvalues(path, float(p[0]), request, further), len(p), None
+    first = first_eigenvalues(path, float(p[0]), request, further)
+    n = len(p)
+    made = None
     if first is not None and before is not None:
         inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
         if inside >= FEWEST and REUSED_HEADROOM * np.abs(first).max() <= before.family.W:
-            made, n = (before.family, before.hulls), inside
+            made = (before.family, before.hulls)
+            n = inside
         else:
             n = min(n, max(MORE_ARMS * before.arms, FEWEST))
     while first is not None and made is None and n >= FEWEST:
@@ -120,7 +123,8 @@ def _followed(
     if first is None or made is None:
         return None
     family, hulls = made
-    track, known = track_from(first, n), np.zeros(n, np.int64)
+    track = track_from(first, n)
+    known = np.zeros(n, np.int64)
     reached = follow_arms(track, family, hulls, p[:n], request.modes, known)
     if reached == 0:
         return None
@@ -134,7 +138,8 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
 
     first: eigenvalues at the first point, (m,), leading first.
     """
-    low, high = float(p.min()), float(p.max())
+    low = float(p.min())
+    high = float(p.max())
     if not low < high:
         return None
     try:
@@ -179,7 +184,8 @@ class FollowedArms:
         self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
         self.intervals: list[Interval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
-        place, patience = 0, 1
+        place = 0
+        patience = 1
         while place < len(p):
             before = self.intervals[-1] if self.intervals else None
             found = _interval(path, p[place:], self.request, before)
@@ -209,7 +215,9 @@ class FollowedArms:
             followed = one.track.w.shape[1]
             if not one.p.min() <= p <= one.p.max() or followed < modes:
                 continue
-            here, known, wanted = None, 0, 0
+            here = None
+            known = 0
+            wanted = 0
             growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
             while wanted < (needed := min(max(modes, growing + MODES_BEYOND_GROWING), followed)):
                 wanted = needed
@@ -233,7 +241,8 @@ class FollowedArms:
         start = float(one.p[i])
         for steps in STEPS_FROM_NEAREST:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track, known = track_from(one.track.w[i], len(grid)), np.zeros(len(grid), np.int64)
+            track = track_from(one.track.w[i], len(grid))
+            known = np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
             if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
                 return part(track, len(grid) - 1, len(grid)), int(known[-1])
@@ -276,7 +285,8 @@ def _counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int
     w, error = leading(here, here.w.shape[1])
     if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
         return 0
-    determinant, hull = arm_determinant(path.at(p)), hull_at(hulls, p)
+    determinant = arm_determinant(path.at(p))
+    hull = hull_at(hulls, p)
     for line in lines(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number
         if number is not None:

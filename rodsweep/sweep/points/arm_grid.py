@@ -67,7 +67,8 @@ def grid_of_arms(
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
-    codes, failures = coverage.astype(np.int8).ravel(), _failures(coverage, forces)
+    codes = coverage.astype(np.int8).ravel()
+    failures = _failures(coverage, forces)
     return Points(names, columns, False, over, at_points, builds=builds, coverage=codes, failures=failures)
 
 

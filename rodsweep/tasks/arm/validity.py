@@ -98,7 +98,8 @@ class ArmValidity:
     def __init__(self, config: Config, points: Points):
         assert config.parameters.arm is not None
         self.section: ArmSection = config.parameters.arm
-        self.points, self.task = points, config.task
+        self.points = points
+        self.task = config.task
         sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
     """Boundary curves and their folds; more: variables of the partial beam limit."""
-    points, folds = [], []
+    points = []
+    folds = []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
         for *numbers, end in zip(*each, _ends(curve.ends, len(curve.values)), strict=True):
@@ -44,7 +45,8 @@ def criticality_record(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[Filled]:
     """Criticality of each curve, in the order of the curves, for rods with this gamma1."""
-    rows, start = [], 0
+    rows = []
+    start = 0
     for number, curve in enumerate(criticalities, 1):
         for point in curve.points:
             rows.append(_located(point, plane, curve=number, curve_point=start + point.after + 1))

@@ -93,11 +93,14 @@ def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
     """The changes on lines as variables, line after line."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
-    F, w = lines.F.tolist(), lines.eigenvalues
-    onsets, changes = _by_line(_new_pairs(w)), _by_line(_sign_changes(w))
+    F = lines.F.tolist()
+    w = lines.eigenvalues
+    onsets = _by_line(_new_pairs(w))
+    changes = _by_line(_sign_changes(w))
     for number in sorted(onsets.keys() | changes.keys()):
         fixed = dict(zip(LINEAR_PARAMETERS[1:], lines.fixed[number].tolist(), strict=True))
-        rod, here = Rod(F=0.0, **fixed), w[number]
+        rod = Rod(F=0.0, **fixed)
+        here = w[number]
         rods = rod.coefficients, rod.direction("F")
         tried = (onset_between(rods, (F[i], F[j]), here[i], here[j]) for i, j in onsets.get(number, ()))
         found = [next(filter(None, tried), None)]

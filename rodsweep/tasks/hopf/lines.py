@@ -42,7 +42,8 @@ class HopfLine:
         from ...solve.changes.unstable_modes import CHANGE_COUNTS
         from ...solve.point import FAILURES
 
-        start, stop = self.start, self.stop
+        start = self.start
+        stop = self.stop
         if self.name == "F":
             stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CHANGE_COUNTS.crushing_margin))
         if self.name == "k1":
@@ -78,7 +79,8 @@ def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[Hop
     others = [n for n in names if n != name]
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
-        ends, builds = [_ends(columns[name])] * len(rods), [points.build] * len(rods)
+        ends = [_ends(columns[name])] * len(rods)
+        builds = [points.build] * len(rods)
     else:
         different, numbers = points.builds_of_rods
         table = np.stack([numbers, *(columns[n] for n in others)], axis=-1)

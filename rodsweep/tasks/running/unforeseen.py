@@ -128,7 +128,9 @@ class Log:
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str]):
         """Function `where`: the parameters of a point in words, from the point's index."""
-        self.path, self.rank, self.where = log_file(output), rank, where
+        self.path = log_file(output)
+        self.rank = rank
+        self.where = where
         self.count = 0
         """Number of exceptions on this rank."""
         self._known: set[str] = set()

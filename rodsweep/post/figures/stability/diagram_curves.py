@@ -94,12 +94,14 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     handles = []
     for i in range(len(v["fold"])):
         if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # a window of flutter closes at this fold
-            F, k = v[f"fold_{line}"][i], v[f"fold_{row}"][i]
+            F = v[f"fold_{line}"][i]
+            k = v[f"fold_{row}"][i]
             axes.plot(F, k, "ko", ms=4)
             label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
     if "partial_beam_k1" in v:
-        F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
+        F = float(v["partial_beam_F"])
+        k = float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
         if not (_holds(v[line], x) and _holds(view.axes[row], y)):
             return handles
@@ -221,7 +223,8 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
-    y0, y1 = starts[:, 1 - force], ends[:, 1 - force]
+    y0 = starts[:, 1 - force]
+    y1 = ends[:, 1 - force]
     parts = []
     for path in paths:
         y = path[:, 1 - force, None]

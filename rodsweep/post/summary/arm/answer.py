@@ -112,7 +112,9 @@ def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
     searched, lines = _solved(view, rods)
     if not searched.any():
         return lines
-    rods, load, v = searched, load_of(view), view.variables
+    rods = searched
+    load = load_of(view)
+    v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
     lines = [*_flutter(view, hopf, end, rate), *lines, *_where(view, rods, hopf)]
     onset = v[f"{load}_onset"][rods]
@@ -226,7 +228,8 @@ def _decided(view: View, rods: np.ndarray) -> list[str]:
 def _of_modes(view: View, rods: np.ndarray) -> list[str]:
     """Lines about the stability of arms and the frequency of their leading modes."""
     count = view.variables["unstable_count"]
-    unstable, unknown = rods & (count > 0), rods & (count < 0)
+    unstable = rods & (count > 0)
+    unknown = rods & (count < 0)
     lines = []
     if unstable.any():
         frequency = spanned(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")

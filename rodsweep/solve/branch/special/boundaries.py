@@ -92,7 +92,8 @@ class SpecialBoundaries:
     def where(self, unit: int) -> str:
         """Description of a unit: curve, starting row and direction."""
         place, behind = divmod(unit, 2)
-        one, way = self.special[place], "down" if behind else "up"
+        one = self.special[place]
+        way = "down" if behind else "up"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
 
 
@@ -120,7 +121,8 @@ class _CurvesOfKind:
 
     def lacking(self, seed: int) -> list[int]:
         """The halves from a special point whose results are needed and lacking."""
-        ahead, behind = 2 * seed, 2 * seed + 1
+        ahead = 2 * seed
+        behind = 2 * seed + 1
         if ahead not in self.results:
             return [unit for unit in (ahead, behind) if unit not in self.results]
         half = TracedHalf.of(self.results[ahead]).half
@@ -175,7 +177,8 @@ class _CurvesOfKind:
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x, y = self.line.scaled(end.at), self.rows.scaled(end.row)
+            x = self.line.scaled(end.at)
+            y = self.rows.scaled(end.row)
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
             if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.on_last_chord:

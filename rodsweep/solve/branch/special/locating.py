@@ -45,7 +45,8 @@ class Segment:
 
     def start_on(self, mesh: OrbitMesh) -> None:
         """Continues on a different mesh, without a cycle to start from."""
-        self.mesh, self._known = mesh, None
+        self.mesh = mesh
+        self._known = None
 
     def at(self, length: float) -> Converged:
         """The cycle at a length from `start`, with a matrix nearby; raises Unsolvable."""

@@ -37,11 +37,17 @@ def eliminate(
     V: velocities of the stages, (K, s, 3, nodes + 1). columns: right sides, (K, s, columns, n), which are
     reduced in place. Returns the changes of the last end by the right sides for a fixed start, (columns, n).
     """
-    K, s, n = columns.shape[0], columns.shape[1], columns.shape[3]
-    tip, right, parts = np.empty((3, n)), np.empty((s, n, n)), np.empty((5, n, n))
-    so_far, ends = np.diag(p.mass), np.zeros(columns.shape[2:])
+    K = columns.shape[0]
+    s = columns.shape[1]
+    n = columns.shape[3]
+    tip = np.empty((3, n))
+    right = np.empty((s, n, n))
+    parts = np.empty((5, n, n))
+    so_far = np.diag(p.mass)
+    ends = np.zeros(columns.shape[2:])
     for k in range(K):
-        B, h = factors.blocks[k], duration * p.lengths[k]
+        B = factors.blocks[k]
+        h = duration * p.lengths[k]
         for i in range(s):
             jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.matrices)
             for r in range(n):
@@ -67,9 +73,14 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
     right: right side of each stage for x_0 = M^-1, (s, n, n), made here. parts: work array, (5, n, n).
     """
-    s, n = B.shape[0], B.shape[2]
-    pivots, rows = np.empty(n, np.int64), np.empty((n, PANEL))
-    end, d, mass, Z = np.empty((n, n)), p.differentiation, p.mass, parts[0]
+    s = B.shape[0]
+    n = B.shape[2]
+    pivots = np.empty(n, np.int64)
+    rows = np.empty((n, PANEL))
+    end = np.empty((n, n))
+    d = p.differentiation
+    mass = p.mass
+    Z = parts[0]
     invert(B[0, 0], pivots, rows)
     factor = d[1, 1] * d[0, 2]
     for r in range(n):
@@ -95,9 +106,14 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 
     parts: (5, n, n), of which the first is M X; the others are computed here.
     """
-    s, n = B.shape[0], B.shape[2]
-    d, mass, minus = p.differentiation, p.mass, -np.ones(n)
-    Z, W, ZW = parts[0], parts[1], parts[2]
+    s = B.shape[0]
+    n = B.shape[2]
+    d = p.differentiation
+    mass = p.mass
+    minus = -np.ones(n)
+    Z = parts[0]
+    W = parts[1]
+    ZW = parts[2]
     for r in range(n):
         for q in range(n):
             W[r, q] = mass[r] * B[1, 1, r, q]
@@ -132,12 +148,19 @@ def _subtract_parts(
     block. rows: first and last row. scale: factors of the block's columns, (n,).
     """
     i, c = place
-    first, second = d[0, c], d[1, c]
-    z, w = d[i, 1] * first, d[i, 2] * second
-    zw, wz = -d[i, 1] * d[0, 2] * second, -d[i, 2] * d[1, 1] * first
+    first = d[0, c]
+    second = d[1, c]
+    z = d[i, 1] * first
+    w = d[i, 2] * second
+    zw = -d[i, 1] * d[0, 2] * second
+    wz = -d[i, 2] * d[1, 1] * first
     zwz = d[i, 1] * d[0, 2] * d[1, 1] * first
     for r in range(rows[0], rows[1]):
-        Z, W, ZW, WZ, ZWZ = parts[0, r], parts[1, r], parts[2, r], parts[3, r], parts[4, r]
+        Z = parts[0, r]
+        W = parts[1, r]
+        ZW = parts[2, r]
+        WZ = parts[3, r]
+        ZWZ = parts[4, r]
         for q in range(len(scale)):
             left = z * Z[q] + w * W[q] + zw * ZW[q] + wz * WZ[q] + zwz * ZWZ[q]
             out[r, q] -= left * scale[q]

@@ -22,7 +22,8 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
     column of A's transpose: the inverse of the transpose is the transpose of the inverse.
     """
     n = len(A)
-    ones, extents = np.ones(2), np.empty(6, np.int32)
+    ones = np.ones(2)
+    extents = np.empty(6, np.int32)
     for first in range(0, n, PANEL):
         last = min(n, first + PANEL)
         _sweep_panel(A, first, last, pivots)
@@ -32,7 +33,8 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
                     rows[j, i] = A[j, first + i]
                     A[j, first + i] = 0.0
         extents[:] = first, n, last - first, PANEL, n, n
-        panel, row = A.ctypes.data + 8 * n * first, 8 * n * last
+        panel = A.ctypes.data + 8 * n * first
+        row = 8 * n * last
         product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
         extents[0] = n - last
         product(rows.ctypes.data + 8 * PANEL * last, panel, A.ctypes.data + row, extents, ones)
@@ -48,7 +50,9 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
     """Gauss-Jordan steps for the columns from first to last, applied to these columns only."""
     n = len(A)
     for k in range(first, last):
-        row, largest, p = A[k], 0.0, k
+        row = A[k]
+        largest = 0.0
+        p = k
         for i in range(k, n):
             largest = max(largest, abs(row[i]))
         if abs(row[k]) < MIN_PIVOT * largest:

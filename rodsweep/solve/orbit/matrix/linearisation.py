@@ -81,9 +81,13 @@ def linearise(
     Returns the steps, (count - 1, N), and the reduced derivative by the period, (K, s, n). count: 2 for
     Newton's step alone; 3 for Newton's step, then the orbit's derivative along a parameter.
     """
-    K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
-    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
-    V, columns = np.empty((K, s, COMPONENTS, len(p.matrices.weights))), np.empty((K, s, count, n))
+    K = factors.blocks.shape[0]
+    s = factors.blocks.shape[1]
+    n = len(p.mass)
+    points = values[:-1].reshape(1 + K * s, n)
+    duration = values[-1] / p.parts
+    V = np.empty((K, s, COMPONENTS, len(p.matrices.weights)))
+    columns = np.empty((K, s, count, n))
     right_sides(points, duration, p, along, V, columns)
     ends = eliminate(points, V, duration, p, factors, columns)
     inverse = factors.inverse
@@ -132,7 +136,8 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
             for j in range(n + 1):
                 total += factors.inverse[i, j] * rights[m, j]
             found[m, i] = total
-    whole, out = np.empty((K, s, count, n)), np.empty((K, s, count, n))
+    whole = np.empty((K, s, count, n))
+    out = np.empty((K, s, count, n))
     for k in range(K):
         for i in range(s):
             for m in range(count):
@@ -141,7 +146,8 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
     substitute(found[:, :n].copy(), whole, p, factors, out)
     steps = np.empty((count, (1 + K * s) * n + 1))
     for m in range(count):
-        steps[m, :n], steps[m, -1] = found[m, :n], found[m, n]
+        steps[m, :n] = found[m, :n]
+        steps[m, -1] = found[m, n]
         for k in range(K):
             for i in range(s):
                 first = (1 + k * s + i) * n
@@ -158,8 +164,11 @@ def reduced_residuals(
 
     Returns the reduced residuals, (K, s, 1, n), and the change of the last end for a fixed start, (1, n).
     """
-    K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
-    columns, ends = np.empty((K, s, 1, n)), np.zeros((1, n))
+    K = factors.blocks.shape[0]
+    s = factors.blocks.shape[1]
+    n = len(p.mass)
+    columns = np.empty((K, s, 1, n))
+    ends = np.zeros((1, n))
     residuals(points, duration, rod, columns[:, :, 0])
     for k in range(K):
         reduce(factors.blocks[k], columns[k], p)
@@ -175,8 +184,12 @@ def reduced_variations(
 
     Returns the reduced right sides, (K, s, m, n), and the changes of the last end for a fixed start, (m, n).
     """
-    K, s, n, m = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass), len(variations)
-    columns, ends = np.empty((K, s, m, n)), np.zeros((m, n))
+    K = factors.blocks.shape[0]
+    s = factors.blocks.shape[1]
+    n = len(p.mass)
+    m = len(variations)
+    columns = np.empty((K, s, m, n))
+    ends = np.zeros((m, n))
     variation_sides(values, rod, along, variations, columns)
     for k in range(K):
         reduce(factors.blocks[k], columns[k], p)
@@ -188,7 +201,8 @@ def reduced_variations(
 def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
     """Newton's step at an orbit by the matrix of a nearby orbit; values and step (N,)."""
     K, s, n = by_period.shape
-    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
+    points = values[:-1].reshape(1 + K * s, n)
+    duration = values[-1] / p.parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
     rights = np.empty((1, n + 1))
     rights[0, :n] = jump_of(points, p) - ends[0]
@@ -203,7 +217,8 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
     for change in step:
         if not np.isfinite(change):
             return np.inf
-    most, size = np.zeros(COMPONENTS), np.zeros(COMPONENTS)
+    most = np.zeros(COMPONENTS)
+    size = np.zeros(COMPONENTS)
     for first in range(unknowns, len(values) - 1, unknowns):
         for a in range(1, COMPONENTS):
             for i in range(nodes):

@@ -53,23 +53,29 @@ def compressed(A: Array, negligible: float) -> Array:
     negligible: largest column of this change in units of A's largest column.
     """
     n = len(A)
-    columns, norms = A.T.copy(), np.empty(n)
-    Q, R = np.empty((n, n)), np.zeros((n, n))  # as rows q and r of A = sum q r^T
+    columns = A.T.copy()
+    norms = np.empty(n)
+    # as rows q and r of A = sum q r^T
+    Q = np.empty((n, n))
+    R = np.zeros((n, n))
     for j in range(n):
         norms[j] = np.sqrt((columns[j] ** 2).sum())
-    least, rank = negligible * norms.max(), 0
+    least = negligible * norms.max()
+    rank = 0
     while rank < n:
         p = np.argmax(norms)
         size = norms[p]
         if rank > 0 and size <= least:
             break
-        q, r = Q[rank], R[rank]
+        q = Q[rank]
+        r = R[rank]
         q[:] = columns[p] / max(size, 1e-300)
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _without(columns[j], q, r, j)
         # The remaining pivot column is rounding error: its norm is set to 0.
-        r[p], norms[p] = size, 0.0
+        r[p] = size
+        norms[p] = 0.0
         rank += 1
     small = np.zeros((rank, rank))
     for a in range(rank):
@@ -84,7 +90,8 @@ def compressed(A: Array, negligible: float) -> Array:
 @compiled_for_vectors
 def _without(column: Array, q: Array, r: Array, j: int) -> float:
     """Moves a column's component along q into r[j], and returns the norm of the remaining column."""
-    along, left = 0.0, 0.0
+    along = 0.0
+    left = 0.0
     for i in range(len(q)):
         along += q[i] * column[i]
     for i in range(len(q)):

@@ -16,7 +16,9 @@ from ....model.compiled.compilation import compiled_for_vectors
 @compiled_for_vectors
 def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
     """Derivative of `phase` at a start, (n,), along a change of the parameters, negated as a right side."""
-    V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((3, *c.drag.shape))
+    V = np.empty(c.drag.shape)
+    G = np.empty(c.drag.shape)
+    changes = np.empty((3, *c.drag.shape))
     balance(start, V, G, c, m)
     balance_change(start, V, changes, change, c, m)
     theta = tip_angle(start, c.compliance, m)
@@ -28,7 +30,8 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 @compiled_for_vectors
 def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
     """dy/dt of the tip at the start, (n,), by the reaction at the tip."""
-    V, G = np.empty(c.drag.shape), np.empty(c.drag.shape)
+    V = np.empty(c.drag.shape)
+    G = np.empty(c.drag.shape)
     balance(start, V, G, c, m)
     return float(lateral_velocity(G, tip_angle(start, c.compliance, m)))
 
@@ -42,7 +45,8 @@ def lateral_velocity(G: Array, theta: float) -> float:
 @compiled_for_vectors
 def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
     """Angle theta of the tip for a state, (n,), and compliances, (3, nodes + 1)."""
-    theta, nodes = 0.0, len(m.weights) - 1
+    theta = 0.0
+    nodes = len(m.weights) - 1
     for i in range(nodes):
         theta += m.weights[i] * compliance[BENDING, i] * x[stress_place(BENDING, i, nodes)]
     return theta
@@ -52,11 +56,16 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
 def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     """Derivative of `phase` with respect to the start, into row, (n,) each."""
     n = len(start)
-    V, G, J, tip = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((n, n)), np.empty((COMPONENTS, n))
+    V = np.empty(c.drag.shape)
+    G = np.empty(c.drag.shape)
+    J = np.empty((n, n))
+    tip = np.empty((COMPONENTS, n))
     balance(start, V, G, c, m)
     jacobian(start, V, J, tip, c, m)
-    theta, nodes = tip_angle(start, c.compliance, m), len(m.weights) - 1
-    sin, cos = np.sin(theta), np.cos(theta)
+    theta = tip_angle(start, c.compliance, m)
+    nodes = len(m.weights) - 1
+    sin = np.sin(theta)
+    cos = np.cos(theta)
     for i in range(n):
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
     for i in range(nodes):

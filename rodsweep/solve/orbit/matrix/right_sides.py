@@ -32,7 +32,8 @@ def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
 @compiled_for_vectors
 def _store_stresses(G: Array, F: Array) -> None:
     """Copies G at all nodes but the tip, (3, nodes + 1), to its places in F, (n,)."""
-    d, n = G.shape[0], G.shape[1] - 1
+    d = G.shape[0]
+    n = G.shape[1] - 1
     for a in range(d):
         for i in range(n):
             F[stress_place(a, i, n)] = G[a, i]
@@ -60,7 +61,9 @@ def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> No
     """
     K, s, n = out.shape
     size = len(p.matrices.weights)
-    V, G, F = np.empty((3, size)), np.empty((3, size)), np.empty(n)
+    V = np.empty((3, size))
+    G = np.empty((3, size))
+    F = np.empty(n)
     for k in range(K):
         h = duration * p.lengths[k]
         for i in range(s):
@@ -80,11 +83,14 @@ def right_sides(
     residuals' derivative along the change of a parameter.
     """
     K, s, count, n = columns.shape
-    G, changes, slopes = np.empty(V.shape[2:]), np.empty((3, *V.shape[2:])), np.empty(n)
+    G = np.empty(V.shape[2:])
+    changes = np.empty((3, *V.shape[2:]))
+    slopes = np.empty(n)
     for k in range(K):
         length = p.lengths[k]
         for i in range(s):
-            x, sides = points[1 + k * s + i], columns[k, i]
+            x = points[1 + k * s + i]
+            sides = columns[k, i]
             equations(x, sides[0], V[k, i], G, p)
             _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
             for r in range(n):
@@ -104,11 +110,19 @@ def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Ar
     (columns, N + 1).
     """
     K, s, count, n = columns.shape
-    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
+    points = values[:-1].reshape(1 + K * s, n)
+    duration = values[-1] / p.parts
     changes = variations[:, :-2].copy().reshape(count, 1 + K * s, n)
-    V, G, out = np.empty(p.rod.drag.shape), np.empty(p.rod.drag.shape), np.empty((3, *p.rod.drag.shape))
-    F, slopes, by_parameter, J = np.empty(n), np.empty(n), np.zeros(n), np.empty((n, n))
-    tip, v, moving = np.empty((len(V), n)), np.empty((count, n)), np.any(variations[:, -1] != 0.0)
+    V = np.empty(p.rod.drag.shape)
+    G = np.empty(p.rod.drag.shape)
+    out = np.empty((3, *p.rod.drag.shape))
+    F = np.empty(n)
+    slopes = np.empty(n)
+    by_parameter = np.zeros(n)
+    J = np.empty((n, n))
+    tip = np.empty((len(V), n))
+    v = np.empty((count, n))
+    moving = np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):
         h = duration * p.lengths[k]

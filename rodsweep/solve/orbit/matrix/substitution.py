@@ -18,8 +18,10 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
     The last stage's right side becomes the change of the interval's end for a fixed start.
     """
     s, count, n = columns.shape
-    d, mass = p.differentiation, p.mass
-    t, u = np.empty((count, n)), np.empty((count, n))
+    d = p.differentiation
+    mass = p.mass
+    t = np.empty((count, n))
+    u = np.empty((count, n))
     _first_two(B, columns, p, t, u)
     for i in range(2, s):
         for m in range(count):
@@ -43,9 +45,12 @@ def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
 @compiled_for_vectors
 def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
     """First two stages, t and u, (columns, n), for right sides y, (s, columns, n), and other stages of 0."""
-    d, mass, (count, n) = p.differentiation, p.mass, t.shape
+    d = p.differentiation
+    mass = p.mass
+    (count, n) = t.shape
     side = np.empty((count, n))
-    t[:], u[:] = 0.0, 0.0
+    t[:] = 0.0
+    u[:] = 0.0
     add_products(B[0, 0], y[0], t, 1.0)
     for m in range(count):
         for r in range(n):
@@ -63,7 +68,8 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
     count, n = x.shape
     for m in range(0, count - 1, 2):
         for i in range(n):
-            first, second = 0.0, 0.0
+            first = 0.0
+            second = 0.0
             for j in range(n):
                 first += A[i, j] * x[m, j]
                 second += A[i, j] * x[m + 1, j]
@@ -84,8 +90,11 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
     start: (columns, n); columns and out: (K, s, columns, n).
     """
     K, s, count, n = columns.shape
-    y, first, scaled = np.empty((2, count, n)), start.copy(), np.empty((count, n))
-    d, mass = p.differentiation, p.mass
+    y = np.empty((2, count, n))
+    first = start.copy()
+    scaled = np.empty((count, n))
+    d = p.differentiation
+    mass = p.mass
     for k in range(K):
         B = factors.blocks[k]
         for m in range(count):
