@@ -21,7 +21,7 @@ TIE = 1e-12
 BOOKKEEPING = (
     "computed ",
     "BLAS: ",
-    "time a",
+    "time per",
     "time of the",
     "cost of a search",
     "in all ",

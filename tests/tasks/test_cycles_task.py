@@ -191,15 +191,15 @@ def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
     )
     text = " ".join(capsys.readouterr().out.split())
     for words in (
-        "8 points (2 x 1 x 2 x 1 x 2) in 4 chains of 2, down in F: each started from its neighbour's cycle",
+        "8 points (2 x 1 x 2 x 1 x 2) in 4 chains of 2, down in F: each starts from its neighbour's cycle",
         "tip deflection 0.01 L",
         "at most 4 ranks can share the work",
         "axial drag yes gamma1 = 0.5, 1",
         "nonlinear motion yes",
         "energy budget yes",
-        "1000 a point, 8000 in all: 0.384 MB",
-        "50 a point on 65 nodes, 400 in all: 0.624 MB",
-        "tip from the start to the cycle yes 500 a point, 4000 in all: 0.128 MB",
+        "1000 per point, 8000 in total: 0.384 MB",
+        "50 per point on 65 nodes, 400 in total: 0.624 MB",
+        "tip from the start to the cycle yes 500 per point, 4000 in total: 0.128 MB",
         "s on one rank",
     ):
         assert words in text, words
