@@ -16,10 +16,10 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ..newton import MAX_REFINEMENTS
 from ..parameter_path import Path
-from ..value import TYPICAL_NOISE, Value
+from ..value import Value
 from .determinant import elements_for, samples_of
 from .propagators import MAX_TERMS, element_propagators
-from .value import chain_along, chain_value
+from .value import ROOT_NOISE, chain_along, chain_value
 
 NODES = (12, 24)
 """Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
@@ -150,4 +150,4 @@ def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex,
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    return w, slope, max(abs(D), TYPICAL_NOISE * noise) / size + CONVERGED * (abs(w) + abs(p * slope))
+    return w, slope, max(abs(D), ROOT_NOISE * noise) / size + CONVERGED * (abs(w) + abs(p * slope))

@@ -23,6 +23,10 @@ from ..value import Value
 
 UNIT = 4.440892098500626e-16
 """Unit of the noise of D: two relative rounding errors."""
+ROOT_NOISE = 1.5
+"""Rounding error of D at a root, in units of its noise. The noise lacks the errors of propagators, of which D
+is a small part. The largest of 1100 eigenvalues and 650 crossings of stepped arms, against 32 digits,
+was 1.3."""
 BY_W, BY_P = range(2)
 """Places of the derivatives of the columns."""
 

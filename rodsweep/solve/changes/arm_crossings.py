@@ -169,7 +169,7 @@ class CrossingSearch:
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
         kind = Kind.hopf if grows != self.problem.path.inverse else Kind.hopf_reverse
-        error_of_p = max(blur, abs(w.real / slope.real))
+        error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
         return Crossing(at, kind, w.imag, 0.0, error, frequency_error=abs(slope.imag) * error_of_p)
 

@@ -13,7 +13,7 @@ from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
 from ...determinant.arm.family import CONVERGED, ArmFamily, propagators_at
 from ...determinant.arm.hull import Hull, Hulls, hull_at
-from ...determinant.arm.value import chain_along, chain_value
+from ...determinant.arm.value import ROOT_NOISE, chain_along, chain_value
 from ...determinant.roots import roots_of_parabola, sort_descending
 from ...determinant.value import SECOND_STEP, second_difference
 from ...model.compiled.compilation import compiled
@@ -37,7 +37,7 @@ Level = tuple[float, Array, Array]
 def corrected_of_arm(w: complex, level: Level) -> Corrected:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
-    return newton_step(w, D, D_w, D_p, noise)
+    return newton_step(w, D, D_w, D_p, ROOT_NOISE * noise)
 
 
 @compiled

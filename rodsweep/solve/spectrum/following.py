@@ -42,11 +42,11 @@ class Corrected(NamedTuple):
 def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> Corrected:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
-    return newton_step(w, D, D_w, D_p, noise)
+    return newton_step(w, D, D_w, D_p, TYPICAL_NOISE * noise)
 
 
 @compiled
-def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, noise: float) -> Corrected:
+def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> Corrected:
     """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
     size = abs(D_w)
     if not size > 0:
@@ -56,7 +56,7 @@ def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, noise: float
     if w.imag == 0:
         step = complex(step.real, 0.0)
         slope = complex(slope.real, 0.0)
-    return Corrected(w - step, slope, abs(step), TYPICAL_NOISE * noise / size)
+    return Corrected(w - step, slope, abs(step), rounding / size)
 
 
 @compiled

@@ -15,7 +15,7 @@ from ..backend.kept import forget_all
 from ..point import solved
 from .candidates import Candidates, Verdict, attempt, judge
 from .problem import TransverseProblem, problem_of
-from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
+from .spectrum import Spectrum, SpectrumRequest, no_spectrum, stated_errors, vectors_on_nodes
 from .status import SpectrumStatus
 
 __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
@@ -247,7 +247,7 @@ def _result(best: JudgedCandidates, problem: TransverseProblem, request: Spectru
     return Spectrum(
         status=status,
         eigenvalues=found.w[: request.modes],
-        error_estimate=found.error[: request.modes],
+        error_estimate=stated_errors(found.w, found.error)[: request.modes],
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
         elements=best.found.mesh.elements,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
+from ...determinant.value import ROUND_OFF
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import tip_scale
 from ...discretization.straight.transverse_mesh import AnyMesh
@@ -25,6 +26,9 @@ class SpectrumRequest:
     """Number of Lobatto nodes for (Y, Theta); 0 for no vectors."""
 
 
+ROUNDING_OF_EIGENVALUES = 6 * ROUND_OFF
+"""Rounding error of an eigenvalue relative to its modulus, besides that of D: of the number itself and of the
+coefficients of D."""
 EachRod = Any
 """A number of a rod, or the numbers of n rods solved together, (n,)."""
 
@@ -90,6 +94,11 @@ def vectors_on_nodes(
     matrix = solver.pencil.evaluation(lobatto_points(request.vector_nodes))
     scale = tip_scale(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
+
+
+def stated_errors(w: Complex, error: Array) -> Array:
+    """Errors of eigenvalues w with the rounding of w itself; w and errors of roots of D: any equal shape."""
+    return error + ROUNDING_OF_EIGENVALUES * np.abs(w)
 
 
 def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:

@@ -25,7 +25,7 @@ from .following import follow
 from .prediction import Track, part, track_from
 from .search import Search, SpectrumRequest, solve_spectrum
 from .search import warm_up as warm_up_search
-from .spectrum import Reached, Spectrum
+from .spectrum import Reached, Spectrum, stated_errors
 from .status import SpectrumStatus
 
 
@@ -85,7 +85,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
         if found:
             here = slice(place, end)
             columns["eigenvalues"][here] = found.w
-            columns["error_estimate"][here] = found.error
+            columns["error_estimate"][here] = stated_errors(found.w, found.error)
             columns["unstable_count"][here] = found.unstable
             columns["certified"][here] = True
         for i in range(place, end):

@@ -78,7 +78,8 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert kinds(symmetric) == ["hopf", "symmetry_breaking", "end"]
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
     born, fold, end = asymmetric.special
-    assert born == following.replace(symmetric.special[1], after=-1)
+    # NaN does not equal NaN, but has the same text.
+    assert repr(born) == repr(following.replace(symmetric.special[1], after=-1))
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mpmath as mp
 import numpy as np
 import pytest
 from reference.dense_arm import eigenvalues
@@ -35,6 +36,50 @@ def test_random_arms_have_the_leading_eigenvalues_of_another_discretisation(seed
         for w, error in zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True):
             assert np.abs(dense - w).min() <= 1e-5 * max(abs(w), 1.0)
             assert abs(refined(w, ArmDeterminant(rod)) - w) <= 4 * error + 1e-15 * abs(w)
+
+
+@mp.workdps(32)
+def exact_root(w, rod):
+    """The root of D next to w in 32 digits, of a stepped arm of linear material."""
+    mp.mp.dps = 32
+    profile = rod.build.profile
+    ends = zip(profile.u[::2], profile.u[1::2], profile.rows[::2], strict=True)
+    k1, k2, F, gamma3 = map(mp.mpf, (rod.k1, rod.k2, rod.F, rod.gamma3))
+
+    def determinant(w):
+        sides = mp.matrix([[1, 0], [0, 1], [0, 0], [0, 0]])
+        for start, end, row in reversed(segments):
+            c1, c2, c3 = 1 / (k1 * row[0]), 1 / (k2 * row[1]), 1 / mp.mpf(row[2])
+            nu = 1 - F * c1
+            rates = mp.matrix(
+                [[0, nu, c2, 0], [0, 0, 0, c3], [w, 0, 0, F * c3], [0, w * gamma3, -(nu + F * c2), 0]]
+            )
+            sides = mp.expm(rates * (mp.mpf(start) - mp.mpf(end))) * sides
+        return sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]
+
+    segments = list(ends)
+    last, here = mp.mpc(w) * (1 + mp.mpf("1e-10")), mp.mpc(w)
+    values = determinant(last), determinant(here)
+    for _ in range(2):
+        last, here = here, here - values[1] * (here - last) / (values[1] - values[0])
+        values = values[1], determinant(here)
+    return here
+
+
+@pytest.mark.parametrize("seed", range(max(3, RODS // 10)))
+def test_errors_of_stepped_arms_hold_in_the_last_digit(seed):
+    """Rounding of propagators, of which D is a small part, moved some by 150 times what was stated."""
+    rng = np.random.default_rng([34, seed])
+    factors = 10 ** rng.uniform(-0.6, 0.6, (3, 3))
+    rows = tuple((*row, 1.0, 1.0, 1.0) for row in factors.tolist() for _ in range(2))
+    profile = Profile((0.0, 0.3, 0.3, 0.65, 0.65, 1.0), rows)
+    numbers = {"k1": 10 ** rng.uniform(2, 4.5), "k2": 10 ** rng.uniform(1, 4), "gamma3": 1e-3}
+    F = min(10 ** rng.uniform(0.3, 2), 0.9 * numbers["k1"] * factors[:, 0].min())
+    rod = Rod(F=F, **numbers, build=Build(profile=profile))
+    found = solve_spectrum(rod, REQUEST)
+    assert found.status == SpectrumStatus.ok
+    for w, error in zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True):
+        assert abs(exact_root(w, rod) - w) <= error <= 1e-12 * abs(w)
 
 
 def test_a_profile_of_ones_is_the_uniform_rod():
