@@ -319,7 +319,7 @@ def _alike_but_for_drag(view):
 def _drag_sentences(view, page, start, chosen, numbers):
     """The check of how much drag changes numbers at chosen points, by their name in the sentence."""
     found, alike = [], _alike_but_for_drag(view)
-    sentence = rf"{start}over NUMBER drags of the range the results of one arm vary: (.*)$"
+    sentence = rf"{start}the results of an arm vary over the NUMBER drags of its range: (.*)$"
     for line, match in read(page, sentence):
         why = [] if int(match[1]) == len(DRAGS) else ["drags"]
         items = re.findall(

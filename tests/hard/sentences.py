@@ -778,6 +778,12 @@ def _curve_sentences(view, page, row):
             [] if abs(float(v["curve_agreement"]) - float(match[3])) <= unit_of(match[3]) else ["agreement"]
         )
         found.append((line, "; ".join(why)))
+    cut = rf"^curve NUMBER, of [a-zA-Z ]+, is not whole: at {row} = NUMBER, F = NUMBER "
+    for line, match in read(page, cut):
+        here = v["curve_number"] == int(match[1])
+        off = [np.abs(v[f"curve_{n}"][here][[0, -1]] - float(match[i])) for n, i in ((row, 2), ("F", 3))]
+        near = (off[0] <= unit_of(match[2])) & (off[1] <= unit_of(match[3]))
+        found.append((line, "" if near.any() else "the curve does not end there"))
     fixed = {name: float(view.axes[name][0]) for name in view.parameters if name != row}
     for i in range(0, len(v["curve_kind"]), max(1, len(v["curve_kind"]) // 6)):
         rod = Rod(F=float(v["curve_F"][i]), **fixed | {row: float(v[f"curve_{row}"][i])})

@@ -11,8 +11,9 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.determinant.arm import hull
 from rodsweep.post.summary import show_summary
-from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.phase_diagram import CLASSES, CURVE_ENDS
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
+from rodsweep.solve.changes import boundary_curves
 
 ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
 ROWS = {"F": rs.linspace(0.0, 190.0, 20), "k1": 200.0, "k2": [1e3, 1e4], "gamma3": 1e-4}
@@ -55,6 +56,22 @@ def test_a_branch_that_is_cut_short_leaves_open_where_cycles_are_stable(tmp_path
     assert f"{BESIDE}: not known" in cut
     assert "no cycle is stored" in cut
     assert "no stable cycle" not in cut
+
+
+def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
+    plane = {"F": rs.linspace(0.0, 90.0, 10), "k1": [100.0, 300.0], "k2": 1e4, "gamma3": 1e-4}
+    (tmp_path / "whole").mkdir()
+    assert "is not whole" not in told(view_of_sweep(tmp_path / "whole", "phase_diagram", **plane))
+    few = replace(boundary_curves.BOUNDARY_STEPS, most=5)
+    monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
+    view = view_of_sweep(tmp_path, "phase_diagram", **plane)
+    full = np.flatnonzero(view.variables["curve_end"] == list(CURVE_ENDS).index("list_full"))
+    assert len(full) > 0
+    said = told(view)
+    for i in full:
+        k1, F = (float(view.variables[f"curve_{name}"][i]) for name in ("k1", "F"))
+        where = f"is not whole: at k1 = {k1:.6g}, F = {F:.6g} the curve has the maximum number of points"
+        assert where in said
 
 
 def test_branches_that_are_cut_short_leave_rods_open(tmp_path):

@@ -97,7 +97,10 @@ def vectors_on_nodes(
 
 
 def stated_errors(w: Complex, error: Array) -> Array:
-    """Errors of eigenvalues w with the rounding of w itself; w and errors of roots of D: any equal shape."""
+    """Errors of eigenvalues with the rounding of the eigenvalues added.
+
+    w: eigenvalues, of any shape. error: their errors as roots of D, of the same shape.
+    """
     return error + ROUNDING_OF_EIGENVALUES * np.abs(w)
 
 

@@ -22,7 +22,7 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
             variations.append(f"{name} by {'up to ' * several}{_factor(spread)}")
     if not variations:
         return []
-    return [f"over {drags} drags of the range the results of one arm vary: {', '.join(variations)}"]
+    return [f"the results of an arm vary over the {drags} drags of its range: {', '.join(variations)}"]
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
