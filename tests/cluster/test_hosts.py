@@ -10,6 +10,7 @@ from conftest import BIN
 from contents import content, same, same_spectra
 from kernels import other_kernels
 from ranks import PATIENCE
+from surveyed import survey_only
 
 from rodsweep.results.file.view import read_view
 
@@ -154,6 +155,7 @@ def test_sweep_over_two_hosts_gives_the_content_of_a_plain_run(hosts, command):
     assert same(content(command.directory / "c.h5"), content(command.directory / "plain.h5"))
 
 
+@survey_only
 def test_hosts_with_different_blas_kernels_agree_within_their_error_estimates(hosts, command):
     """The other host takes the kernel of its processor, as a rank that is started by ssh does."""
     plain = {name: value for name, value in os.environ.items() if name not in BLAS}

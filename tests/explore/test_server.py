@@ -153,13 +153,16 @@ def test_without_bokeh_the_extra_is_named():
 
 @pytest.mark.parametrize(
     ("name", "text"),
-    [
-        ("absent.h5", None),
-        ("absent.yaml", None),
-        ("text.h5", "no result"),
-        ("list.yaml", "- 1"),
-        ("typo.yaml", "task: spectrum\nparameters: {F: 3, k1: 1e4, k2: 1e4, gama3: 0}"),
-    ],
+    few(
+        [
+            ("absent.h5", None),
+            ("typo.yaml", "task: spectrum\nparameters: {F: 3, k1: 1e4, k2: 1e4, gama3: 0}"),
+            ("absent.yaml", None),
+            ("text.h5", "no result"),
+            ("list.yaml", "- 1"),
+        ],
+        2,
+    ),
 )
 def test_what_is_neither_result_nor_config_is_refused(command, name, text):
     if text is not None:

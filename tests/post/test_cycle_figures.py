@@ -12,6 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.quiver import Quiver
 from matplotlib.text import Annotation
 from PIL import Image
+from surveyed import few
 
 from rodsweep.discretization.elements.periodic import derivative, resampled
 from rodsweep.errors import EnvironmentIncomplete, InputError
@@ -292,7 +293,7 @@ def test_suffix_has_to_suit_the_figure(tmp_path, what, suffix):
         draw(two_cycles(), tmp_path / f"f.{suffix}", what=what)
 
 
-@pytest.mark.parametrize("as_list", [False, True])
+@pytest.mark.parametrize("as_list", few([True, False], 1))
 def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
     """The figures name no variable that the file does not have."""
     columns = [np.ravel(c) for c in np.meshgrid(*TWO, indexing="ij")] if as_list else TWO

@@ -9,6 +9,7 @@ import pytest
 from contents import content, same, same_spectra
 from ranks import PATIENCE, kill, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
+from surveyed import few
 
 import rodsweep as rs
 from rodsweep.results.file.view import read_view
@@ -108,7 +109,7 @@ def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
     assert "spectrum.follow is true in the file and false in the config" in refused.stderr
 
 
-@pytest.mark.parametrize("whole_job", [True, False], ids=["all ranks", "one rank"])
+@pytest.mark.parametrize("whole_job", few([True, False], 1), ids=few(["all ranks", "one rank"], 1))
 def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     """Killed while ranks wait behind their third stretch, of 64 or 36 points: what is journalled stays."""
     command.write("c.yaml", SPECTRA)

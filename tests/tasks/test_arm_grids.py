@@ -182,7 +182,7 @@ def test_shards_a_stopped_run_ranks_and_python_give_the_same_file(command, confi
             ),
             (CHAINS, "11 cm]", "11 cm, 12 cm]", "3 of 12 points to do, 9 kept"),
         ],
-        2,
+        1,
     ),
 )
 def test_extension_gives_the_file_of_the_larger_grid(command, config, old, new, told):

@@ -84,7 +84,11 @@ def run_halted(command, name, units, ranks, how):
 
 @pytest.mark.parametrize(
     ("units", "ranks", "how"),
-    [pytest.param(1, 0, signal.SIGINT, marks=survey_only), (1, 0, signal.SIGKILL), (0, 2, signal.SIGUSR1)],
+    [
+        pytest.param(1, 0, signal.SIGINT, marks=survey_only),
+        pytest.param(1, 0, signal.SIGKILL, marks=survey_only),
+        (0, 2, signal.SIGUSR1),
+    ],
     ids=["Ctrl-C in the second", "killed", "two ranks in the first"],
 )
 def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, how):
