@@ -9,6 +9,7 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...results.layouts.variables import has_covering
 from ...wording import counted, some_of
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
@@ -46,7 +47,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
     trust = search_lines(view, done, "row")
-    details = [*count_lines(v["class"][done]), *cost_lines(view, done), saving_line(view, done, line)]
+    details = [*count_lines(v["class"][done]), *cost_lines(view, done), *saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
         trust += [*agreement_lines(view, line), *cut_lines(view, line, row)]
@@ -61,18 +62,20 @@ def count_lines(found: np.ndarray) -> list[str]:
     return [f"of {counted(found.size, 'place')} on the rows: {', '.join(counts)}"]
 
 
-def saving_line(view: View, done: np.ndarray, line: str) -> str:
-    """Line on the cost of the rows compared with a uniform grid; done: a mask of the rows' shape."""
+def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
+    """Line on the cost of the rows compared with a uniform grid, if it is counted; done: mask of the rows."""
+    if not has_covering(view.config):
+        return []
     v = view.variables
     rows = int(done.sum())
     solves = int(v["solves"][done].sum())
     boxes = int(v["boxes"][done].sum())
     uniform = float(np.ptp(v[line])) / GRID_RESOLUTION * rows
-    return (
+    return [
         f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
         f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} places, "
         f"{uniform / max(solves + boxes, 1):.1g} times as many"
-    )
+    ]
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:

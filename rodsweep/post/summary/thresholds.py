@@ -119,7 +119,7 @@ def trust_of_one(view: View) -> list[str]:
     v = {name: view.variables[name].ravel() for name in ("crossing_count", "crossing_kind", "certified")}
     end, open_from, open_to = (float(view.variables[n].ravel()[0]) for n in ("F_end", "open_from", "open_to"))
     hidden = int(v["crossing_count"][0]) - int((v["crossing_kind"] > 0).sum())
-    proof = "proved complete" if _is_covered(view) else "confirmed by counts of unstable modes"
+    proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"].all() else f"not {proof}"
     lines = [f"searched up to F = {end:.15g}; the list of crossings is {proof}{not_stored(hidden)}"]
     if np.isfinite(open_from):
@@ -197,16 +197,17 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the cost of the searches; done: a mask of the points' shape."""
+    """Line on the cost of the searches, if it is counted; done: a mask of the points' shape.
+
+    Of a search by counts of unstable modes no number is counted.
+    """
+    if not has_covering(view.config):
+        return []
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))
-    evaluations = f"{spans(boxes, 'evaluation')} of D over a box, " if _is_covered(view) else ""
-    return [f"cost of a search: {evaluations}{spans(solves, 'eigenproblem')}"]
-
-
-def _is_covered(view: View) -> bool:
-    """Whether a covering proves the crossings in a file."""
-    return has_covering(view.config)
+    return [
+        f"cost of a search: {spans(boxes, 'evaluation')} of D over a box, {spans(solves, 'eigenproblem')}"
+    ]
 
 
 def spans(values: np.ndarray, noun: str) -> str:

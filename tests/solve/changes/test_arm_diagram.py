@@ -162,6 +162,7 @@ def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
     assert "fold of the curve of Hopf points, where k1 is extremal: k1 = 366.4520346" in said
     assert "partial beam" not in said
     assert "crushed" not in said
+    assert "eigenproblem" not in said, "counts have no cost that is counted"
     assert command("plot", "rubber.h5").returncode == 0
 
 
