@@ -19,7 +19,7 @@ from ..model.arm.quantities import LOADS, RELATIVE
 from ..model.material.build import STANDARD
 from ..solve.exclusive import signals_held
 from ..tasks.running.job import Job, job_of, memory
-from .axes import plain
+from .axes import plain, plain_keyword
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 DEFAULT_WORDS = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
@@ -34,29 +34,21 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
     A whole section may be given as a mapping, as read from YAML. Raises InputError for a masked value, and
     for a name without a near key.
     """
-    tree: Tree = {"task": _plain("task", task)}
+    tree: Tree = {"task": plain_keyword("task", task)}
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
     sections = _sections(task)
     for name, value in keywords.items():
         if name in sections and isinstance(value, Mapping):
-            tree.setdefault(name, {}).update(_plain(name, dict(value)))
+            tree.setdefault(name, {}).update(plain_keyword(name, dict(value)))
             continue
         section = _section_of(name, sections)
         if section is None:
             section = _section_of(_meant(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
-        place[name] = _plain(f"{section}.{name}" if section else name, value)
+        place[name] = plain_keyword(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
     return tree
-
-
-def _plain(key: str, value: Any) -> Any:
-    """A value with NumPy types converted to Python types; InputError, naming the key, for a masked value."""
-    try:
-        return plain(value)
-    except ValueError as error:
-        raise InputError(f"{key}: {error}") from None
 
 
 def _write_out_arm(task: str, tree: Tree) -> None:

@@ -63,6 +63,14 @@ def plain(value: Any) -> Any:
     return value
 
 
+def plain_keyword(key: str, value: Any) -> Any:
+    """`plain` of the value of a keyword; InputError, naming the key, for a masked value."""
+    try:
+        return plain(value)
+    except ValueError as error:
+        raise InputError(f"{key}: {error}") from None
+
+
 def _with_unit(value: Any, unit: str) -> Any:
     """Appends a unit to a number, or to each number of a list; without a unit the value is unchanged."""
     if isinstance(value, list):

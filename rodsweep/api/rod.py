@@ -23,7 +23,7 @@ from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
 from .asking import job_from, known_load, tree_of
-from .axes import plain
+from .axes import plain, plain_keyword
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
@@ -198,7 +198,9 @@ class SoftRod:
 
 def _material(given: Mapping[str, Any]) -> MaterialSection | None:
     """The section `material` of a rod, or None without keys; InputError for an unknown law."""
-    tree = {name: plain(value) for name, value in given.items() if value is not None}
+    tree = {
+        name: plain_keyword(f"material.{name}", value) for name, value in given.items() if value is not None
+    }
     if not tree:
         return None
     read = with_profile_read({"material": tree}, Path())["material"]

@@ -44,6 +44,7 @@ NO_NUMBERS = [
         (lambda value: rs.sweep("spectrum", F=rs.logspace(1, value, num=3), **ROD), ""),
         (lambda value: rs.Rod(**ROD).thresholds(F_max=value), "thresholds.F_max"),
         (lambda value: rs.Rod(**ROD).thresholds(accuracy=value), "accuracy"),
+        (lambda value: rs.Rod(**ROD, profile={"u": [0, 1], "k3": value}), "material.profile"),
         (lambda value: rs.Arm(length=value, **ARM), "length"),
         (lambda value: rs.sweep("spectrum", arm={"length": value, **ARM}), "parameters.arm"),
     ],

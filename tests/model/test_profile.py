@@ -36,8 +36,9 @@ def test_two_rows_at_one_place_are_a_jump():
 @pytest.mark.parametrize(
     ("u", "k3", "sentence"),
     [
-        ((0.1, 1.0), (1, 1), "the first row must be at u = 0"),
-        ((0.0, 0.9), (1, 1), "the last at u = 1"),
+        ((0.1, 1.0), (1, 1), "the rows go from u = 0.1 to 1; they must go from 0 to 1"),
+        ((0.0, 0.9), (1, 1), "the rows go from u = 0 to 0.9"),
+        ((0.0,), (1,), "the number of rows is 1"),
         ((0.0, 0.6, 0.5, 1.0), (1, 1, 1, 1), "u = 0.5 follows u = 0.6"),
         ((0.0, 0.5, 0.5, 0.5, 1.0), (1, 1, 1, 1, 1), "there are 3 rows at u = 0.5"),
         ((0.0, 0.0, 1.0), (1, 1, 1), "there are 2 rows at u = 0"),

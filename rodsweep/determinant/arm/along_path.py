@@ -15,12 +15,16 @@ from ..parameter_path import Path
 from ..roots import BLURRED
 from ..value import ROUND_OFF, SECOND_STEP, Value
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ArmFamily, eigenvalue_in, value_in
+from .family import ROUNDING, ArmFamily, eigenvalue_in, value_in
 from .roots import refined, root_error
+from .value import ROOT_NOISE
 
 CENTRAL = ((1, 0.5), (-1, -0.5))
 FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Central and forward difference of second order: (offset in steps, weight times step) of each value."""
+PROPAGATOR_ERROR = 2.0
+"""Error of D at a double eigenvalue, in units of the difference of D between two sets of elements. Rounding
+errors of the propagators, of which the noise of D knows nothing, reach 300 times the noise."""
 MAX_SHORTENINGS = 20
 """Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
 
@@ -93,9 +97,17 @@ class ArmAlongPath:
                 return FAILED
             small = abs(in_p) <= LAST_NEWTON_STEP * e_p
             if small and (abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2):
-                return Zero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
+                rounding = PROPAGATOR_ERROR * self._difference(x, p) / max(abs(D_p), 1e-300)
+                e_p = ROOT_NOISE * e_p + rounding + ROUNDING * abs(p)
+                return Zero(x, p, max(e_x, abs(in_x)), e_p + abs(in_p))
             last = abs(in_x)
         return FAILED
+
+    def _difference(self, x: float, p: float) -> float:
+        """Difference of D at real w = x between the family's elements and those of the arm alone."""
+        family = self._value(x, p)
+        alone = self.determinant(p).value(complex(x, 0.0))
+        return abs(family.D.real - alone.D.real * math.exp(alone.S - family.S))
 
     def _value(self, x: float, p: float) -> Value:
         """D and D_w at real w = x."""

@@ -19,14 +19,15 @@ from ..parameter_path import Path
 from ..value import Value
 from .determinant import elements_for, samples_of
 from .propagators import MAX_TERMS, element_propagators
-from .value import ROOT_NOISE, chain_along, chain_value
+from .value import ROOT_NOISE, ROOT_RESIDUAL, chain_along, chain_value
 
 NODES = (12, 24)
 """Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
 first is enough."""
 CONVERGED = 1e-15
-"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding; the
-relative error that eigenvalues have from it, as from changes of w and p by as much."""
+"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
+ROUNDING = 2 * CONVERGED
+"""Relative error of eigenvalues and crossings from it, as from changes of w and p by as much."""
 MOST_ENTRIES = 300_000
 """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
 
@@ -150,4 +151,5 @@ def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex,
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    return w, slope, max(abs(D), ROOT_NOISE * noise) / size + CONVERGED * (abs(w) + abs(p * slope))
+    rounding = ROOT_RESIDUAL * abs(D) + ROOT_NOISE * noise
+    return w, slope, rounding / size + ROUNDING * (abs(w) + abs(p * slope))

@@ -24,7 +24,7 @@ from ..roots import (
 from ..value import SECOND_STEP
 from .determinant import ArmDeterminant
 from .hull import Hull
-from .value import ROOT_NOISE
+from .value import ROOT_NOISE, ROOT_RESIDUAL
 
 Mask = NDArray[np.bool_]
 
@@ -41,7 +41,7 @@ def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> comp
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
     """Estimated distance from w to the nearest root of D, in 1/tau2, valid near a double root too."""
     D, D_w, S, noise = determinant.value(w)
-    e = max(abs(D), ROOT_NOISE * noise)
+    e = ROOT_RESIDUAL * abs(D) + ROOT_NOISE * noise
     error = e / max(abs(D_w), 1e-300)
     if error > BLURRED * abs(w):
         second = abs(second_derivative(w, S, determinant))

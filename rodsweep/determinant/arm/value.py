@@ -24,9 +24,12 @@ from ..value import Value
 UNIT = 4.440892098500626e-16
 """Unit of the noise of D: two relative rounding errors."""
 ROOT_NOISE = 1.5
-"""Rounding error of D at a root, in units of its noise. The noise lacks the errors of propagators, of which D
-is a small part. The largest of 1100 eigenvalues and 650 crossings of stepped arms, against 32 digits,
-was 1.3."""
+"""Rounding error of D at a root, in units of its noise, beside `ROOT_RESIDUAL`. The noise lacks the errors of
+propagators, of which D is a small part."""
+ROOT_RESIDUAL = 2.0
+"""Rounding error of D at a root, in units of the D that is found there, which is rounding itself. Of 3800
+eigenvalues and 520 crossings of random arms, against 34 digits, two then miss by more than what is stated,
+and none by twice as much."""
 BY_W, BY_P = range(2)
 """Places of the derivatives of the columns."""
 

@@ -20,6 +20,8 @@ class ElementSettings:
     """Distance of `Elements.points_inside` from the ends of an element, in units of the element's length."""
     meshes_kept: int = 64
     """Number of meshes, and of matrices of one mesh, that are kept; a sweep uses some ten."""
+    pencils_kept: int = 16
+    """Number of pencils that are kept; for 300 growing modes each takes 10 MB."""
     pairs_kept: int = 256
     """Number of pairs of meshes whose transfer is kept, and of lists of edges."""
 

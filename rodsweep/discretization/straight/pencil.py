@@ -158,7 +158,7 @@ def slope(mesh: Elements, values: Complex, points: Array) -> Complex:
     return result
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.pencils_kept)
 def assemble(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order

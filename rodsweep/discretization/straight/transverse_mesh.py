@@ -34,6 +34,6 @@ def pencil_on(mesh: AnyMesh) -> AnyPencil:
     return assemble(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
+@lru_cache(maxsize=ELEMENTS.pencils_kept)
 def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
     return ArmPencil(mesh)

@@ -31,8 +31,12 @@ class Profile:
     rows: tuple[tuple[float, ...], ...]
 
     def __post_init__(self) -> None:
-        if len(self.u) < 2 or self.u[0] != 0 or self.u[-1] != 1:
-            raise ValueError("the first row must be at u = 0 and the last at u = 1")
+        if len(self.u) < 2:
+            raise ValueError(f"there must be rows at u = 0 and u = 1; the number of rows is {len(self.u)}")
+        if self.u[0] != 0 or self.u[-1] != 1:
+            raise ValueError(
+                f"the rows go from u = {self.u[0]:g} to {self.u[-1]:g}; they must go from 0 to 1"
+            )
         for a, b in zip(self.u[:-1], self.u[1:], strict=True):
             if not a <= b:
                 raise ValueError(f"u = {b:g} follows u = {a:g}; u must not decrease")

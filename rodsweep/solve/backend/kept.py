@@ -8,9 +8,17 @@ from collections.abc import Callable, Hashable
 from typing import Any, Generic, Protocol, TypeVar
 from weakref import WeakSet
 
+MAX_KEPT_BYTES = 100_000_000
+"""Memory of the objects of a full pool: dozens of solvers for a few modes, or three for 300 modes, which take
+seconds a solve and milliseconds to create."""
+
 
 class Destroyable(Protocol):
-    """An object with a `destroy` method that frees memory."""
+    """An object with a `destroy` method that frees memory, and an estimate of this memory."""
+
+    @property
+    def kept_bytes(self) -> int:
+        """Memory that the object takes at present, in bytes, approximately."""
 
     def destroy(self) -> None: ...
 
@@ -20,7 +28,11 @@ Object = TypeVar("Object", bound=Destroyable)
 
 
 class LruPool(Generic[Key, Object]):
-    """A pool of objects made by `create` from keys; a full pool drops the least recently used object."""
+    """A pool of objects made by `create` from keys; a full pool drops the least recently used objects.
+
+    A pool is full with `limit` objects, or with `MAX_KEPT_BYTES`. Objects grow with what they solve, so a
+    pool may exceed the memory until the next object is created.
+    """
 
     def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
         self._create = create
@@ -31,10 +43,15 @@ class LruPool(Generic[Key, Object]):
     def __len__(self) -> int:
         return len(self._objects)
 
+    @property
+    def kept_bytes(self) -> int:
+        """Memory of all objects, in bytes, approximately."""
+        return sum(kept.kept_bytes for kept in self._objects.values())
+
     def get(self, key: Key) -> Object:
         """The object of a key, kept or new; a later call with a different key may destroy the object."""
         if key not in self._objects:
-            while len(self._objects) >= self._limit:
+            while len(self._objects) >= self._limit or self.kept_bytes > MAX_KEPT_BYTES:
                 self._objects.popitem(last=False)[1].destroy()
             self._objects[key] = self._create(key)
         self._objects.move_to_end(key)

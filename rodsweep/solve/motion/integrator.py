@@ -178,6 +178,11 @@ class Integrator:
         named = {reasons.CONVERGED_TIME: Ending.reached, reasons.CONVERGED_USER: Ending.stopped}
         return named.get(reason, Ending.too_many_steps)
 
+    @property
+    def kept_bytes(self) -> int:
+        """Memory of the dense Jacobian, its factors and a copy, in bytes."""
+        return 3 * 8 * self.vector.size**2
+
     def destroy(self) -> None:
         """Frees the PETSc objects; TS and integrator refer to each other, so garbage collection would not."""
         for held in (self.ts, self.workspace, self.matrix, self.vector):

@@ -247,7 +247,7 @@ def _result(best: JudgedCandidates, problem: TransverseProblem, request: Spectru
     return Spectrum(
         status=status,
         eigenvalues=found.w[: request.modes],
-        error_estimate=stated_errors(found.w, found.error)[: request.modes],
+        error_estimate=stated_errors(found.w, found.error, problem.rod)[: request.modes],
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
         elements=best.found.mesh.elements,

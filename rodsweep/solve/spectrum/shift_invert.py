@@ -48,8 +48,8 @@ class KrylovSettings:
     """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip,
     which every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""
     uniform_solvers_kept: int = 24
-    """Number of solvers kept for later points of equal resolution; a sweep uses few, and each takes some
-    megabytes."""
+    """Number of solvers kept for later points of equal resolution, if their memory allows; a sweep uses
+    few."""
     arm_solvers_kept: int = 8
     """Number of solvers kept for later points on equal meshes of arms."""
 
@@ -58,6 +58,12 @@ KRYLOV = KrylovSettings()
 
 SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
+
+
+DENSE_COPIES = 9
+"""Dense matrices of a small pencil: A, its factors, and its constant pieces."""
+SPARSE_COPIES = 11
+"""Numbers per entry of a large pencil: A with its pattern, its factors, and its constant pieces."""
 
 
 class Pattern(Protocol):
@@ -189,6 +195,17 @@ class ShiftInvertSolver(ABC):
         real.destroy()
         imag.destroy()
         return X
+
+    @property
+    def kept_bytes(self) -> int:
+        """Memory of the matrices with their factors, the Krylov space and its projected matrices, in bytes.
+
+        Dropping a solver frees 0.5 to 0.9 of it, measured with up to 640 Krylov vectors; pencils are kept.
+        """
+        n = len(self.line) - 1
+        krylov = self.eps.getDimensions()[1] + 1
+        matrices = DENSE_COPIES * n * n if self.dense else SPARSE_COPIES * len(self.indices)
+        return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
 
     def destroy(self) -> None:
         """Frees the objects of PETSc and SLEPc."""

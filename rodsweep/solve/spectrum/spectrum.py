@@ -11,6 +11,7 @@ from ...determinant.value import ROUND_OFF
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import tip_scale
 from ...discretization.straight.transverse_mesh import AnyMesh
+from ...model.rod import Rod
 from .problem import TransverseProblem
 from .status import SpectrumStatus
 
@@ -29,6 +30,9 @@ class SpectrumRequest:
 ROUNDING_OF_EIGENVALUES = 6 * ROUND_OFF
 """Rounding error of an eigenvalue relative to its modulus, besides that of D: of the number itself and of the
 coefficients of D."""
+ROUNDING_OF_ARMS = 2 * ROUNDING_OF_EIGENVALUES
+"""The same of an arm with propagators, each of which rounds the coefficients of its element. With half of it
+9 of 3028 eigenvalues of random arms had larger errors than stated, against 34 digits."""
 EachRod = Any
 """A number of a rod, or the numbers of n rods solved together, (n,)."""
 
@@ -96,12 +100,12 @@ def vectors_on_nodes(
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def stated_errors(w: Complex, error: Array) -> Array:
-    """Errors of eigenvalues with the rounding of the eigenvalues added.
+def stated_errors(w: Complex, error: Array, rod: Rod) -> Array:
+    """Errors of eigenvalues w with the rounding of w itself; w and errors of roots of D: any equal shape.
 
-    w: eigenvalues, of any shape. error: their errors as roots of D, of the same shape.
+    rod: the rod, or one of its path.
     """
-    return error + ROUNDING_OF_EIGENVALUES * np.abs(w)
+    return error + (ROUNDING_OF_EIGENVALUES if rod.standard else ROUNDING_OF_ARMS) * np.abs(w)
 
 
 def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:

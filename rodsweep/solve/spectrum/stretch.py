@@ -85,7 +85,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
         if found:
             here = slice(place, end)
             columns["eigenvalues"][here] = found.w
-            columns["error_estimate"][here] = stated_errors(found.w, found.error)
+            columns["error_estimate"][here] = stated_errors(found.w, found.error, stretch.path.rod)
             columns["unstable_count"][here] = found.unstable
             columns["certified"][here] = True
         for i in range(place, end):

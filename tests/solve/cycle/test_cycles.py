@@ -15,10 +15,11 @@ from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.accuracy import refinement
 from rodsweep.solve.cycle.accuracy.cycle_errors import CYCLE_ERRORS
 from rodsweep.solve.cycle.accuracy.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
-from rodsweep.solve.cycle.transient import transient
+from rodsweep.solve.cycle.transient import schemes, transient
 from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.compiled_measures import powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -27,6 +28,7 @@ from rodsweep.solve.orbit.newton import at_orbit, newton
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
 from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
+from rodsweep.solve.point import Unsolvable
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 """(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""
@@ -437,3 +439,31 @@ def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
     assert near.measures.period == pytest.approx(far.measures.period, rel=1e-6)
     assert near.measures.tip_y_max == pytest.approx(far.measures.tip_y_max, rel=1e-6)
     assert near.periods < 200
+
+
+def test_a_motion_that_takes_too_many_steps_is_not_settled_and_says_so(monkeypatch):
+    """Motions that return seldom went on for a minute, because only returns were counted."""
+    monkeypatch.setattr(schemes, "SCHEMES", replace(schemes.SCHEMES, usual_steps=1))
+    c = solve_cycle(rod_of(240.0, *SOFT), REQUEST)
+    assert c.status == CycleStatus.not_settled
+    assert c.periods < REQUEST.most_periods
+    assert "of the tip in" in c.message
+    assert "time steps, the most allowed, none periodic" in c.message
+
+
+@pytest.mark.parametrize(("repeats", "meshes"), [(1, 4), (9, 1)])
+def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypatch):
+    """Chaotic motions, taken for cycles of nine returns, spent a minute on meshes of 280 intervals."""
+    tried = []
+
+    def fails(orbit, *_):
+        tried.append(orbit.intervals)
+        raise Unsolvable("no orbit")
+
+    half = orbit_at_fifty()
+    monkeypatch.setattr(refinement, "newton", fails)
+    points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
+    orbit = Orbit.of(half.form, half.symmetry, repeats * half.period, points, half.stages)
+    with pytest.raises(Unsolvable):
+        refinement.refine(orbit, 1e-6, NewtonWorkspace())
+    assert len(tried) == meshes

@@ -134,7 +134,10 @@ def refine(
             ):  # only symmetric cycles are born at Hopf points
                 raise
             aim = max(REFINEMENT.aim_factor * aim, REFINEMENT.finest_accuracy)
-            start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
+            mesh = wanted_mesh(orbit, aim, orbit.stages)
+            if mesh.intervals * mesh.unknowns**3 > REFINEMENT.max_retry_work:
+                raise
+            start = mesh.carry(orbit)
 
 
 def _predicted_cycle(

@@ -23,6 +23,10 @@ class RefinementSettings:
     """Relative Newton tolerance of the nearby orbit, whose tails choose the mesh."""
     aim_factor: float = 1e-3
     """Factor on the accuracy where a mesh is so coarse that it has no cycle."""
+    max_retry_work: float = 1e8
+    """Intervals times unknowns cubed of the largest finer mesh that is tried for a start without a cycle. The
+    cycles born at Hopf points that need one have less than 20 intervals and 150 unknowns; motions that never
+    repeat, taken for long cycles, spent a minute there."""
     first_mesh_accuracy: float = 0.5
     """Relative accuracy of a single cycle's first mesh: a second round costs more than a finer first mesh."""
     min_predicted_intervals: int = 6

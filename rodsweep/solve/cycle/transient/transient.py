@@ -17,6 +17,7 @@ from ....arrays import Array
 from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
 from ....watch import SolvePosition, report
+from ....wording import counted
 from ...motion.integrator import INTEGRATOR, Ending, Trajectory, integrator, relaxed
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -59,6 +60,8 @@ class TransientSettings:
     amplitude."""
     max_returns: int = 400
     """Number of last returns that are kept to recognise a torus."""
+    min_returns: int = 100
+    """Smallest number of returns for which time steps are allowed: a few returns may need many."""
 
 
 TRANSIENT = TransientSettings()
@@ -109,14 +112,15 @@ class Transient:
         self.row = angle_weights(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
-        self.first_scheme, self.scheme, noise = schemes_of(rate * period, request.transient > 0)
+        self.first_scheme, self.scheme, noise, steps = schemes_of(rate * period, request.transient > 0)
+        self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / 1000
         """First time step of the next run, tau2."""
         self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_returns)
         """Times and bending moments of the last returns since the last jump."""
         self.clock = 0.0
-        self.waited = self.jumps = self.failures = self.next_newton = 0
+        self.waited = self.steps = self.jumps = self.failures = self.next_newton = 0
 
     def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
         """The part of the motion that the request stores."""
@@ -128,7 +132,7 @@ class Transient:
         """Outcome of the motion from z, shape (unknowns,)."""
         z = self._relaxed(z)
         first = True
-        while self.waited < self.most_periods:
+        while self.waited < self.most_periods and self.steps < self.max_steps:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._chunk(z, first)
             if end := early_end(self.beam, run, self.waited):
@@ -168,6 +172,7 @@ class Transient:
     def _remember(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns of a run, and stores their times since the start and their bending moments."""
         self.waited += max(len(times), 1)
+        self.steps += len(run.times) - 1
         moments = self.beam.layout.field(states, "m3")
         self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
         self.clock += run.times[-1]
@@ -181,7 +186,8 @@ class Transient:
     def _not_settled(self, z: Array) -> str:
         """The reason why the motion, now at the state z, has no outcome."""
         if self._swings(z):
-            return f"{self.waited} returns of the tip, none periodic"
+            work = f" in {self.steps} time steps, the most allowed" if self.steps >= self.max_steps else ""
+            return f"{counted(self.waited, 'return')} of the tip{work}, none periodic"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
         return f"its deflection has decayed after {self.waited} returns, but {why}"
