@@ -18,7 +18,7 @@ from ..newton import MAX_REFINEMENTS
 from ..parameter_path import Path
 from ..value import Value
 from .determinant import elements_for, samples_of
-from .propagators import MAX_TERMS, element_propagators
+from .propagators import ENTRIES, MAX_TERMS, element_propagators
 from .value import ROOT_NOISE, chain_along, chain_value
 
 NODES = (12, 24)
@@ -52,7 +52,7 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
         p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(number)
         arms = [path.at(value) for value in p.tolist()]
         found = elements_for(arms, samples_of(arms), W)
-        if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
+        if len(found.lengths) * MAX_TERMS * ENTRIES > MOST_ENTRIES:
             return None
         # What the coefficients along the arm do not resolve, the propagators made of them cannot.
         if not _converged(np.moveaxis(np.array(found.local), 1, 0), 10 * CONVERGED):

@@ -1,14 +1,26 @@
 """Propagators of the transverse problem over elements of a non-uniform arm, as polynomials in w.
 
-With the state X = (y, theta, s, m) the eigenproblem of an arm with profiles reads (physics: the arm as it
-is built)
+With the state (y, theta, s, m) the eigenproblem of an arm with profiles reads (physics: the arm as it is
+built)
 
     y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
 
-Over one element X(b) = Phi(w) X(a), with Phi entire in w. The Taylor polynomial of Phi in w comes from
+D is the minor of the rows s and m of two solutions, those that start with s = 1 or m = 1 at the clamp. With
+y^s for the minor of the rows y and s, and so on, y^s + theta^m - F y^theta is constant along the arm: 0 for
+these two solutions. The other five minors then obey a linear system of their own,
+
+    (s^m)'     = w (gamma2 y^m - gamma3 theta^s)
+    (theta^s)' = F c3 theta^m - c3 s^m - w gamma2 y^theta
+    (theta^m)' = -g theta^s
+    (y^theta)' = c3 y^m - c2 theta^s
+    (y^m)'     = (g + nu) theta^m + c2 s^m + (w gamma3 - F g) y^theta
+
+from s^m = 1 at the clamp, the others 0, to D = s^m at the tip. A growing exponential of one solution cannot
+hide the other one, as it does where the solutions themselves are integrated.
+
+Over one element the minors are multiplied by a matrix C(w), entire in w. Its Taylor polynomial comes from
 collocation at the Gauss points of the element. Coefficients are sampled at the Gauss points alone, so every
-profile and law costs the same. The terms satisfy Phi_n' = A_0 Phi_n + A_1 Phi_(n-1): a linear system gives
-(s, m), then quadrature gives theta and y.
+profile and law costs the same. The terms satisfy C_n' = A_0 C_n + A_1 C_(n-1).
 """
 
 from collections.abc import Sequence
@@ -22,6 +34,12 @@ from ...model.material.build import LocalCoefficients
 
 STAGES = 12
 """Gauss points of an element. Ten integrate exp(2.4) to 1e-17; two more allow for varying coefficients."""
+MINORS = 5
+SM, TS, TM, YT, YM = range(MINORS)
+"""Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
+NONE = -1
+"""A row without a start value."""
+ENTRIES = MINORS * MINORS
 MAX_TERMS = 24
 NEGLIGIBLE = 1e-18
 """Size of a term, relative to the first term, at which the polynomial is truncated."""
@@ -44,13 +62,13 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 
 def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: Array, W: float) -> Array:
-    """The coefficients of Phi in powers of w/W, shape (n, elements, terms, 16), each Phi column by column.
+    """The coefficients of C in powers of w/W, (n, elements, terms, ENTRIES), each C column by column.
 
     F: forces of n arms. local: coefficients at the Gauss points, each (n, elements, STAGES). lengths: lengths
     of the elements, in L, (elements,).
     """
     _, integrals, weights = gauss_method(STAGES)
-    terms = np.zeros((len(F), len(lengths), MAX_TERMS, 16))
+    terms = np.zeros((len(F), len(lengths), MAX_TERMS, ENTRIES))
     coefficients = np.ascontiguousarray(np.array(local).transpose(1, 2, 0, 3))
     method = np.ascontiguousarray(integrals.T), weights
     most = max(_fill_terms((F[i], W), coefficients[i], lengths, method, terms[i]) for i in range(len(F)))
@@ -61,7 +79,7 @@ def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: A
 def _fill_terms(
     load: tuple[float, float], coefficients: Array, lengths: Array, method: tuple[Array, Array], terms: Array
 ) -> int:
-    """Fills the terms of all elements, (elements, MAX_TERMS, 16); returns how many are needed at most.
+    """Fills the terms of all elements, (elements, MAX_TERMS, ENTRIES); returns how many are needed at most.
 
     load: (F, W). coefficients: in the order of `LocalCoefficients`, (elements, 6, STAGES). method: transposed
     integrals and weights of `gauss_method`.
@@ -76,38 +94,36 @@ def _fill_terms(
 
 @compiled
 def _fill_element(load: tuple[float, float], local: Array, method: tuple[Array, Array], terms: Array) -> int:
-    """Fills the terms of one element, (MAX_TERMS, 16); returns how many are needed.
+    """Fills the terms of one element, (MAX_TERMS, ENTRIES); returns how many are needed.
 
     method: transposed integrals, (STAGES, STAGES), and weights, (STAGES,), times the length of the element.
-    Functions along the element have the shape (4, STAGES): one row for each initial value.
+    Functions along the element have the shape (MINORS, STAGES): one row for each initial value.
     """
     F, W = load
     Q, weights = method
-    c3, gamma2, gamma3, g = local[2], local[3], local[4], local[5]
-    inverse = _inverse_of_moments(F, c3, g, Q)
-    along = np.zeros((10, 4, STAGES))
-    y, theta, push, turn, m = along[0], along[1], along[2], along[3], along[4]
-    s, rise, slopes, loads, moments = along[5], along[6], along[7], along[8], along[9]
+    inverse = _inverse_of_turns(F, local[2], local[5], Q)
+    values = np.zeros((MINORS, MINORS, STAGES))
+    rates = np.zeros((MINORS, MINORS, STAGES))
+    known = np.zeros((MINORS, STAGES))
     largest = 0.0
     for n in range(terms.shape[0]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
-        for k in range(4):
-            for i in range(STAGES):
-                loads[k, i] = W * gamma2[i] * y[k, i]
-                moments[k, i] = W * gamma3[i] * theta[k, i]
-        _integrate(Q, loads, 2, start, push)
-        for k in range(4):
-            for i in range(STAGES):
-                s[k, i] = moments[k, i] - g[i] * push[k, i]
-        _integrate(Q, s, 3, start, turn)
-        _integrate(inverse, turn, 0, 0.0, m)
-        for k in range(4):
-            for i in range(STAGES):
-                slopes[k, i] = c3[i] * m[k, i]
-        _integrate(Q, slopes, 1, start, theta)
-        _shear_and_rise((F, start), local, (push, theta, slopes), (s, rise, loads, moments))
-        _integrate(Q, rise, 0, start, y)
-        size = _end_values(weights, (rise, slopes, loads, moments), start, terms[n])
+        _loads_of_w(W, local, values, rates)
+        _integrate(Q, rates[SM], SM, start, values[SM])
+        _add_pushes(F, start, local, values, rates)
+        _integrate(Q, rates[TS], TS, start, known)
+        _integrate(inverse, known, NONE, start, values[TS])
+        _turns(local, values, rates)
+        _integrate(Q, rates[TM], TM, start, values[TM])
+        _add_turns(F, start, local, values, rates)
+        _integrate(Q, rates[YM], YM, start, values[YM])  # without the part by y^theta
+        _rises(local, values, rates)
+        _integrate(Q, rates[YT], YT, start, known)
+        _integrate(inverse, known, NONE, start, values[YT])
+        _add_tilts(F, local, values, rates)
+        _integrate(Q, rates[YM], YM, start, values[YM])
+        _rises(local, values, rates)
+        size = _end_values(weights, rates, start, terms[n])
         largest = size if n == 0 else largest
         if size <= NEGLIGIBLE * largest:
             return n + 1
@@ -115,73 +131,119 @@ def _fill_element(load: tuple[float, float], local: Array, method: tuple[Array, 
 
 
 @compiled_for_vectors
-def _integrate(Q: Array, values: Array, column: int, start: float, out: Array) -> None:
-    """out = the integrals of values, both (4, STAGES), to each stage, plus a start value in one row.
+def _integrate(Q: Array, rates: Array, row: int, start: float, out: Array) -> None:
+    """out = the integrals of rates, both (MINORS, STAGES), to each stage, plus a start value in one row.
 
     Q: transposed integrals, (STAGES, STAGES).
     """
-    for k in range(4):
-        for i in range(STAGES):
-            out[k, i] = start if k == column else 0.0
-        for j in range(STAGES):
-            for i in range(STAGES):
-                out[k, i] += values[k, j] * Q[j, i]
+    for k in range(MINORS):
+        first = start if k == row else 0.0
+        for i in range(0, STAGES, 4):  # four sums at a time stay in one register
+            a = b = c = d = first
+            for j in range(STAGES):
+                rate = rates[k, j]
+                a += rate * Q[j, i]
+                b += rate * Q[j, i + 1]
+                c += rate * Q[j, i + 2]
+                d += rate * Q[j, i + 3]
+            out[k, i] = a
+            out[k, i + 1] = b
+            out[k, i + 2] = c
+            out[k, i + 3] = d
 
 
 @compiled_for_vectors
-def _shear_and_rise(
-    load: tuple[float, float],
-    local: Array,
-    known: tuple[Array, Array, Array],
-    rates: tuple[Array, Array, Array, Array],
-) -> None:
-    """Computes s and y' of one power of w, and completes s' and m', all (4, STAGES).
-
-    load: (F, start value of theta in its row). known: s without the part by bending, theta, theta'. rates: s
-    and y', and the parts of s' and m' that the previous power of w contributes.
-    """
-    F, start = load
-    push, theta, slopes = known
-    s, rise, loads, moments = rates
-    for k in range(4):
-        own = start if k == 1 else 0.0
+def _loads_of_w(W: float, local: Array, values: Array, rates: Array) -> None:
+    """Rates of one power of w by the values of the power before, both (MINORS, MINORS, STAGES)."""
+    for k in range(MINORS):
         for i in range(STAGES):
-            s[k, i] = push[k, i] + F * (theta[k, i] - own)
-            rise[k, i] = local[0, i] * theta[k, i] + local[1, i] * s[k, i]
-            loads[k, i] += F * slopes[k, i]
-            moments[k, i] -= local[5, i] * s[k, i]
+            push = W * local[3, i]
+            turn = W * local[4, i]
+            rates[SM, k, i] = push * values[YM, k, i] - turn * values[TS, k, i]
+            rates[TS, k, i] = -push * values[YT, k, i]
+            rates[YM, k, i] = turn * values[YT, k, i]
 
 
 @compiled_for_vectors
-def _end_values(weights: Array, rates: tuple[Array, Array, Array, Array], start: float, term: Array) -> float:
-    """Fills one term, (16,), from the rates (y', theta', s', m'), (4, STAGES); returns its largest entry."""
+def _add_pushes(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of theta^s what s^m and the start value of theta^m contribute."""
+    for k in range(MINORS):
+        own = F * start if k == TM else 0.0
+        for i in range(STAGES):
+            rates[TS, k, i] += local[2, i] * (own - values[SM, k, i])
+
+
+@compiled_for_vectors
+def _turns(local: Array, values: Array, rates: Array) -> None:
+    """The rates of theta^m."""
+    for k in range(MINORS):
+        for i in range(STAGES):
+            rates[TM, k, i] = -local[5, i] * values[TS, k, i]
+
+
+@compiled_for_vectors
+def _add_turns(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of theta^s and y^m what theta^m and s^m contribute."""
+    for k in range(MINORS):
+        own = start if k == TM else 0.0
+        for i in range(STAGES):
+            turn = values[TM, k, i]
+            rates[TS, k, i] += F * local[2, i] * (turn - own)
+            rates[YM, k, i] += (local[5, i] + local[0, i]) * turn + local[1, i] * values[SM, k, i]
+
+
+@compiled_for_vectors
+def _rises(local: Array, values: Array, rates: Array) -> None:
+    """The rates of y^theta."""
+    for k in range(MINORS):
+        for i in range(STAGES):
+            rates[YT, k, i] = local[2, i] * values[YM, k, i] - local[1, i] * values[TS, k, i]
+
+
+@compiled_for_vectors
+def _add_tilts(F: float, local: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of y^m what y^theta contributes by the force."""
+    for k in range(MINORS):
+        for i in range(STAGES):
+            rates[YM, k, i] -= F * local[5, i] * values[YT, k, i]
+
+
+@compiled_for_vectors
+def _end_values(weights: Array, rates: Array, start: float, term: Array) -> float:
+    """Fills one term, (ENTRIES,), from the rates, (MINORS, MINORS, STAGES); returns its largest entry."""
     size = 0.0
-    for row in range(4):
-        values = rates[row]
-        for k in range(4):
+    for row in range(MINORS):
+        for k in range(MINORS):
             total = start if k == row else 0.0
             for i in range(STAGES):
-                total += weights[i] * values[k, i]
-            term[4 * k + row] = total
+                total += weights[i] * rates[row, k, i]
+            term[MINORS * k + row] = total
             size = max(size, abs(total))
     return size
 
 
 @compiled
-def _inverse_of_moments(F: float, c3: Array, g: Array, Q: Array) -> Array:
-    """The transposed inverse of 1 + Q g Q F c3, which gives m with s eliminated, (STAGES, STAGES).
+def _inverse_of_turns(F: float, c3: Array, g: Array, Q: Array) -> Array:
+    """The transposed inverse of 1 + F Q c3 Q g, which eliminates theta^m and y^m, (STAGES, STAGES).
 
     Q: transposed integrals times the length of the element.
     """
     system = np.zeros((STAGES, STAGES))
-    for i in range(STAGES):
-        system[i, i] = 1.0
-        for k in range(STAGES):
-            for j in range(STAGES):
-                system[i, j] += F * c3[i] * Q[i, k] * g[k] * Q[k, j]
+    _add_twice_integrated(F, c3, g, Q, system)
     inverse = np.empty((STAGES, STAGES))
     _invert(system, inverse)
     return inverse
+
+
+@compiled_for_vectors
+def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array) -> None:
+    """Adds 1 + F g Q c3 Q to a matrix, (STAGES, STAGES)."""
+    for i in range(STAGES):
+        system[i, i] += 1.0
+        for k in range(STAGES):
+            factor = F * g[i] * Q[i, k] * c3[k]
+            for j in range(STAGES):
+                system[i, j] += factor * Q[k, j]
 
 
 @compiled_for_vectors
