@@ -21,6 +21,9 @@ from .roots import refined, root_error
 CENTRAL = ((1, 0.5), (-1, -0.5))
 FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Central and forward difference of second order: (offset in steps, weight times step) of each value."""
+NOISE_OF_DOUBLES = 5.0
+"""Rounding error of D at a double eigenvalue, in units of its noise: of 44 double eigenvalues of stepped arms,
+against 19 digits, the largest error was 4.7 times that of one unit."""
 MAX_SHORTENINGS = 20
 """Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
 
@@ -84,9 +87,9 @@ class ArmAlongPath:
                 return FAILED
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
-            blur = noise + ROUND_OFF * abs(p * D_p)
+            blur = NOISE_OF_DOUBLES * noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
-            e_x = (blur * abs(D_wp) + noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
+            e_x = (blur * abs(D_wp) + NOISE_OF_DOUBLES * noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
             x += in_x
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:

@@ -17,17 +17,17 @@ from ...model.compiled.compilation import compiled
 from ..newton import MAX_REFINEMENTS
 from ..parameter_path import Path
 from ..value import Value
-from .determinant import elements_for, samples_of
+from .determinant import Samples, elements_for, samples_of
 from .propagators import ENTRIES, MAX_TERMS, element_propagators
 from .value import ROOT_NOISE, chain_along, chain_value
 
-NODES = (12, 24)
+NODES = (12, 17, 24)
 """Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
 first is enough."""
 CONVERGED = 1e-15
 """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding; the
 relative error that eigenvalues have from it, as from changes of w and p by as much."""
-MOST_ENTRIES = 300_000
+MOST_ENTRIES = 500_000
 """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
 
 
@@ -51,17 +51,34 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
     for number in NODES:
         p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(number)
         arms = [path.at(value) for value in p.tolist()]
-        found = elements_for(arms, samples_of(arms), W)
+        samples = samples_of(arms)
+        if not _resolves(samples):
+            continue
+        found = elements_for(arms, samples, W)
         if len(found.lengths) * MAX_TERMS * ENTRIES > MOST_ENTRIES:
             return None
-        # What the coefficients along the arm do not resolve, the propagators made of them cannot.
-        if not _converged(np.moveaxis(np.array(found.local), 1, 0), 10 * CONVERGED):
-            continue
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _converged(values, CONVERGED):
             coefficients = np.tensordot(_to_series(number), values, 1)
             return ArmFamily(low, high, W, np.ascontiguousarray(coefficients))
     return None
+
+
+def is_smooth(path: Path, low: float, high: float) -> bool:
+    """Whether the coefficients along the arms of an interval allow a family: a cheap necessary condition.
+
+    Raises ValueError where the model has no arm.
+    """
+    p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(NODES[-1])
+    return _resolves(samples_of([path.at(value) for value in p.tolist()]))
+
+
+def _resolves(samples: Samples) -> bool:
+    """Whether arms at Chebyshev points resolve the coefficients along all arms between.
+
+    What they do not resolve, the propagators made of the coefficients cannot.
+    """
+    return _converged(np.moveaxis(np.array(samples.local), 1, 0), 10 * CONVERGED)
 
 
 def _converged(values: Array, tolerance: float) -> bool:

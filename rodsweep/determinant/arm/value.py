@@ -33,16 +33,16 @@ RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 @compiled
 def _powers(z: complex, terms: int) -> Array:
     """z^n and n z^(n-1), (terms, 4)."""
-    powers = np.empty((terms, 4))
-    here = 1 + 0j
-    before = 0j
-    for n in range(terms):
+    powers = np.zeros((terms, 4))
+    powers[0, RE] = 1.0
+    for n in range(1, terms):
+        # A product of two halves has a few rounding errors, n - 1 factors z would have n - 1.
+        half = complex(powers[n // 2, RE], powers[n // 2, IM])
+        here = z if n == 1 else complex(powers[n - n // 2, RE], powers[n - n // 2, IM]) * half
         powers[n, RE] = here.real
         powers[n, IM] = here.imag
-        powers[n, RE_SLOPE] = n * before.real
-        powers[n, IM_SLOPE] = n * before.imag
-        before = here
-        here *= z
+        powers[n, RE_SLOPE] = n * powers[n - 1, RE]
+        powers[n, IM_SLOPE] = n * powers[n - 1, IM]
     return powers
 
 
@@ -118,6 +118,20 @@ def _size(x: Array) -> float:
 
 
 @compiled
+def _size_of_parts(C: Array, x: Array) -> float:
+    """The sum of the moduli of the products whose sum is s^m at the end of an element, C x.
+
+    Minors differ in size by powers of the wave number. The rounding error of D follows these products, which
+    may be larger than all minors at the tip near a root of D.
+    """
+    total = 0.0
+    for j in range(MINORS):
+        entry = complex(C[RE, MINORS * j + SM], C[IM, MINORS * j + SM])
+        total += abs(entry * complex(x[RE, j], x[IM, j]))
+    return total
+
+
+@compiled
 def _swept(
     z: complex, W: float, polynomials: Array, changes: Array
 ) -> tuple[complex, complex, complex, float]:
@@ -140,6 +154,8 @@ def _swept(
             _propagator_alone(changes[e], powers, change)
             _product_of_both(C, here[2], change, here[0], ahead[2])
         size = _size(ahead[0])
+        if e == elements - 1:
+            size = max(size, _size_of_parts(C, here[0]))
         if not 1 / LARGE < size < LARGE or e == elements - 1:
             ahead /= size
             S += math.log(size)

@@ -158,7 +158,8 @@ class ArmPath(PathProblem):
         return None if nearest is None else self._counts[nearest]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        return self._along.eigenvalue(guess, p)
+        known = self._followed.slope(guess, p) if self._followed is not None else None
+        return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double(self, x: float, p: float, reach: float) -> Zero:
         return self._along.double(x, p, reach)
