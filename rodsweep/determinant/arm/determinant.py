@@ -23,7 +23,7 @@ from ..value import Value
 from .propagators import STAGES, element_propagators, gauss_method, tail_of
 from .value import chain_value
 
-LONGEST = 2.4
+LONGEST = 3.2
 """Largest |q| h of an element: twelve stages integrate exp(2.4) to 1e-17."""
 TO_THE_TIP = 0.5
 """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""

@@ -17,7 +17,7 @@ from ...model.compiled.compilation import compiled
 from ..newton import MAX_REFINEMENTS
 from ..parameter_path import Path
 from ..value import Value
-from .determinant import Samples, elements_for, samples_of
+from .determinant import elements_for, samples_of
 from .propagators import ENTRIES, MAX_TERMS, element_propagators
 from .value import ROOT_NOISE, chain_along, chain_value
 
@@ -51,12 +51,12 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
     for number in NODES:
         p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(number)
         arms = [path.at(value) for value in p.tolist()]
-        samples = samples_of(arms)
-        if not _resolves(samples):
-            continue
-        found = elements_for(arms, samples, W)
+        found = elements_for(arms, samples_of(arms), W)
         if len(found.lengths) * MAX_TERMS * ENTRIES > MOST_ENTRIES:
             return None
+        # What the coefficients along the arm do not resolve, the propagators made of them cannot.
+        if not _converged(np.moveaxis(np.array(found.local), 1, 0), 10 * CONVERGED):
+            continue
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _converged(values, CONVERGED):
             coefficients = np.tensordot(_to_series(number), values, 1)
@@ -70,15 +70,8 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
     Raises ValueError where the model has no arm.
     """
     p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(NODES[-1])
-    return _resolves(samples_of([path.at(value) for value in p.tolist()]))
-
-
-def _resolves(samples: Samples) -> bool:
-    """Whether arms at Chebyshev points resolve the coefficients along all arms between.
-
-    What they do not resolve, the propagators made of the coefficients cannot.
-    """
-    return _converged(np.moveaxis(np.array(samples.local), 1, 0), 10 * CONVERGED)
+    local = samples_of([path.at(value) for value in p.tolist()]).local
+    return _converged(np.moveaxis(np.array(local), 1, 0), 100 * CONVERGED)
 
 
 def _converged(values: Array, tolerance: float) -> bool:

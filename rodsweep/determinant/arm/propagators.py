@@ -40,7 +40,7 @@ SM, TS, TM, YT, YM = range(MINORS)
 NONE = -1
 """A row without a start value."""
 ENTRIES = MINORS * MINORS
-MAX_TERMS = 24
+MAX_TERMS = 28
 NEGLIGIBLE = 1e-18
 """Size of a term, relative to the first term, at which the polynomial is truncated."""
 TINY = 1e-300

@@ -97,14 +97,27 @@ def _interval(
     """
     best: Interval | None = None
     for further in (number for number in FURTHER_ARM_MODES if before is None or number >= before.further):
-        if best is not None and not _proves_more(path, best, request, further):
+        if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
             break
         found = _followed(path, p, request, further, before) if len(p) >= FEWEST else None
-        if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
+        if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        if best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
+        if best is not None and not _too_few(best) and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
             break
     return best
+
+
+def _too_few(found: Interval) -> bool:
+    """Whether more modes grow somewhere than a search for crossings could prove to be all that grow."""
+    growing = (found.track.w.real > 0).sum(axis=1).max()
+    return bool(growing + MODES_BEYOND_GROWING > found.track.w.shape[1])
+
+
+def _is_better(found: Interval, other: Interval, modes: int) -> bool:
+    """Whether more points are proved, or as many with enough modes in place of too few."""
+    here = found.proved(modes)
+    there = other.proved(modes)
+    return here > there or (here == there and _too_few(other))
 
 
 def _proves_more(path: Path, found: Interval, request: SpectrumRequest, further: int) -> bool:
