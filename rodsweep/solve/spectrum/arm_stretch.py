@@ -41,7 +41,7 @@ HEADROOM = 2.0
 REUSED_HEADROOM = 1.25
 """`HEADROOM` of the propagators of an earlier interval that serve again."""
 MORE_ARMS = 2
-"""Largest number of points for which a family is tried, in units of those inside the previous family."""
+"""Largest number of points for which a family is tried, in units of those reached with the previous one."""
 FEWEST = 4
 """Minimum number of points of a family of arms."""
 ACCURACY = 1e-8
@@ -150,7 +150,7 @@ def _followed(
             made = (before.family, before.hulls)
             n = inside
         else:
-            n = min(n, max(MORE_ARMS * before.arms, FEWEST))
+            n = min(n, max(MORE_ARMS * len(before.p), FEWEST))
     while first is not None and made is None and n >= FEWEST:
         made = arms_between(path, p[:n], first, request.modes)
         n = n if made is not None else n // 2
