@@ -174,7 +174,8 @@ class ArmPath(PathProblem):
                 return Count(int((w.real > line).sum()), 0)
             if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
                 return Count(found.unstable_count, 0)
-        return ArmProblem(self.path.at(p)).count(line)
+        known = self._followed.roots(p) if self._followed is not None else None
+        return ArmProblem(self.path.at(p)).count(line, known)
 
     def relaxation(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0

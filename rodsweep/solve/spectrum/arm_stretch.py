@@ -25,7 +25,7 @@ from ..point import FAILURES
 from .arm_following import follow_arms
 from .candidates import behind, lines
 from .carried_count import judge_points, leading
-from .prediction import Track, part, track_from
+from .prediction import KnownRoots, Track, part, track_from
 from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
@@ -263,6 +263,15 @@ class FollowedArms:
             judged += self._judge(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
+
+    def roots(self, p: float) -> KnownRoots | None:
+        """Eigenvalues followed to p, which need not be all; None if following fails."""
+        for one in self.intervals:
+            if one.p.min() <= p <= one.p.max():
+                here, _ = self._from_nearest(one, p, self.request.modes)
+                if here is not None:
+                    return KnownRoots(here.w[0], here.error[0])
+        return None
 
     def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
         """Yields the eigenvalues at p of every interval that contains p, up to the first that are complete.
