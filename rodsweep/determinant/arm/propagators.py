@@ -37,8 +37,6 @@ STAGES = 12
 MINORS = 5
 SM, TS, TM, YT, YM = range(MINORS)
 """Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
-NONE = -1
-"""A row without a start value."""
 ENTRIES = MINORS * MINORS
 MAX_TERMS = 28
 NEGLIGIBLE = 1e-18
@@ -101,27 +99,30 @@ def _fill_element(load: tuple[float, float], local: Array, method: tuple[Array, 
     """
     F, W = load
     Q, weights = method
-    inverse = _inverse_of_turns(F, local[2], local[5], Q)
+    turning = _eliminated(F, local[2], local[5], Q)
     values = np.zeros((MINORS, MINORS, STAGES))
     rates = np.zeros((MINORS, MINORS, STAGES))
-    known = np.zeros((MINORS, STAGES))
     largest = 0.0
     for n in range(terms.shape[0]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
         _loads_of_w(W, local, values, rates)
-        _integrate(Q, rates[SM], SM, start, values[SM])
+        _integrate(Q, rates[SM], values[SM])
+        values[SM, SM] += start
         _add_pushes(F, start, local, values, rates)
-        _integrate(Q, rates[TS], TS, start, known)
-        _integrate(inverse, known, NONE, start, values[TS])
+        _integrate(turning[1:], rates[TS], values[TS])
+        values[TS, TS] += start * turning[0]
         _turns(local, values, rates)
-        _integrate(Q, rates[TM], TM, start, values[TM])
+        _integrate(Q, rates[TM], values[TM])
+        values[TM, TM] += start
         _add_turns(F, start, local, values, rates)
-        _integrate(Q, rates[YM], YM, start, values[YM])  # without the part by y^theta
+        _integrate(Q, rates[YM], values[YM])  # without the part by y^theta
+        values[YM, YM] += start
         _rises(local, values, rates)
-        _integrate(Q, rates[YT], YT, start, known)
-        _integrate(inverse, known, NONE, start, values[YT])
+        _integrate(turning[1:], rates[YT], values[YT])
+        values[YT, YT] += start * turning[0]
         _add_tilts(F, local, values, rates)
-        _integrate(Q, rates[YM], YM, start, values[YM])
+        _integrate(Q, rates[YM], values[YM])
+        values[YM, YM] += start
         _rises(local, values, rates)
         size = _end_values(weights, rates, start, terms[n])
         largest = size if n == 0 else largest
@@ -131,15 +132,14 @@ def _fill_element(load: tuple[float, float], local: Array, method: tuple[Array, 
 
 
 @compiled_for_vectors
-def _integrate(Q: Array, rates: Array, row: int, start: float, out: Array) -> None:
-    """out = the integrals of rates, both (MINORS, STAGES), to each stage, plus a start value in one row.
+def _integrate(Q: Array, rates: Array, out: Array) -> None:
+    """out = the integrals of rates, both (MINORS, STAGES), to each stage.
 
     Q: transposed integrals, (STAGES, STAGES).
     """
     for k in range(MINORS):
-        first = start if k == row else 0.0
         for i in range(0, STAGES, 4):  # four sums at a time stay in one register
-            a = b = c = d = first
+            a = b = c = d = 0.0
             for j in range(STAGES):
                 rate = rates[k, j]
                 a += rate * Q[j, i]
@@ -223,16 +223,31 @@ def _end_values(weights: Array, rates: Array, start: float, term: Array) -> floa
 
 
 @compiled
-def _inverse_of_turns(F: float, c3: Array, g: Array, Q: Array) -> Array:
-    """The transposed inverse of 1 + F Q c3 Q g, which eliminates theta^m and y^m, (STAGES, STAGES).
+def _eliminated(F: float, c3: Array, g: Array, Q: Array) -> Array:
+    """1 M and Q M, (1 + STAGES, STAGES), with the transposed inverse M of 1 + F Q c3 Q g.
 
-    Q: transposed integrals times the length of the element.
+    With it theta^m and y^m are eliminated: Q M integrates the rates of theta^s and y^theta, and 1 M belongs
+    to a start value of 1. Q: transposed integrals times the length of the element.
     """
     system = np.zeros((STAGES, STAGES))
     _add_twice_integrated(F, c3, g, Q, system)
     inverse = np.empty((STAGES, STAGES))
     _invert(system, inverse)
-    return inverse
+    eliminated = np.zeros((1 + STAGES, STAGES))
+    _add_integrated(Q, inverse, eliminated)
+    return eliminated
+
+
+@compiled_for_vectors
+def _add_integrated(Q: Array, inverse: Array, out: Array) -> None:
+    """Adds 1 M and Q M to `out`, (1 + STAGES, STAGES), for M = inverse and Q, (STAGES, STAGES)."""
+    for k in range(STAGES):
+        for j in range(STAGES):
+            out[0, j] += inverse[k, j]
+        for i in range(STAGES):
+            factor = Q[i, k]
+            for j in range(STAGES):
+                out[1 + i, j] += factor * inverse[k, j]
 
 
 @compiled_for_vectors
