@@ -20,7 +20,8 @@ from ...model.dispersion import PIECE_SAMPLES, sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..value import Value
-from .propagators import STAGES, element_propagators, gauss_method, tail_of
+from .collocation import STAGES
+from .propagators import element_propagators, gauss_method, tail_of
 from .value import chain_value
 
 LONGEST = 3.2

@@ -17,8 +17,9 @@ from ...model.compiled.compilation import compiled
 from ..newton import MAX_REFINEMENTS
 from ..parameter_path import Path
 from ..value import Value
+from .collocation import ENTRIES, MAX_TERMS
 from .determinant import Samples, elements_for, samples_of
-from .propagators import ENTRIES, MAX_TERMS, element_propagators
+from .propagators import element_propagators
 from .value import ROOT_NOISE, chain_along, chain_value
 
 LINEAR = math.inf

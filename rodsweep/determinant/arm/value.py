@@ -1,6 +1,6 @@
 """D(w) of an arm from the propagators of its elements: five minors, multiplied from clamp to tip.
 
-The minors are those of `rodsweep.determinant.arm.propagators`: s^m = 1 and no other at the clamp, D = s^m at
+The minors are those of `rodsweep.determinant.arm.collocation`: s^m = 1 and no other at the clamp, D = s^m at
 the tip. D spans hundreds of decades, so the minors are scaled on their way; the logarithms of the factors
 are summed. Derivatives by w and along a path of arms are carried along.
 
@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ..parameter_path import ValueAlong
 from ..value import Value
-from .propagators import ENTRIES, MINORS, SM
+from .collocation import ENTRIES, MINORS, SM
 
 UNIT = 4.440892098500626e-16
 """Unit of the noise of D: two relative rounding errors."""
