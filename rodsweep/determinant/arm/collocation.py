@@ -18,9 +18,9 @@ these two solutions. The other five minors then obey a linear system of their ow
 from s^m = 1 at the clamp, the others 0, to D = s^m at the tip. A growing exponential of one solution cannot
 hide the other one, as it does where the solutions themselves are integrated.
 
-Elements are solved by collocation at their Gauss points, for powers of w one after the other: the terms of the
-propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `LANES` elements are solved together, with the place of a number
-as the last axis: the initial value, one of `MINORS`, and the element. Loops over it are vector instructions.
+Elements are solved by collocation at their Gauss points, for one power of w after the other: the terms of the
+propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `LANES` elements are solved together. The last axis of arrays
+combines the initial value, one of `MINORS`, and the element; loops over it are vector instructions.
 """
 
 from typing import NamedTuple
@@ -31,7 +31,8 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 
 STAGES = 12
-"""Gauss points of an element. Eleven integrate exp(3.2) to 1e-17; one more allows for varying coefficients."""
+"""Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth allows for
+coefficients that vary."""
 MINORS = 5
 SM, TS, TM, YT, YM = range(MINORS)
 """Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
@@ -43,6 +44,7 @@ WIDTH = MINORS * LANES
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Places of the `LocalCoefficients`."""
 MAX_TERMS = 28
+"""Largest number of powers of w; 24 are enough for exp(3.2)."""
 NEGLIGIBLE = 1e-18
 """Size of a term, relative to the first term, at which the polynomial is truncated."""
 
@@ -283,8 +285,8 @@ def _add_ends(weights: Array, rates: Array, end: Array) -> None:
 def _eliminated(F: float, c3: Array, g: Array, Q: Array) -> Array:
     """M 1 and M Q, (STAGES, 1 + STAGES), with the inverse M of 1 + F Q c3 Q g.
 
-    With M theta^m and y^m are eliminated: M Q integrates the rates of theta^s and y^theta, and M 1 belongs to a
-    start value of 1. Q: integrals. c3, g: coefficients times the length of the element.
+    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta, and M 1 belongs to a start
+    value of 1. Q: integrals. c3, g: coefficients times the length of the element.
     """
     system = np.zeros((STAGES, STAGES))
     right = np.ones((STAGES, 1 + STAGES))

@@ -23,10 +23,12 @@ from .propagators import element_propagators
 from .value import ROOT_NOISE, chain_along, chain_value
 
 LINEAR = math.inf
+"""Scale of equal spacing."""
 TRIALS = ((12, LINEAR), (17, LINEAR), (24, LINEAR), (24, 0.05), (34, 0.05))
-"""Numbers of arms of an interval that are tried, and the scale of their spacing, see `ArmFamily`, in units of the
-interval: for 21 of 24 random paths from 0 to three times a load the first is enough. Compressed rubber has
-branch points of the force beside F = 0, at distances of its stiffness, which ask for a spacing that grows."""
+"""Trials for an interval: the number of arms, and the scale of their spacing in units of the interval. For 21
+of 24 random paths from 0 to three times a load the first trial is enough. The stretch of compressed rubber
+has branch points at complex forces of the size of its stiffness; beside them a spacing that grows needs fewer
+arms."""
 CONVERGED = 1e-15
 """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding; the
 relative error that eigenvalues have from it, as from changes of w and p by as much."""
@@ -37,8 +39,8 @@ MOST_ENTRIES = 500_000
 class ArmFamily(NamedTuple):
     """The arms from p = low to p = high: propagators for |w| <= W.
 
-    scale: polynomials are in log(1 + (p - low)/scale), or for `LINEAR` in p. coefficients: coefficients of the
-    Chebyshev polynomials, (nodes, elements, terms, ENTRIES).
+    scale: the polynomials are in log(1 + (p - low)/scale), or in p if it is `LINEAR`. coefficients: those of
+    the Chebyshev polynomials, (nodes, elements, terms, ENTRIES).
     """
 
     low: float

@@ -1,8 +1,8 @@
 """Propagators of the transverse problem over elements of a non-uniform arm, as polynomials in w.
 
 Over one element the minors of `rodsweep.determinant.arm.collocation` are multiplied by a matrix C(w), entire
-in w. Its Taylor polynomial comes from collocation at the Gauss points of the element. Coefficients are sampled
-at the Gauss points alone, so every profile and law costs the same.
+in w. Its Taylor polynomial comes from collocation at the Gauss points of the element. Coefficients are
+sampled at the Gauss points alone, so every profile and law costs the same.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.material.build import LocalCoefficients
-from .collocation import ENTRIES, LANES, MAX_TERMS, MINORS, STAGES, Method, fill_terms
+from .collocation import ENTRIES, LANES, MAX_TERMS, STAGES, Method, fill_terms
 
 TINY = 1e-300
 """Divisor in place of 0."""

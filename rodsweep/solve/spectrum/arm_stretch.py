@@ -102,7 +102,8 @@ def _interval(
         found = _followed(path, p, request, further, before) if len(p) >= FEWEST else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        if best is not None and not _too_few(best) and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
+        enough = best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p)
+        if best is not None and enough and not _too_few(best):
             break
     return best
 
@@ -192,9 +193,7 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
     return None if family is None else (family, hulls)
 
 
-def _carried_on(
-    before: Interval | None, p: float, request: SpectrumRequest, further: int
-) -> Complex | None:
+def _carried_on(before: Interval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
     """Eigenvalues at the last point of an interval that is proved throughout, (m,), for the next interval
     from this point on; else None."""
     if before is None or before.further != further or before.p[-1] != p:
