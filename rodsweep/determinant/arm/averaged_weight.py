@@ -24,10 +24,13 @@ HALF_WIDTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 """Trial h, in L."""
 TRIALS = 2 * len(FACTORS) * len(HALF_WIDTHS)
 """Number of trial regions: two for each f and h."""
+CLOSE = 1e-6
+"""Distance of two points, in L, below which they are the two sides of a jump."""
 BESIDE = 1e-12
 """Distance from the places where a slope jumps, in L, of the points on both their sides."""
 
 
+@compiled
 def averaged_regions(u: Array, local: Array, F: float) -> Array:
     """(a, c) of each trial, (trials, 2), inf where it gives none.
 
@@ -35,16 +38,33 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     points), with c2 > 0 and g > 0.
     """
     regions = np.full((TRIALS, 2), math.inf)
-    jumps = (u[1:] + u[:-1])[np.diff(u) < 1e-6] / 2
     row = 0
     for h in HALF_WIDTHS:
-        beside = np.concatenate([jumps + side * h + at for side in (-1, 1) for at in (-BESIDE, BESIDE)])
-        points = np.sort(np.append(u, beside[(beside > u[0]) & (beside < u[-1])]))
-        there = np.stack([np.interp(points, u, values) for values in local])
+        points = _with_places_beside_jumps(u, h)
+        there = np.empty((6, len(points)))
+        for k in range(6):
+            there[k] = np.interp(points, u, local[k])
         for f in FACTORS:
             _fill(regions[row : row + 2], points, there, (F, f, h))
             row += 2
     return regions
+
+
+@compiled
+def _with_places_beside_jumps(u: Array, h: float) -> Array:
+    """The points u and, on both sides of each place at the distance h from a jump, two more, increasing."""
+    points = np.empty(5 * len(u))
+    count = len(u)
+    points[:count] = u
+    for i in range(len(u) - 1):
+        if u[i + 1] - u[i] < CLOSE:
+            for side in (-h, h):
+                for at in (-BESIDE, BESIDE):
+                    place = (u[i + 1] + u[i]) / 2 + side + at
+                    if u[0] < place < u[-1]:
+                        points[count] = place
+                        count += 1
+    return np.sort(points[:count])
 
 
 @compiled

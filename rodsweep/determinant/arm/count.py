@@ -64,7 +64,12 @@ MAX_NODES = 5000
 """Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
 STRIDE = 1.9
 """First trial distance to the next node, in units of the reach of the present node."""
-UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.arange(CIRCLE) + 0.5) / CIRCLE)
+GIVEN_UP = 0.2
+"""A circle is given up for the next smaller one once its reach is below this fraction of its radius: the
+smaller one may reach 0.27 of the radius."""
+UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.array([0, 2, 1, 3, 4, 6, 5, 7]) + 0.5) / CIRCLE)
+"""Directions of the points; the first four differ most in (v - w)^2, so that most circles too large for f are
+given up after one or two points."""
 
 
 class PhaseNode(NamedTuple):
@@ -256,20 +261,36 @@ def _reach_inside(
     radius = max(trial[1], SMALLEST_RADIUS)
     while radius >= SMALLEST_RADIUS:
         rho = radius * unit
+        # No smaller circle reaches farther than half of this one could.
+        enough = max(best, _reach_of_circle(rho / 2, BETWEEN_POINTS, room))
+        last = radius / 2 < SMALLEST_RADIUS
+        reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in UNIT_CIRCLE:
             v = w + rho * direction
             log = chain_size(v, level[0], level[1]) - _log_of_known(v, known)
             size = max(size, log - (L * (v - w)).real)
-        M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
-        q = room / M if M > 0 else math.inf
-        reach = rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q < math.inf else 0.0
-        if reach <= best:
+            M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
+            reach = _reach_of_circle(rho, M, room)
+            if reach <= best or (reach < GIVEN_UP * rho and not last):
+                reach = 0.0
+                break
+        if reach > best:
+            best = reach
+            best_radius = radius
+        elif best > 0:
             break
-        best = reach
-        best_radius = radius
+        if best >= enough:
+            break
         radius /= 2
     return best, best_radius
+
+
+@compiled
+def _reach_of_circle(rho: float, M: float, room: float) -> float:
+    """Distance within which f changes by less than `room`, in units of |D|, if |f| is at most M at rho."""
+    q = room / M
+    return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 
 
 @compiled

@@ -17,29 +17,36 @@ from ...model.compiled.compilation import compiled
 from ..newton import MAX_REFINEMENTS
 from ..parameter_path import Path
 from ..value import Value
-from .determinant import elements_for, samples_of
-from .propagators import MAX_TERMS, element_propagators
+from .collocation import ENTRIES, MAX_TERMS
+from .determinant import Samples, elements_for, samples_of
+from .propagators import element_propagators
 from .value import ROOT_NOISE, ROOT_RESIDUAL, chain_along, chain_value
 
-NODES = (12, 24)
-"""Numbers of arms of an interval that are tried: for 21 of 24 random paths from 0 to three times a load the
-first is enough."""
+LINEAR = math.inf
+"""Scale of equal spacing."""
+TRIALS = ((12, LINEAR), (17, LINEAR), (24, LINEAR), (24, 0.05), (34, 0.05))
+"""Trials for an interval: the number of arms, and the scale of their spacing in units of the interval. For 21
+of 24 random paths from 0 to three times a load the first trial is enough. The stretch of compressed rubber
+has branch points at complex forces of the size of its stiffness; beside them a spacing that grows needs fewer
+arms."""
 CONVERGED = 1e-15
 """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
 ROUNDING = 2 * CONVERGED
 """Relative error of eigenvalues and crossings from it, as from changes of w and p by as much."""
-MOST_ENTRIES = 300_000
+MOST_ENTRIES = 500_000
 """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
 
 
 class ArmFamily(NamedTuple):
     """The arms from p = low to p = high: propagators for |w| <= W.
 
-    coefficients: coefficients of the Chebyshev polynomials in p, (nodes, elements, terms, 16).
+    scale: the polynomials are in log(1 + (p - low)/scale), or in p if it is `LINEAR`. coefficients: those of
+    the Chebyshev polynomials, (nodes, elements, terms, ENTRIES).
     """
 
     low: float
     high: float
+    scale: float
     W: float
     coefficients: Array
 
@@ -49,20 +56,46 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
 
     Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
     """
-    for number in NODES:
-        p = (low + high) / 2 + (high - low) / 2 * chebyshev_points(number)
-        arms = [path.at(value) for value in p.tolist()]
-        found = elements_for(arms, samples_of(arms), W)
-        if len(found.lengths) * MAX_TERMS * 16 > MOST_ENTRIES:
-            return None
+    for number, share in TRIALS:
+        scale = share * (high - low)
+        arms = [path.at(value) for value in _places(low, high, scale, number).tolist()]
+        samples = samples_of(arms)
         # What the coefficients along the arm do not resolve, the propagators made of them cannot.
-        if not _converged(np.moveaxis(np.array(found.local), 1, 0), 10 * CONVERGED):
+        if not _resolves(samples):
             continue
+        found = elements_for(arms, samples, W)
+        if len(found.lengths) * MAX_TERMS * ENTRIES > MOST_ENTRIES:
+            return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _converged(values, CONVERGED):
             coefficients = np.tensordot(_to_series(number), values, 1)
-            return ArmFamily(low, high, W, np.ascontiguousarray(coefficients))
+            return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients))
     return None
+
+
+def is_smooth(path: Path, low: float, high: float) -> bool:
+    """Whether the coefficients along the arms of an interval allow a family: a cheap necessary condition.
+
+    Raises ValueError where the model has no arm.
+    """
+    for number, share in TRIALS[::-1]:
+        p = _places(low, high, share * (high - low), number)
+        if _resolves(samples_of([path.at(value) for value in p.tolist()])):
+            return True
+    return False
+
+
+def _resolves(samples: Samples) -> bool:
+    """Whether arms resolve the coefficients of all arms between, at the samples along them."""
+    return _converged(np.moveaxis(np.array(samples.local), 1, 0), 10 * CONVERGED)
+
+
+def _places(low: float, high: float, scale: float, number: int) -> Array:
+    """The path variables of the arms of an interval, (number,), increasing; both ends exactly."""
+    t = (chebyshev_points(number) + 1) / 2
+    if scale < LINEAR:
+        t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
+    return np.minimum(low + (high - low) * t, high)
 
 
 def _converged(values: Array, tolerance: float) -> bool:
@@ -90,6 +123,10 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
     """Fills the propagators at p and their derivatives by p, both (elements, terms, 16)."""
     half = (family.high - family.low) / 2
     t = (p - (family.low + family.high) / 2) / half
+    if family.scale < LINEAR:
+        whole = math.log1p(2 * half / family.scale)
+        t = 2 * math.log1p((p - family.low) / family.scale) / whole - 1
+        half = (p - family.low + family.scale) * whole / 2
     values = polynomials.reshape(-1)
     slopes = changes.reshape(-1)
     # T_0 and T_(-1), as T_(-1) = T_1

@@ -171,7 +171,8 @@ class CrossingSearch:
         kind = Kind.hopf if grows != self.problem.path.inverse else Kind.hopf_reverse
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
-        return Crossing(at, kind, w.imag, 0.0, error, frequency_error=abs(slope.imag) * error_of_p)
+        error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # its own, and that by p
+        return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
 def _needed(found: Spectrum) -> int:

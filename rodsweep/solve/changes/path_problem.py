@@ -158,7 +158,8 @@ class ArmPath(PathProblem):
         return None if nearest is None else self._counts[nearest]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        return self._along.eigenvalue(guess, p)
+        known = self._followed.slope(guess, p) if self._followed is not None else None
+        return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double(self, x: float, p: float, reach: float) -> Zero:
         return self._along.double(x, p, reach)
@@ -173,7 +174,8 @@ class ArmPath(PathProblem):
                 return Count(int((w.real > line).sum()), 0)
             if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
                 return Count(found.unstable_count, 0)
-        return ArmProblem(self.path.at(p)).count(line)
+        known = self._followed.roots(p) if self._followed is not None else None
+        return ArmProblem(self.path.at(p)).count(line, known)
 
     def relaxation(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0

@@ -13,18 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import POWERS, is_whole, right_of_hull
+from ...determinant.arm.completeness import POWERS, is_whole, none_is_missing, right_of_hull
 from ...determinant.arm.count import count_right_of
 from ...determinant.arm.determinant import arm_determinant
-from ...determinant.arm.family import ArmFamily, family_of
+from ...determinant.arm.family import ArmFamily, family_of, is_smooth
 from ...determinant.arm.hull import Hulls, hull_at, hulls_along
 from ...determinant.parameter_path import Path
+from ...determinant.roots import Roots
 from ..backend.kept import forget_all
 from ..point import FAILURES
 from .arm_following import follow_arms
-from .candidates import lines
+from .candidates import behind, lines
 from .carried_count import judge_points, leading
-from .prediction import Track, part, track_from
+from .prediction import KnownRoots, Track, part, track_from
 from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
@@ -33,13 +34,14 @@ FURTHER_ARM_MODES = (3, 9)
 """Numbers of modes followed in addition to the wanted modes; the larger number is tried if too few points are
 proved."""
 PROVED_ENOUGH = 0.5
-"""Fraction of points that must be proved complete; below this fraction more modes are followed."""
+"""Fraction of points that must be proved complete; below this fraction more modes are followed, if they prove
+a point."""
 HEADROOM = 2.0
 """Largest |w| of the propagators, in units of the largest |w| of the first point."""
 REUSED_HEADROOM = 1.25
 """`HEADROOM` of the propagators of an earlier interval that serve again."""
 MORE_ARMS = 2
-"""Largest number of points for which a family is tried, in units of those inside the previous family."""
+"""Largest number of points for which a family is tried, in units of those reached with the previous one."""
 FEWEST = 4
 """Minimum number of points of a family of arms."""
 ACCURACY = 1e-8
@@ -95,19 +97,52 @@ def _interval(
     """
     best: Interval | None = None
     for further in (number for number in FURTHER_ARM_MODES if before is None or number >= before.further):
+        if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
+            break
         found = _followed(path, p, request, further, before) if len(p) >= FEWEST else None
-        if found is not None and (best is None or found.proved(request.modes) > best.proved(request.modes)):
+        if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        if best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p):
+        enough = best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p)
+        if best is not None and enough and not _too_few(best):
             break
     return best
+
+
+def _too_few(found: Interval) -> bool:
+    """Whether more modes grow somewhere than a search for crossings could prove to be all that grow."""
+    growing = (found.track.w.real > 0).sum(axis=1).max()
+    return bool(growing + MODES_BEYOND_GROWING > found.track.w.shape[1])
+
+
+def _is_better(found: Interval, other: Interval, modes: int) -> bool:
+    """Whether more points are proved, or as many with enough modes in place of too few."""
+    here = found.proved(modes)
+    there = other.proved(modes)
+    return here > there or (here == there and _too_few(other))
+
+
+def _proves_more(path: Path, found: Interval, request: SpectrumRequest, further: int) -> bool:
+    """Whether `further` known modes would prove the middle one of the points that are not proved."""
+    left = np.flatnonzero(found.known < request.modes)
+    p = float(found.p[left[len(left) // 2]])
+    roots = _roots(path, p, request, further)
+    if roots is None or len(roots.w) < request.modes:
+        return False
+    arm = arm_determinant(path.at(p))
+    line = behind(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
+    try:
+        return none_is_missing(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
+    except FloatingPointError:
+        return False
 
 
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: Interval | None
 ) -> Interval | None:
     """`_interval` with `further` modes in addition to the wanted modes."""
-    first = first_eigenvalues(path, float(p[0]), request, further)
+    first = _carried_on(before, float(p[0]), request, further)
+    if first is None:
+        first = first_eigenvalues(path, float(p[0]), request, further)
     n = len(p)
     made = None
     if first is not None and before is not None:
@@ -116,7 +151,7 @@ def _followed(
             made = (before.family, before.hulls)
             n = inside
         else:
-            n = min(n, max(MORE_ARMS * before.arms, FEWEST))
+            n = min(n, max(MORE_ARMS * len(before.p), FEWEST))
     while first is not None and made is None and n >= FEWEST:
         made = arms_between(path, p[:n], first, request.modes)
         n = n if made is not None else n // 2
@@ -143,6 +178,8 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
     if not low < high:
         return None
     try:
+        if not is_smooth(path, low, high):
+            return None
         places = np.linspace(low, high, HULL_ARMS)
         hulls = hulls_along([path.at(x) for x in places.tolist()], places)
         W = HEADROOM * float(np.abs(first).max())
@@ -156,8 +193,24 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
     return None if family is None else (family, hulls)
 
 
+def _carried_on(before: Interval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
+    """Eigenvalues at the last point of an interval that is proved throughout, (m,), for the next interval
+    from this point on; else None."""
+    if before is None or before.further != further or before.p[-1] != p:
+        return None
+    if before.proved(request.modes) < len(before.p):
+        return None
+    return before.track.w[-1][before.track.order[-1]]
+
+
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
     """Eigenvalues to follow from p on, (m,), pairs unsplit; None if the solve fails."""
+    found = _roots(path, p, request, further)
+    return None if found is None else found.w[is_whole(found.w)]
+
+
+def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
+    """The leading eigenvalues at p, not proved, `further` ones in addition to the wanted modes."""
     try:
         modes = request.modes + further
         search = Search(path.at(p), replace(request, modes=modes, certify=False), wanted=modes)
@@ -166,10 +219,7 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: i
     except FAILURES:
         forget_all()
         return None
-    if search.best is None:
-        return None
-    w = search.best.found.roots.w
-    return w[is_whole(w)]
+    return None if search.best is None else search.best.found.roots
 
 
 class FollowedArms:
@@ -198,6 +248,13 @@ class FollowedArms:
         """The family of arms that contains p."""
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
+    def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
+        """(dw/dp, error of w) of an eigenvalue that `spectrum` gave at p; None if it gave none."""
+        for one in self._judged.get(p, []):
+            for k in np.flatnonzero(one.here.w[0] == w).tolist():
+                return complex(one.here.slope[0, k]), float(one.here.error[0, k])
+        return None
+
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The leading eigenvalues at p; None unless followed, accurate and proved complete."""
         judged = self._judged.setdefault(p, [])
@@ -205,6 +262,15 @@ class FollowedArms:
             judged += self._judge(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
+
+    def roots(self, p: float) -> KnownRoots | None:
+        """Eigenvalues followed to p, which need not be all; None if following fails."""
+        for one in self.intervals:
+            if one.p.min() <= p <= one.p.max():
+                here, _ = self._from_nearest(one, p, self.request.modes)
+                if here is not None:
+                    return KnownRoots(here.w[0], here.error[0])
+        return None
 
     def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
         """Yields the eigenvalues at p of every interval that contains p, up to the first that are complete.
@@ -239,6 +305,8 @@ class FollowedArms:
         """
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
+        if p == start and modes <= self.request.modes:
+            return part(one.track, i, i + 1), int(one.known[i])
         for steps in STEPS_FROM_NEAREST:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = track_from(one.track.w[i], len(grid))

@@ -113,8 +113,7 @@ def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
     and all unstable eigenvalues."""
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
-    last = w[modes - 1]
-    line = min(last.real - BELOW * errors[modes - 1] - CLOSE_BELOW * abs(last), 0.0)
+    line = behind(w[modes - 1], errors[modes - 1])
     complete, evaluations = problem.none_is_missing(line, found)
     if complete:
         here, clear = _right_of(line, w, errors)
@@ -124,6 +123,11 @@ def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
         if count.number is not None:
             break
     return Verdict(count, *_right_of(line, w, errors))
+
+
+def behind(last: complex, error: float) -> float:
+    """The line <= 0 of a proof without a count, left of the last wanted eigenvalue and all unstable ones."""
+    return min(last.real - BELOW * error - CLOSE_BELOW * abs(last), 0.0)
 
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:

@@ -34,6 +34,13 @@ class Track(NamedTuple):
     order: NDArray[np.int64]
 
 
+class KnownRoots(NamedTuple):
+    """Some roots of D of one rod, (k,), in any order, and how far each may be off, (k,)."""
+
+    w: Complex
+    error: Array
+
+
 def track_from(first: Complex, points: int) -> Track:
     """A track with the eigenvalues of its first point, (m,), the leading ones first."""
     shape = (points, len(first))

@@ -27,6 +27,7 @@ from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import EigenSolver, eigen_solver
+from .prediction import KnownRoots
 from .shift_invert import KRYLOV
 
 
@@ -64,7 +65,7 @@ class TransverseProblem(ABC):
         represents."""
 
     @abstractmethod
-    def count(self, line: float, found: Roots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
         """Number of eigenvalues with Re w > line; found: roots that may make the count faster."""
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
@@ -101,7 +102,7 @@ class UniformProblem(TransverseProblem):
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
-    def count(self, line: float, found: Roots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
         return count_right_of(line, self.rod)
 
 
@@ -129,7 +130,7 @@ class ArmProblem(TransverseProblem):
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
         return roots_of_arm(raw, self._determinant, self._hull, most_waves)
 
-    def count(self, line: float, found: Roots | None = None) -> Count:
+    def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
         known = () if found is None else (found.w, found.error)
         return count_of_arm(line, self._determinant, self._hull, *known)
 
