@@ -97,14 +97,16 @@ class _Marching:
             z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._settled(z)
             path = self._path(settled)
+            in_limit = self.rod != self.limit
+            enough = self.request.accuracy * (MARCHING.pair_share_in_limit if in_limit else 1.0)
             for _ in range(MARCHING.max_comparisons):
                 settled = self._refined(settled)
                 before = path
                 path = self._path(settled)
                 errors = _errors(before, path, MARCHING.settled_distance * self.request.accuracy)
-                if errors.largest <= self.request.accuracy:
+                if errors.largest <= enough:
                     break
-            if self.rod != self.limit:
+            if in_limit:
                 errors = self._errors_of_the_limit(settled, path, errors)
         except _Ended as end:
             return replace(straight, status=end.status, message=end.why, periods=self.waited)
@@ -160,9 +162,13 @@ class _Marching:
                 return _Settled(z, turns, step)
         raise _Ended(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
 
-    def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
-        """A complete run; raises _Ended if the run fails or leaves the model."""
-        run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
+    def _run(
+        self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
+    ) -> Trajectory:
+        """A complete run, by default with the scheme of the motion; raises _Ended if the run fails or leaves
+        the model.
+        """
+        run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
             raise _Ended(status, end.why)
@@ -192,7 +198,8 @@ class _Marching:
         """One period of the settled motion; raises _Ended."""
         returns = settled.turns + 2
         limit = until_returns(angle_weights(self.beam), settled.z, returns)
-        run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit)
+        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
+        run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit, scheme)
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
             raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
