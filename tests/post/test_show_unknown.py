@@ -65,7 +65,8 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     few = replace(boundary_curves.BOUNDARY_STEPS, most=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
     view = view_of_sweep(tmp_path, "phase_diagram", **plane)
-    full = np.flatnonzero(view.variables["curve_end"] == list(CURVE_ENDS).index("list_full"))
+    reasons = [view.variables[name] for name in ("curve_start", "curve_end")]
+    full = np.flatnonzero(np.any(np.array(reasons) == list(CURVE_ENDS).index("list_full"), axis=0))
     assert len(full) > 0
     said = told(view)
     for i in full:
