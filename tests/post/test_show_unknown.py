@@ -174,11 +174,11 @@ def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch
 def test_show_names_the_reason_of_each_kind_of_failure_with_a_point(tmp_path):
     """Two points fail for one reason in two numbers."""
     rod = {"k1": 1e4, "k2": 1e2, "gamma3": 1e-2, "method": "integration", "accuracy": 1e-3}
-    view = view_of_sweep(tmp_path, "limit_cycle", F=[27.45, 27.5], most_periods=6, **rod)
+    view = view_of_sweep(tmp_path, "limit_cycle", F=[27.45, 27.5], most_periods=20, **rod)
     said = told(view)
     at = "gamma3 = 0.01, gamma1 = 1.0: "
     assert said.count("not_settled, as at F = ") == 1
-    assert f"not_settled, as at F = 27.45, k1 = 10000.0, k2 = 100.0, {at}the tip passes" in said
+    assert f"not_settled, as at F = 27.45, k1 = 10000.0, k2 = 100.0, {at}20 returns of the tip, " in said
     anew = changed(view, status=np.where(view.variables["F"] == 27.45, 0, view.variables["status"].ravel()))
     assert ", as at F = " not in told(anew)
 
