@@ -28,7 +28,7 @@ BENDING = 2
 
 
 @compiled
-def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
+def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
     """Writes (q1, q3) before a jump and (q1, q3) behind into out, (4, m), for means q1, q3 over both sides,
     (m,)."""
     for i in range(len(q1)):
@@ -41,7 +41,7 @@ def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
         out[3, i] = b.q3
 
 
-def parted(rod: NodalRod, S: Array) -> Array:
+def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
 
     S: (3, ..., nodes + 1).
@@ -50,7 +50,7 @@ def parted(rod: NodalRod, S: Array) -> Array:
     for found, node, sides in zip(out, rod.jumps, rod.sides, strict=True):
         q1, q3 = (np.ascontiguousarray(S[a, ..., node]).ravel() for a in (STRETCHING, BENDING))
         flat = np.empty((4, q1.size))
-        part(rod.law, sides, q1, q3, flat)
+        split_at_jump(rod.law, sides, q1, q3, flat)
         found[...] = flat.reshape(found.shape)
     return out
 
@@ -58,7 +58,7 @@ def parted(rod: NodalRod, S: Array) -> Array:
 def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     """S at the nodes of each element, (3, ..., elements, order + 1), with its own side of each jump."""
     fields: Array = S[..., grid.element_nodes]
-    for node, sides in zip(rod.jumps, parted(rod, S), strict=True):
+    for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
         e = node // grid.order
         for component, before, behind in zip((STRETCHING, BENDING), sides[0], sides[1], strict=True):
             fields[component, ..., e - 1, -1] = before

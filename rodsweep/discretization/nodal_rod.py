@@ -46,9 +46,9 @@ class Jumps(NamedTuple):
 
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
-"""Of a rod without jumps."""
+"""The jumps of a rod whose material is continuous: none."""
 NO_SIDE_CHANGE = np.zeros((0, 2, 3))
-"""`sides` of a change of a rod without jumps, or of linear material."""
+"""Changes on the sides of jumps, (0, 2, 3), for a rod without jumps or of linear material."""
 
 
 class NodalChange(NamedTuple):

@@ -17,7 +17,7 @@ from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
-from .at_jumps import carried, parted
+from .at_jumps import carried, stresses_beside_jumps
 from .element_strains import write_element_rates, write_element_strains
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
@@ -110,7 +110,7 @@ class RodOnMesh(ABC):
         nu = _along(c.rest, S)[0]
         (c1, c2, c3) = _along(c.compliance, S)
         density = self._stored(nu, c1, c3, S[0], S[2])
-        for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
                 density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
@@ -147,7 +147,7 @@ class RodOnMesh(ABC):
         S = self.stresses(x)
         c = self.nodal
         sections = np.stack([c.rest[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
-        for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
             before, behind = np.column_stack([numbers[:, :3], sides])
             sections[node] = before
             sections = np.vstack([sections, behind])

@@ -11,7 +11,12 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.accuracy.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import (
+    RefinedCycle,
+    matrix_distance,
+    newton_tolerance,
+    with_calibrated_errors,
+)
 from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
@@ -186,7 +191,7 @@ def cycle_ahead(
 
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
-    cycle = judged_by(start.calibration.known, found, accuracy)
+    cycle = with_calibrated_errors(start.calibration.known, found, accuracy)
     place = placed(found, start.scale, tangent)
     curvature = (place.rate - start.rises) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length

@@ -16,7 +16,7 @@ from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT
-from ..cycle.hopf_start import HOPF_START, orbit_with
+from ..cycle.hopf_start import HOPF_START, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -180,4 +180,4 @@ def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
-    return orbit_with(hopf.normal, form, amplitude, frequency)
+    return orbit_of_amplitude(hopf.normal, form, amplitude, frequency)

@@ -136,7 +136,7 @@ class BorderedMatrix:
         change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
-    def varied(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
+    def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
         """Derivatives of residuals along variations, (m, N + 1), reduced, (K, s, m, n); of the end, (m,
         n)."""
         along = change_along(orbit.form, self.scale.name)
@@ -147,7 +147,7 @@ class BorderedMatrix:
         )
         return changed
 
-    def spread(self, starts: Array, columns: Array) -> Array:
+    def back_substitute(self, starts: Array, columns: Array) -> Array:
         """Changes of states, (m, N + 1), from those of the start, (m, n), and reduced sides, (K, s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
@@ -175,7 +175,7 @@ class BorderedMatrix:
         """
         matrix = self._matrix.copy()
         matrix[-1, -1] = 1.0
-        return self._spread(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
+        return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def _jump(self, orbit: Orbit, end: Array) -> Array:
         """Right side of an orbit's start and phase, (n + 1,); `end`: contribution of its stages, (n,)."""
@@ -190,9 +190,9 @@ class BorderedMatrix:
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
         matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
-        return self._spread(np.linalg.solve(matrix, right), sides, share)
+        return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
-    def _spread(self, found: Array, sides: Array, share: float) -> Array:
+    def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
         """Change of all, (N + 1,), from that of the ends, (n + 2,), and a share of right sides, (K, s, n)."""
         n = len(self.orbit.start)
         stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
@@ -224,7 +224,7 @@ class Condition:
         """Condition at an arc length along a border, (3,), from an orbit."""
         return cls(scale, border, float(border @ scale.place(orbit)) + length)
 
-    def missed(self, orbit: Orbit) -> float:
+    def residual(self, orbit: Orbit) -> float:
         """Prescribed value minus an orbit's value."""
         return self.value - float(self.border @ self.scale.place(orbit))
 
@@ -239,7 +239,7 @@ class Condition:
         matrix = BorderedMatrix(orbit, self.scale, workspace)
         off = 0.0
         last = np.inf
-        step = matrix.step(self.border, self.missed(orbit))
+        step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
@@ -254,10 +254,10 @@ class Condition:
             if settled or change <= tolerance or (off > change and rate > ORBIT_NEWTON.new_matrix_ratio):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 off = 0.0
-                step = matrix.step(self.border, self.missed(orbit))
+                step = matrix.step(self.border, self.residual(orbit))
                 last = np.inf
             else:
-                step = matrix.correction(orbit, self.border, self.missed(orbit))
+                step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
 

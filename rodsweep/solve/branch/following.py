@@ -19,7 +19,7 @@ from .arc import ARC_STEPS, ArcPoint, arc_between, cycle_ahead, next_point, poin
 from .beginning import HopfBirth, beginning, special_hopf
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve, BranchEnd
-from .settling import due
+from .settling import measurement_due
 from .special.least_stretch import stretch_at
 from .special.locating import Segment, located
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -145,7 +145,7 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
             return BranchEnd(located(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True)
         _add_special_points(curve, start, end, limits)
         trail.append(end)
-        last = trail.settle(range_end) if range_end is not None or due(end) else end
+        last = trail.settle(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
         message = f"no cycle is found beyond: {why}"
         return BranchEnd(end_at(start, EndReason.no_cycle_found, message), complete=False)
@@ -230,7 +230,7 @@ def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: 
     segment = Segment(start, end)
 
     def beyond(length: float) -> float:
-        return -range_end.missed(segment.predicted(length))
+        return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
     length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)

@@ -112,7 +112,7 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         oscillates = tracer.anchor(path.variable(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.at)
         crossings, at_end = counts.along(ordered, ends, unstable)
-        missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
+        missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
         if not missed:
             break
         near = [(p + side * TRANSITIONS.anchor_distance * (high - low)) for p in missed for side in (-1, 1)]
@@ -201,7 +201,7 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
-def _pairs_that_do_not_lead(
+def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
     """Path variables of crossings whose pair alone is on the axis, hence must lead, but does not in the

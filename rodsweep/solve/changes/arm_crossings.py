@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import ANCHORS, lowest_between
+from .anchors import ANCHORS, minimum_of_cubic
 from .path_problem import PathProblem
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
@@ -103,7 +103,7 @@ class CrossingSearch:
         left = self.place(a)
         right = self.place(b)
         if left.unstable == right.unstable:
-            share = hidden(left, right)
+            share = next_count_place(left, right)
             if share == 0.0:
                 return
             if b - a <= SMALLEST_INTERVAL * intervals.length:
@@ -180,7 +180,7 @@ def _needed(found: Spectrum) -> int:
     return 2 + max(found.unstable_count, growing)
 
 
-def hidden(left: AxisPlace, right: AxisPlace) -> float:
+def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
     """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if no pair
     can."""
     h = right.p - left.p
@@ -195,7 +195,7 @@ def hidden(left: AxisPlace, right: AxisPlace) -> float:
             if towards and value < abs(slope) * h:
                 return 0.5
             continue
-        lowest, share = lowest_between(a[0], b[0], h * a[1], h * b[1])
+        lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
         if lowest < ANCHORS.explained * min(a[0], b[0]):
             return share
     return 0.0

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
-from .anchors import Anchor, unexplained
+from .anchors import Anchor, next_anchor
 from .path_problem import PathProblem
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
@@ -119,7 +119,7 @@ class Tracer:
         right = self.anchor(b)
         share = 0.5
         if left.oscillates == right.oscillates:
-            share, hides = unexplained(left, right)
+            share, hides = next_anchor(left, right)
             smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
             if share == 0.0:
                 return []

@@ -129,7 +129,7 @@ class NearbyCycles:
 
     def _corrected(self, orbit: Orbit, condition: Condition) -> tuple[Orbit, float]:
         """(orbit after one correction, relative change); raises Unsolvable."""
-        step = self.matrix.correction(orbit, self.border, condition.missed(orbit))
+        step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
         if not change <= ORBIT_NEWTON.longest_step:
             raise Unsolvable("no cycle of the branch is near the start of the corrections")
@@ -165,7 +165,7 @@ class FoldFunction:
         tangent = self.vectors
         p = orbit.semidiscrete
         change = replace(orbit, values=tangent[:-1])
-        columns, ends = matrix.varied(orbit, tangent[None])
+        columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start))
         phase_row(orbit.start, p.rod, p.matrices, row)
         along = orbit.form.change(matrix.scale.name)
@@ -195,7 +195,7 @@ class TorusFunction:
             start /= np.linalg.norm(start)
         self.border = start.conj()
         K, s, n = matrix.orbit.states.shape
-        self.vectors = matrix.spread(_parts(start), np.zeros((K, s, 2, n)))
+        self.vectors = matrix.back_substitute(_parts(start), np.zeros((K, s, 2, n)))
         n = len(start)
         self.bordered = np.zeros((n + 1, n + 1), dtype=complex)
         self.bordered[:n, :n] = matrix.propagator - pair * p.symmetry
@@ -212,14 +212,14 @@ class TorusFunction:
 
     def correct(self, orbit: Orbit) -> None:
         """Corrects the multiplier and its eigenvector once at a cycle."""
-        columns, ends = self.matrix.varied(orbit, self.vectors)
+        columns, ends = self.matrix.residual_variations(orbit, self.vectors)
         n = ends.shape[1]
         start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
         right = np.append(self.multiplier * (orbit.semidiscrete.symmetry @ start), 1 - self.border @ start)
         right[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered, right)
         self.multiplier += complex(change[-1])
-        self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
+        self.vectors = self.vectors + self.matrix.back_substitute(_parts(change[:-1]), columns)
 
 
 def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:

@@ -86,10 +86,10 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         correct_fully(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return of_multipliers(kind, matrix.partial_multipliers)
+    return test_of_multipliers(kind, matrix.partial_multipliers)
 
 
-def of_multipliers(kind: SpecialKind, h: Complex) -> float:
+def test_of_multipliers(kind: SpecialKind, h: Complex) -> float:
     """The test function of a kind from multipliers over the solved interval, (rank,); raises Unsolvable."""
     real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
@@ -108,7 +108,7 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
         return float(point.tangent[-1]) / scale.coordinate / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return of_multipliers(kind, point.partial_multipliers)
+    return test_of_multipliers(kind, point.partial_multipliers)
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:

@@ -130,7 +130,7 @@ class Transient:
         first = True
         while self.waited < self.most_periods:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
-            run = self._chunk(z, first)
+            run = self._run_of_returns(z, first)
             if end := early_end(self.beam, run, self.waited):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
                 return self._ended(status, end.why)
@@ -139,7 +139,7 @@ class Transient:
             self._remember(run, times, states)
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
-            if self.straight.stable is False and not self._swings(z):
+            if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
                 z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
@@ -148,7 +148,7 @@ class Transient:
             first = False
             if len(times) < 3 or (early and self.small.slow(times, states)):
                 continue
-            shown = self.trace is not None and self.trace.shows(z)
+            shown = self.trace is not None and self.trace.records_on(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
@@ -180,13 +180,13 @@ class Transient:
 
     def _not_settled(self, z: Array) -> str:
         """The reason why the motion, now at the state z, has no outcome."""
-        if self._swings(z):
+        if self._bends_visibly(z):
             return f"{self.waited} returns of the tip, none periodic"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
         return f"its deflection has decayed after {self.waited} returns, but {why}"
 
-    def _swings(self, z: Array) -> bool:
+    def _bends_visibly(self, z: Array) -> bool:
         """Whether bending and shear exceed rounding errors."""
         return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
@@ -211,7 +211,7 @@ class Transient:
     def _ended(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, why, self.waited, found)
 
-    def _chunk(self, z: Array, first: bool) -> Trajectory:
+    def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run over TRANSIENT.returns_per_run returns, limited to three times the expected duration."""
         returns, scheme = (
             (TRANSIENT.first_returns, self.first_scheme)
