@@ -126,12 +126,15 @@ class ArcPoint:
         mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
         coordinate = last.form.rod.coordinate(name)
+        # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))
+        # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
         apart = np.append(last.values - self.orbit.values, coordinate - self.at)
+        # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
@@ -148,12 +151,14 @@ def placed(found: Converged, scale: Scale, tangent: Array) -> Place:
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
     """Tangent of the branch at an orbit from its matrix, (N + 1,), oriented to a side, (3,)."""
     tangent = matrix.direction(side)
+    # A null vector has no sign; the branch must not turn back.
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
 
 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
     end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
+    # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.order))
 
 

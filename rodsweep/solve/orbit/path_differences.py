@@ -30,6 +30,7 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 def rod_difference(one: Orbit, other: Orbit) -> float:
     """Largest relative difference of two rods' parameters."""
     a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
+    # A coefficient of 0 is a limit, such as c1 = 0, in which both rods agree exactly.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 
 

@@ -112,7 +112,10 @@ class NearbyCycles:
             before = self.function.value(orbit)
             self.function.correct(orbit)
             value = self.function.value(orbit)
+            # The test function converges with its vectors; its change counts as a distance across the curve.
             off = max(change, abs(value - before) / slope)
+            # The first correction has no predecessor: its contraction follows from the distance from the
+            # matrix's cycle.
             rate = off / last if last else min(1.0, self.contraction * distance)
             if last and not self._family.small:
                 measured = AUGMENTED.contraction_safety * rate / distance
@@ -153,6 +156,7 @@ class FoldFunction:
     def value(self, orbit: Orbit) -> float:
         """The test function from the present tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
+        # Beside a Hopf point the rate vanishes with the amplitude; divided by it the function stays regular.
         return rises * self.matrix.scale.deflection / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
