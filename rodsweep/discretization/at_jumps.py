@@ -91,6 +91,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
     here, there: nodes of the jumps, (k,) each. shares: of both sides in the unknown of a jump, (k, 2).
     """
+    # E interpolates the mean at a jump; rows of elements beside one extrapolate from inside instead.
     out = E.copy()
     p = source.order
     element = np.searchsorted(source.edges, target.positions, side="right") - 1
@@ -104,6 +105,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
             out[rows, node] = 0.0
             out[rows, columns] += weights[:, None] * row
     for e, node, (before, behind) in zip(at_jumps, there, shares, strict=True):
+        # The new node at the jump gets the mean of both sides, as all states hold it.
         out[node] = 0.0
         for side, share in ((e - 1, before), (e, behind)):
             row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
@@ -118,6 +120,7 @@ def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Arra
     starts, stops: whether the element starts, and stops, at a jump.
     """
     x = gauss_lobatto(order)[0]
+    # Nodes at jumps hold means over both sides, which belong to neither polynomial.
     used = slice(int(starts), order + 1 - int(stops))
     row = np.zeros(order + 1)
     row[used] = interpolation(x[used], np.array([-1.0 if first else 1.0]))[0]

@@ -47,6 +47,7 @@ class Anchor:
         pair; else None."""
         if self.oscillates:
             gap, slope = self._times_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
             return -(gap**2), -2 * gap * slope
         if self.w[1].imag != 0:
             return None
@@ -68,6 +69,7 @@ class Anchor:
 
 def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
     """(least value on [0, 1], its place) of the cubic with values a, b and slopes at the ends."""
+    # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
     square = 3 * (b - a) - 2 * slope_a - slope_b
     cube = slope_a + slope_b - 2 * (b - a)
     lowest = min(a, b)

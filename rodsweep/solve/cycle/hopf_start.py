@@ -95,6 +95,7 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START.min_force < F:
+        # In ratios: thresholds of one rod are far apart at large forces.
         lower = F * (1 - HOPF_START.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
@@ -116,6 +117,8 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
         share = below.real / (below.real - above.real)
         found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
+            # The eigenvalue on the axis must be the leading one; otherwise another mode has become unstable
+            # below.
             w = leading_eigenvalue(replace(rod, F=found.F))
             tolerance = HOPF_START.tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:

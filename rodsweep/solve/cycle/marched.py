@@ -141,6 +141,7 @@ class _Marching:
                 until_returns(row, z, MARCHING.returns_per_test),
             )
             z = run.states[-1]
+            # The last step of a run suits the next, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
@@ -189,6 +190,7 @@ class _Marching:
             if left > 0:
                 z = self._run(z, left, left, RunLimit()).states[-1]
             rates = self.beam.rate(z[None])[0]
+            # A Newton step in time from the interpolated crossing: theta is smooth there.
             late = float(row @ z) / float(row @ rates)
             times[i] = rough - late
             states[i] = z - late * rates
@@ -219,6 +221,7 @@ class _Marching:
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
+        # In coordinates the limit is 0, so twice the coordinate is twice the distance.
         coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()

@@ -87,6 +87,7 @@ def with_calibrated_errors(calibration: Calibration, found: Converged, accuracy:
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
+    # The matrix was made beside the orbit; how far the trivial multiplier is from 1 shows what that costs.
     by_matrix = REFINEMENT.multiplier_factor * largest * (found.distance + trivial_error)
     by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
@@ -154,6 +155,7 @@ def _predicted_cycle(
             best = orbit, known
         if error <= accuracy:
             break
+        # A prediction that gets worse on a finer mesh has met rounding errors, or another cycle.
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, known.planned(accuracy))
@@ -201,6 +203,7 @@ def calibrated_cycle(
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
     """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
     # `linearised` makes one more step
+    # The last step is quadratic, so half of the digits suffice before it.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.carry(found.orbit), last, found.workspace)
     return linearised(of_same_size(solution, found.orbit.size), parameter)
@@ -224,6 +227,7 @@ def refined_cycle(
     found = refine(over_minimal_period(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, MINIMAL_PERIOD.present) > 1:
         found = refine(over_minimal_period(found.orbit), accuracy, workspace, parameter)
+    # The multiplier is 1 within its error: a hundredth of the error may tell.
     if found.stable is None:
         found = refine(found.orbit, max(accuracy / 100, REFINEMENT.finest_accuracy), workspace, parameter)
     return found

@@ -137,11 +137,15 @@ class Transient:
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)
+            # Below rounding a motion has no memory of its amplitude: only a rod that is not unstable stays
+            # straight.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
+                # The rod is unstable, but the start has no part along the growing mode beyond rounding: it is
+                # started anew.
                 z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
                 continue
             early = first
@@ -244,6 +248,7 @@ class Transient:
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found."""
+        # The run is shorter than the period to be cut from it: several returns may make one period.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
             if run.ending != Ending.reached:
@@ -255,4 +260,5 @@ class Transient:
             return None
         if found.stable is False:
             self.unstable = found
+        # A multiplier of 1 to rounding is a closed motion of any amplitude, not a limit cycle.
         return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
