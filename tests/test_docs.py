@@ -32,7 +32,7 @@ PLACE = re.compile(r"(rodsweep|tests|docs|configs|jobs|install|\.ci)/[\w./*-]*")
 TASKS = "|".join(CONFIGS)
 NOT_OURS = "--array"
 """An option of another program."""
-SOMETIMES = {"snapshot", "gamma1", "coordinates"}
+SOMETIMES = {"failure_reasons", "snapshot", "gamma1", "coordinates"}
 """Attributes that some files have not."""
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

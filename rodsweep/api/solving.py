@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..results.file.creation import Plan
-from ..results.file.provenance import now
+from ..results.file.provenance import now, united_reasons
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
@@ -17,6 +17,7 @@ from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
 from ..sweep.points.shards import Shard
 from ..tasks.protocol import AllPoints, Arrays, Solver
+from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas, blas_kernels, view_in_memory
 from ..tasks.running.job import Job
 from ..tasks.running.plan import plan_of
@@ -52,7 +53,7 @@ def solve_here(
     with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
         shown(0)
         try:
-            values, messages = _solved(job, solver, plan, shown)
+            values, messages, reasons = _solved(job, solver, plan, shown)
             joint = (
                 _joint(solver.together, view_in_memory(job, plan, values), shown) if solver.together else ()
             )
@@ -62,12 +63,18 @@ def solve_here(
         finally:
             shown.close()
         attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
+        attributes |= united_reasons("\n".join(reasons))
         filled = (*plan.constants(), *joint, *plan.afterwards(values))
     return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
 
 
-def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[str, np.ndarray], list[str]]:
-    """(variables of the layout, shape (points, own dimensions); messages of points solved on their own)."""
+def _solved(
+    job: Job, solver: Solver, plan: Plan, shown: Display
+) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
+    """(variables of the layout, shape (points, own dimensions); messages of points solved on their own;
+    reasons why points failed).
+    """
+    reasons = FailureReasons(lambda index: parameters_in_words(job.points.values(index)))
     count = job.points.count
     layout = plan.layout
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
@@ -75,9 +82,10 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
     if solver.stretched is not None:
         stretches, solve_stretch = solver.stretched
         for indices in map(stretches.indices, range(stretches.count)):
-            found = solve_stretch(indices).values
+            found = solve_stretch(indices)
+            reasons.add(indices, found)
             for name, array in flat.items():
-                array[indices] = found[name]
+                array[indices] = found.values[name]
             shown(int(indices[-1]) + 1)
     else:
         for done, (index, outcome) in enumerate(_outcomes(count, solver, shown), 1):
@@ -85,9 +93,14 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
             for name, array in flat.items():
                 array[index] = record[name]
             messages[index] = outcome.message
+            reasons.add(index, outcome)
             shown(done)
     shape = job.points.shape
-    return {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}, messages
+    return (
+        {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()},
+        messages,
+        [*reasons.examples.values()],
+    )
 
 
 def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:

@@ -98,6 +98,7 @@ def by_roots(
     """
     R = M * M - 4 * square
     apart = cmath.sqrt(R)
+    # The sign without cancellation in M + apart; the smaller root follows from the product.
     if (M.conjugate() * apart).real < 0:
         apart = -apart
     u = (M + apart) / 2
@@ -105,11 +106,13 @@ def by_roots(
     q1 = cmath.sqrt(u)
     q2 = cmath.sqrt(v)
     S = q1.real + q2.real
+    # The 1 that is subtracted from cosh q1 cosh q2, scaled by exp(-S) like the product.
     one = math.exp(-S)
     of_u = hyperbolic(u, q1)
     of_v = hyperbolic(v, q2)
     cosh1, first1, second1 = of_u
     cosh2, first2, second2 = of_v
+    # With z+- = (q1 +- q2)^2 the even functions of P are symmetric functions of q1^2 and q2^2.
     C = cosh1 * cosh2 - one
     H = first1 * first2
     per_R = 1 / R
@@ -191,6 +194,7 @@ def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_squar
     slope_minus = T - turn
     product_slope = 2 * (c2 - gamma3) ** 2 * w - 2 * g * (T * F + 2 * nu)
     if modulus(plus) < modulus(minus):
+        # d(z+ z-)/dw is a polynomial; the slope of the smaller z cancels if taken from T -+ P'.
         slope_plus = (product_slope - plus * slope_minus) / minus
     else:
         slope_minus = (product_slope - minus * slope_plus) / plus
@@ -235,6 +239,7 @@ def by_series(
     four = 0j  # of (z+, z+, z-, z-)
     factor = size / 2
     for n in range(1, MAX_SERIES_TERMS):
+        # 1/(2n + 2)!, updated from term to term.
         factor /= (2 * n + 1) * (2 * n + 2)
         s1 += n * factor * (power_plus + power_minus)
         d += factor * pair
@@ -273,6 +278,8 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     stiffness = nu * soft + X * size
     blur_M = T * size + abs(F) * soft
     blur_square = size * stiffness
+    # Three formulas: the series for small z, the roots q where they are well apart, else z+ and z-
+    # themselves.
     size_M = modulus(M)
     size_square = modulus(square)
     small = size_M + 2 * math.sqrt(size_square) < SERIES_BELOW

@@ -38,6 +38,7 @@ def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex,
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))
+    # z+- = total +- 2 P. Their product is a polynomial in w, in which P has cancelled exactly.
     total = (c2 + gamma3) * w - F * g
     plus = total + 2 * P
     minus = total - 2 * P
@@ -58,6 +59,7 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
         slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
         size = math.exp(-scale)
         return size * (0.5 + z / 24 * value), size * (1 + z / 15 * slope) / 24
+    # cosh q - 1 = 2 sinh^2(q/2): no cancellation for moderate q.
     grow = cmath.exp((root - scale) / 2)
     decay = cmath.exp((-root - scale) / 2)
     value = (grow - decay) ** 2 / (2 * z)
@@ -73,6 +75,7 @@ def hyperbolic(v: complex, root: complex) -> Hyperbolic:
         second = (1 + v / 10 * second) / 3
         size = math.exp(-root.real)
         return Hyperbolic(size * (first + v * second), size * first, size * second)
+    # cosh and sinh times exp(-Re q), which cannot overflow.
     decay = math.exp(-2 * root.real)
     even = (1 + decay) / 2
     odd = (1 - decay) / 2

@@ -122,6 +122,7 @@ def none_crosses(first: End, last: End, direction: Coefficients, most: int) -> t
             if examined >= most or half_y < SMALLEST_SHARE * depth or stop - start < SMALLEST_SHARE:
                 return False, examined
             examined += 1
+            # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             middle = y + half_y if y > 0 else 0.0
             half = (OVERLAP * half_y, OVERLAP * half_p)
             proved, cost_y, cost_p = free_of_zeros(at, middle, direction, half, tilt)
@@ -129,6 +130,7 @@ def none_crosses(first: End, last: End, direction: Coefficients, most: int) -> t
                 y = middle + half_y
                 half_y = min(HALF_HEIGHT_GROWTH * half_y, LARGEST_HALF_HEIGHT * math.hypot(at.line, y))
             elif cost_p > cost_y:
+                # Split in p at the height reached: what lies below is proved for both halves.
                 stack.append(Strip((start + stop) / 2, stop, y, half_y))
                 stack.append(Strip(start, (start + stop) / 2, y, half_y))
                 break

@@ -54,7 +54,9 @@ def crossing_newton(
     for _ in range(MAX_NEWTON_STEPS):
         coefficients = coefficients_at(p, origin, direction)
         D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
+        # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
         a = 1j * D_w
+        # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
         cross = (a * D_p.conjugate()).imag
         if cross == 0:
             return FAILED
@@ -65,6 +67,7 @@ def crossing_newton(
         e_eta = blur * abs(D_p) / abs(cross)
         e_p = blur * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
+        # Negated comparisons are also true for NaN.
         if not step < LARGEST_NEWTON_STEP or not eta + in_eta > 0:
             return FAILED
         eta += in_eta
@@ -106,6 +109,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         e_x = (blur * abs(D_wp) + noise / max(abs(x), LEAST_DIVISOR) * abs(D_p)) / abs(cross)
         x += in_x
         p += in_p
+        # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * reach or not x * start > 0:
             return FAILED
         if abs(in_p) <= LAST_NEWTON_STEP * e_p and (
@@ -141,10 +145,12 @@ def refined(w: complex, coefficients: Coefficients) -> complex:
         step = value.D / value.D_w
         if real:
             step = complex(step.real, 0.0)
+        # Newton's method converges quadratically; a step that does not halve is rounding error.
         if not abs(step) < last / 2:
             break
         last = abs(step)
         w -= step
+        # D is real on the real axis, where rounding leaves a tiny imaginary part.
         if abs(w.imag) <= REAL_BELOW * abs(w):
             w = complex(w.real, 0.0)
     return w

@@ -69,6 +69,7 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
         D, D1, S, noise = scaled_determinant(w, coefficients)
         e = max(abs(D), TYPICAL_NOISE * noise)
         second = abs(second_derivative(w, S, coefficients))
+        # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
         if abs(D1) ** 2 < SEPARATED * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
@@ -115,6 +116,7 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
                 least = abs(w[j] - w[i])
         if partner >= 0 and least <= REFINED_TOGETHER * (error[i] + error[partner]):
             middle = (w[i] + w[partner]) / 2
+            # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
             if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                 middle = complex(middle.real, 0.0)
             w[i], w[partner] = two_roots(middle, coefficients)
@@ -139,6 +141,7 @@ def sort_descending(w: Complex, order: NDArray) -> None:
     for m in range(1, len(order)):
         i = order[m]
         at = m
+        # Insertion sort: the lists are short and nearly sorted.
         while at > 0:
             j = order[at - 1]
             if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
@@ -169,6 +172,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
         if abs(raw[i].imag) <= REAL_BELOW * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error(first[i], coefficients)
+        # No eigenvalue lies outside the box; what the mesh has there is its artefact.
         real, imag = box_of(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
         near[i] = inside[i] and wave[i] <= most_waves and error[i] <= CLOSE_ROOTS * length[i]
@@ -208,6 +212,7 @@ def _refined_all(
             continue
         single = i > 0 and w[i].imag != 0 and not moved[i - 1] and not moved[i]
         if single and w[i] == first[i - 1].conjugate():
+            # The conjugate is refined already.
             w[i] = w[i - 1].conjugate()
             error[i] = error[i - 1]
             wave[i] = wave[i - 1]

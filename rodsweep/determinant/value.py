@@ -85,6 +85,7 @@ def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
     F, nu, c2, gamma3 = coefficients
     T = c2 + gamma3
     X = c2 * gamma3
+    # d(P^2)/dw.
     N = (nu + F * c2) * nu + 2 * X * w
     slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P
     return Value(math.exp(-even.S) + w / 2 * total, (total + w * slope) / 2, even.S, noise)
@@ -93,6 +94,7 @@ def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
 @compiled
 def second_difference(after: Value, before: Value, S: float, h: float) -> complex:
     """D'' exp(-S) by the central difference of D' a step h beyond and before a point."""
+    # Each value has its own scale exp(-S); the difference needs one common scale.
     return (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
 
 
@@ -123,6 +125,7 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
+    # A value that happens to be far below its rounding error proves no better root.
     error = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), LEAST_DIVISOR)
     P, P1, _, plus, minus = branches(w, coefficients)
     root_plus = math.sqrt(abs(plus))

@@ -28,7 +28,7 @@ BENDING = 2
 
 
 @compiled
-def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
+def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
     """Writes (q1, q3) before a jump and (q1, q3) behind into out, (4, m), for means q1, q3 over both sides,
     (m,)."""
     for i in range(len(q1)):
@@ -41,7 +41,7 @@ def part(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
         out[3, i] = b.q3
 
 
-def parted(rod: NodalRod, S: Array) -> Array:
+def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
 
     S: (3, ..., nodes + 1).
@@ -50,7 +50,7 @@ def parted(rod: NodalRod, S: Array) -> Array:
     for found, node, sides in zip(out, rod.jumps, rod.sides, strict=True):
         q1, q3 = (np.ascontiguousarray(S[a, ..., node]).ravel() for a in (STRETCHING, BENDING))
         flat = np.empty((4, q1.size))
-        part(rod.law, sides, q1, q3, flat)
+        split_at_jump(rod.law, sides, q1, q3, flat)
         found[...] = flat.reshape(found.shape)
     return out
 
@@ -58,7 +58,7 @@ def parted(rod: NodalRod, S: Array) -> Array:
 def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     """S at the nodes of each element, (3, ..., elements, order + 1), with its own side of each jump."""
     fields: Array = S[..., grid.element_nodes]
-    for node, sides in zip(rod.jumps, parted(rod, S), strict=True):
+    for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
         e = node // grid.order
         for component, before, behind in zip((STRETCHING, BENDING), sides[0], sides[1], strict=True):
             fields[component, ..., e - 1, -1] = before
@@ -91,6 +91,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
 
     here, there: nodes of the jumps, (k,) each. shares: of both sides in the unknown of a jump, (k, 2).
     """
+    # E interpolates the mean at a jump; rows of elements beside one extrapolate from inside instead.
     out = E.copy()
     p = source.order
     element = np.searchsorted(source.edges, target.positions, side="right") - 1
@@ -104,6 +105,7 @@ def _across(  # noqa: PLR0913, PLR0917 - of both meshes
             out[rows, node] = 0.0
             out[rows, columns] += weights[:, None] * row
     for e, node, (before, behind) in zip(at_jumps, there, shares, strict=True):
+        # The new node at the jump gets the mean of both sides, as all states hold it.
         out[node] = 0.0
         for side, share in ((e - 1, before), (e, behind)):
             row = _end_from_inside(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
@@ -118,6 +120,7 @@ def _end_from_inside(order: int, starts: bool, stops: bool, first: bool) -> Arra
     starts, stops: whether the element starts, and stops, at a jump.
     """
     x = gauss_lobatto(order)[0]
+    # Nodes at jumps hold means over both sides, which belong to neither polynomial.
     used = slice(int(starts), order + 1 - int(stops))
     row = np.zeros(order + 1)
     row[used] = interpolation(x[used], np.array([-1.0 if first else 1.0]))[0]

@@ -55,6 +55,7 @@ class Beam(RodOnMesh):
         crushed = -self.nodal.rest[0, :-1] / self.roots[0, :-1]
         if self.smooth_stresses:
             for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
+                # The side that is crushed first counts.
                 crushed[node] = self.roots[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(crushed)
 
@@ -93,6 +94,7 @@ class Beam(RodOnMesh):
         """
         change = self.element_strain_changes(z, BEAM.tip_step * direction)
         moved = configuration(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
+        # Complex step: the imaginary part is the derivative times the step, without a difference.
         return moved.real, moved.imag / BEAM.tip_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:

@@ -46,9 +46,9 @@ class Jumps(NamedTuple):
 
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
-"""Of a rod without jumps."""
+"""The jumps of a rod whose material is continuous: none."""
 NO_SIDE_CHANGE = np.zeros((0, 2, 3))
-"""`sides` of a change of a rod without jumps, or of linear material."""
+"""Changes on the sides of jumps, (0, 2, 3), for a rod without jumps or of linear material."""
 
 
 class NodalChange(NamedTuple):
@@ -85,6 +85,7 @@ def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, kept: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Integers]:
     """`_resistance`, cached by the bytes of the drag, because rods of a chain over F have equal drags."""
+    # Bytes are hashable keys of the cache, and hold the array itself.
     values = np.frombuffer(drag).reshape(shape)
     return _resistance(values if len(shape) > 1 else values[:, None], grid, kept)
 
@@ -95,6 +96,7 @@ def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, 
     mobility = np.zeros(drag.shape)
     eliminated = [a for a in range(len(drag)) if a not in kept]
     mobility[eliminated] = 1 / drag[eliminated]
+    # Stresses enter twice through their derivative, D* and then the weak D: a product that no state changes.
     second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
     return drag, mobility, second, np.array(kept, np.int64)
 

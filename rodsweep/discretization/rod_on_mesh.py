@@ -17,7 +17,7 @@ from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
-from .at_jumps import carried, parted
+from .at_jumps import carried, stresses_beside_jumps
 from .element_strains import write_element_rates, write_element_strains
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
@@ -110,7 +110,8 @@ class RodOnMesh(ABC):
         nu = _along(c.rest, S)[0]
         (c1, c2, c3) = _along(c.compliance, S)
         density = self._stored(nu, c1, c3, S[0], S[2])
-        for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
+            # A node at a jump has a mean stress, whose energy is not the mean of the energies of both sides.
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
                 density[..., node] += share * self._stored(nu, c1, c3, q1, q3)
@@ -123,6 +124,7 @@ class RodOnMesh(ABC):
         law = self.rod.build.constitutive_law
         load = F * c1
         h1 = nu + c1 * q1
+        # shortening/load tends to 1 without load, also for c1 = 0, where (h1 - 1)/c1 is 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         push = q1 - F * ratio  # (h1 - 1)/c1
         stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
@@ -147,7 +149,8 @@ class RodOnMesh(ABC):
         S = self.stresses(x)
         c = self.nodal
         sections = np.stack([c.rest[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
-        for node, sides, numbers in zip(c.jumps, parted(c, S), c.sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
+            # Convexity must hold on each side; the mean section at the node does not exist.
             before, behind = np.column_stack([numbers[:, :3], sides])
             sections[node] = before
             sections = np.vstack([sections, behind])

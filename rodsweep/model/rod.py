@@ -105,6 +105,7 @@ class Rod:
             values[name] = value = getattr(self, name)
             if not contains(value):
                 PARAMETERS[name].require(value)
+        # The dataclass is frozen; fields computed from others are set once, here.
         object.__setattr__(self, "values", values)
         coefficients = coefficients_of(values) if self.build.standard and self.taper == 1 else None
         object.__setattr__(self, "_coefficients", coefficients)
@@ -166,6 +167,7 @@ class Rod:
             raise NotUniform(f"{self} is not uniform")
         law = self.build.constitutive_law
         shortening = float(law.shortening(self.F * self.c1))
+        # Units of K k3 make the bending stiffness 1 again; the rate is that of time, gamma2 L^4/(K k3).
         K = float(law.bending(1 - shortening))
         F = self.F / K
         k1 = F / shortening if shortening else self.stretch_stiffness / K
@@ -229,6 +231,7 @@ class Rod:
         slopes = self._slopes(name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
+        # 0.0 - x keeps a zero positive, where -x would be -0.0.
         nu = 0.0 - (F * self.c1 + self.F * c1) if F or c1 else 0.0
         return Coefficients(F, nu, slopes.get("k2", 0.0), slopes.get("gamma3", 0.0))
 
@@ -270,6 +273,7 @@ class Rod:
         Force, compliances and drags are products of coordinates, so the derivative is the product of the
         other factors.
         """
+        # A coordinate is linear in what it scales, so the slope is the product of the other factors.
         others = scaled({**self.values, name: 1.0})
         changing = PARAMETERS[name].scales or (name,)
         return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

@@ -110,7 +110,7 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
         if known and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
             why = KINEMATIC
-        raise InputError(f"{subject} {why}; {_meant(written, unit)}write {allowed}") from None
+        raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
     except Exception as error:  # what pint's parser raises on nonsense is of many kinds
         raise InputError(
             f"{subject} has the unit '{written}', which is not understood; write {allowed}"
@@ -123,7 +123,7 @@ def _ratio(written: str, unit: str) -> float:
     return float(registry().Quantity(1.0, written).to(unit).magnitude)
 
 
-def _meant(written: str, unit: str) -> str:
+def _suggestion(written: str, unit: str) -> str:
     """A suggestion "did you mean 'kPa'? " for a misspelt common unit; empty without a suggestion."""
     squeezed = "".join(written.split()).casefold()
     for common in COMMON:

@@ -461,10 +461,11 @@ def _validity_line(view, page, fine):
     for line, match in read(
         page,
         r"^the model (does not apply|is doubtful)(?: at (?:all )?NUMBER (?:of NUMBER )?points?)?"
-        r": .* is (?:up to )?NUMBER times its limit$",
+        r": .* is (?:up to )?NUMBER times its limit(?:; not known at NUMBER of NUMBER points)?$",
     ):
-        worst = max(applies)
-        there = np.array(applies) == worst
+        known = np.ravel(view.variables["model_applies"]) >= 0
+        worst = max(np.array(applies)[known])
+        there = known & (np.array(applies) == worst)
         why = [] if (worst == 2) == (match[1] == "does not apply") and worst else [f"validity is {worst}"]
         largest = np.max(np.array(excess)[there])
         if abs(float(match[4]) - largest) > TWO_DIGITS * largest:
@@ -476,6 +477,8 @@ def _validity_line(view, page, fine):
         found.append((line, "; ".join(why)))
     for line, match in read(page, r"^the model applies(?: at all points)?$"):
         found.append((line, f"{match[0]}: validity is {applies}" if max(applies) else ""))
+    for line, _ in read(page, r"^whether the model applies is not known(?: at all NUMBER points)?: "):
+        found.append((line, "it is known" if (np.ravel(view.variables["status"]) == 0).any() else ""))
     return found or [(page[0], "nothing is said of whether the model applies")]
 
 

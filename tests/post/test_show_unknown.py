@@ -11,6 +11,12 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.determinant.arm import hull
 from rodsweep.post.summary import show_summary
+from rodsweep.results.file.provenance import (
+    FAILURE_REASONS,
+    MAX_FAILURE_REASONS,
+    merged_history,
+    united_reasons,
+)
 from rodsweep.results.layouts.phase_diagram import CLASSES, CURVE_ENDS
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.solve.changes import boundary_curves
@@ -65,7 +71,8 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     few = replace(boundary_curves.BOUNDARY_STEPS, most=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
     view = view_of_sweep(tmp_path, "phase_diagram", **plane)
-    full = np.flatnonzero(view.variables["curve_end"] == list(CURVE_ENDS).index("list_full"))
+    reasons = [view.variables[name] for name in ("curve_start", "curve_end")]
+    full = np.flatnonzero(np.any(np.array(reasons) == list(CURVE_ENDS).index("list_full"), axis=0))
     assert len(full) > 0
     said = told(view)
     for i in full:
@@ -162,3 +169,24 @@ def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch
     assert "stable again: at none of 2 rods, not known at 2 rods" in rods
     forms = told(view_of_sweep(tmp_path, "criticality", k2=[5e3, 1e4], **EARLY))
     assert "Hopf points at 1 of 2 rods (k2 = 10000), not known at 1 rod" in forms
+
+
+def test_show_names_the_reason_of_each_kind_of_failure_with_a_point(tmp_path):
+    """Two points fail for one reason in two numbers."""
+    rod = {"k1": 1e4, "k2": 1e2, "gamma3": 1e-2, "method": "integration", "accuracy": 1e-3}
+    view = view_of_sweep(tmp_path, "limit_cycle", F=[27.45, 27.5], most_periods=20, **rod)
+    said = told(view)
+    at = "gamma3 = 0.01, gamma1 = 1.0: "
+    assert said.count("not_settled, as at F = ") == 1
+    assert f"not_settled, as at F = 27.45, k1 = 10000.0, k2 = 100.0, {at}20 returns of the tip, " in said
+    anew = changed(view, status=np.where(view.variables["F"] == 27.45, 0, view.variables["status"].ravel()))
+    assert ", as at F = " not in told(anew)
+
+
+def test_files_that_are_merged_keep_the_reasons_of_both():
+    one, other = "F=1.0: failed a", "F=2.0: failed b"
+    attributes = [{FAILURE_REASONS: text} for text in (one, f"{one}\n{other}")] + [{}]
+    assert merged_history(attributes)[FAILURE_REASONS] == f"{one}\n{other}"
+    assert FAILURE_REASONS not in merged_history([{}])
+    many = "\n".join(f"F={i}.0: failed {i}" for i in range(2 * MAX_FAILURE_REASONS))
+    assert len(united_reasons(many)[FAILURE_REASONS].splitlines()) == MAX_FAILURE_REASONS

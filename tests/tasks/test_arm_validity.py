@@ -9,12 +9,15 @@ from matplotlib.figure import Figure
 from surveyed import few
 
 import rodsweep as rs
+from rodsweep.api.asking import job_from
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.post.figures import draw
-from rodsweep.post.summary.arm.answer import arm_answer
+from rodsweep.post.summary.arm.answer import arm_answer, validity_sentence
 from rodsweep.results.file.view import read_view
-from rodsweep.tasks.arm.validity import MOTIONS
+from rodsweep.results.layouts.arm import NOT_KNOWN, VALIDITY
+from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.tasks.arm.validity import HOPF_POINTS, MOTIONS, ArmValidity
 
 SILICONE = {"radius": "5 mm", "young": "100 kPa", "viscosity": "4 Pa s"}
 LENGTHS = ["4 cm", "6 cm", "10 cm", "14 cm"]
@@ -54,6 +57,65 @@ def test_a_short_list_of_crossings_hides_no_effect():
     short, whole = (rs.sweep("thresholds", arm=arm, crossings=count, progress=False) for count in (1, 8))
     for name in ("model_applies", "neglected_effect", "neglected_excess"):
         assert short[name].item() == whole[name].item()
+
+
+SHORT_ROW = {
+    "arm": SILICONE | {"length": "10 cm", "pressure": rs.linspace("1 kPa", "3 kPa", 5)},
+    "gamma3": [0.002, 0.004],
+    "curves": False,
+}
+
+
+@pytest.mark.parametrize("crossings", [1, 8])
+def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
+    """The onset alone was in the list, and the arm was judged at rest."""
+    data = rs.sweep("phase_diagram", **SHORT_ROW, crossings=crossings, progress=False)
+    assert data.status.values.ravel().tolist() == [0 if crossings == 8 else 4] * 2
+    if crossings == 8:
+        assert (data.model_applies > Validity.applies).all()
+        return
+    assert (data.model_applies == NOT_KNOWN).all()
+    assert np.isnan(data.neglected_excess).all()
+    validity = {v.name: data[v.name].values.ravel() for v in VALIDITY}
+    said = "whether the model applies is not known at all 2 points: a motion may have been missed"
+    assert validity_sentence(validity) == said
+    mixed = {
+        name: np.append(values, {"neglected_excess": np.nan}.get(name, 0))
+        for name, values in validity.items()
+    }
+    assert validity_sentence(mixed) == "the model applies at 1 of 3 points; not known at 2 of 3 points"
+
+
+def test_a_search_that_failed_is_no_arm_at_rest():
+    made = job_from(
+        {
+            "task": "thresholds",
+            "parameters": {"arm": SILICONE | {"length": "10 cm"}},
+            "thresholds": {"F_max": 10.0},
+        }
+    )
+    solver = made.solver()
+    record = solver.record(0, solver.solve(0))
+    assert record["model_applies"] == Validity.applies
+    judge = ArmValidity(made.config, made.points, solver.statuses)
+    failed = next(status for status in solver.statuses if status.name == "failed")
+    assert judge.of(record | {"status": int(failed)}, 0)["model_applies"] == NOT_KNOWN
+
+
+def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
+    record = {"crossing_kind": np.zeros((1, 3)), "crossing_frequency": np.full((1, 3), np.nan)}
+    record |= {"crossing_at": np.full((1, 3), np.nan)}
+    row = MOTIONS["phase_diagram"]
+    flutter, oscillatory = (
+        next(v for v, name in CLASSES if name == kind) for kind in ("flutter", "oscillatory")
+    )
+    assert row(record | {"class": np.array([[flutter] * 2])}).missed.tolist() == [True]
+    assert row(record | {"class": np.array([[oscillatory] * 2])}).missed.tolist() == [False]
+    back = record | {
+        "crossing_kind": np.array([[1, HOPF_POINTS[2], 0]]),
+        "crossing_frequency": np.array([[1.0, -5.0, 0]]),
+    }
+    assert row(back | {"class": np.array([[flutter, oscillatory]])}).frequency.tolist() == [5.0]
 
 
 @pytest.mark.parametrize(

@@ -11,15 +11,20 @@ import xarray
 
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import NOUNS, show_summary
+from rodsweep.post.summary.diagram_curves import cycle_curve_lines
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve
+from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
+from rodsweep.tasks.diagram.records import cycle_curve_record
 from rodsweep.tasks.running.job import make_job
 from rodsweep.tasks.thresholds import search_record
 
@@ -316,6 +321,19 @@ def test_check_says_what_every_task_would_compute(command, task, words):
     text = " ".join(run.stdout.split())
     for word in ["stretch yes", "rotational drag no gamma3 = 0", "certificate yes", "s on one rank", *words]:
         assert word in text
+
+
+def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
+    point = CurvePoint(at=60.0, row=150.0, place=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
+    curve = CycleCurve(SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None))
+    filled = cycle_curve_record(Boundaries((curve,), agreement=0.0, untraced=0), ("F", "k1"))
+    view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
+    (line,) = cycle_curve_lines(view, "F", "k1")
+    first, last = (
+        f"k1 = 150, F = 60.0000000 (+- 1e-07) ({why})"
+        for why in ("edge of the diagram", "no further point found")
+    )
+    assert line.startswith(f"curve of folds: from {first} to {last}; 1 point,")
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):

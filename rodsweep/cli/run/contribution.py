@@ -1,7 +1,7 @@
 """Contribution of each rank to a run, and attributes of the file made from all contributions."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,8 +9,7 @@ import numpy as np
 
 from ...results.file import provenance
 from ...results.file.creation import Plan
-from ...sweep.loop import Indices, Share
-from ...sweep.points.stretches import StretchResult
+from ...sweep.loop import Share
 
 MAX_FAILURES_PRINTED = 3
 """Maximum number of failed points named at the end of a run; the file has the status of all points."""
@@ -18,27 +17,25 @@ MAX_FAILURES_PRINTED = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contribution:
-    """Report of a rank to the first rank: host, failed points in words, and statistics of the rank's work."""
+    """Report of a rank to the first rank: host, a failed point of each distinct reason in words, and
+    statistics of the rank's work.
+    """
 
     host: str
     failures: list[str]
     share: Share
 
 
-def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> list[str]:
-    """Descriptions of failed points, at most `MAX_FAILURES_PRINTED`; where: a point's parameters in words."""
-    if isinstance(result, StretchResult):
-        failed = np.flatnonzero(~result.succeeded)[:MAX_FAILURES_PRINTED]
-        failures = [(int(np.asarray(index)[i]), result.message(int(i))) for i in failed]
-    else:
-        failures = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
-    return [f"{where(at)}: {outcome}".rstrip() for at, outcome in failures]
-
-
 def of_the_last_run(plan: Plan) -> dict[str, Any]:
     """Attributes of a plan that describe the last run with computed points."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
+
+
+def reasons_of(contributions: Sequence[Contribution], before: Mapping[str, Any]) -> dict[str, str]:
+    """Attribute with the reasons of failed points; before: attributes with the reasons of earlier runs."""
+    found = "\n".join(failure for contribution in contributions for failure in contribution.failures)
+    return provenance.united_reasons(str(before.get(provenance.FAILURE_REASONS, "")), found)
 
 
 def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:

@@ -23,8 +23,9 @@ from ...sweep.progress import ProgressReporter, Silent
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import Solver
+from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
-from .contribution import MAX_FAILURES_PRINTED, Contribution, failures_of
+from .contribution import Contribution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +63,7 @@ class PointWork:
         self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
     ) -> Contribution:
         """Solves the units of this rank and writes the results into the rank's journal."""
-        failures: list[str] = []
+        reasons = FailureReasons(self.where)
         solver = self.solver
         plan = self.plan
 
@@ -71,8 +72,7 @@ class PointWork:
                 journal.append_all(np.asarray(index), result.values)
             else:
                 journal.append(int(index), solver.record(int(index), result))
-            if len(failures) < MAX_FAILURES_PRINTED:
-                failures.extend(failures_of(index, result, self.where))
+            reasons.add(index, result)
 
         shown = ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else Silent()
         directory = journal_directory(self.output)
@@ -88,7 +88,7 @@ class PointWork:
             ) from error
         finally:
             shown.close()
-        return Contribution(host=socket.gethostname(), failures=failures, share=share)
+        return Contribution(host=socket.gethostname(), failures=list(reasons.examples.values()), share=share)
 
     def _solve_unit(
         self, missing: IndexSet, directory: Path

@@ -16,13 +16,14 @@ from ...sweep.loop import Share
 from ...sweep.points.ranges import IndexRange, total
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
+from ...tasks.running.failures import parameters_in_words
 from ...tasks.running.job import Job, job_of
 from ...tasks.running.plan import plan_of
 from ...tasks.running.unforeseen import Log, guarded
 from ...wording import counted
 from ..beforehand import flutter_beforehand, planned_beforehand, say_stopped
 from .closing import RunEnd
-from .contribution import MAX_FAILURES_PRINTED, Contribution, history_of, of_the_last_run
+from .contribution import MAX_FAILURES_PRINTED, Contribution, history_of, of_the_last_run, reasons_of
 from .joint import JointDue, JointWork
 from .options import RunOptions
 from .point_work import PointWork
@@ -127,6 +128,7 @@ class _Run:
         if count:
             history = history_of(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.started, "stopped": self.stop.name}
+            history |= reasons_of(contributions, self.store.attributes())
             self.store.fold(of_the_last_run(self.plan) | history | started)
         if not self._lacks_curves(total(self.store.missing())):
             return JointDue(False)
@@ -179,8 +181,7 @@ class _Run:
             click.echo(f"{self.output}: {sentence}")
 
     def _where(self, index: int) -> str:
-        values = self.job.points.values(index)
-        return ", ".join(f"{name}={value!r}" for name, value in values.items())
+        return parameters_in_words(self.job.points.values(index))
 
     def _finish_file(self, joint: JointDue) -> bool:
         """Writes the joint variables into the file; returns whether they are still missing."""

@@ -69,6 +69,7 @@ def squared_amplification(rod: Rod) -> float:
         return rod.F**2 * rod.g / (rod.nu + level)
     if drag == 0:
         return inf
+    # For g < 0 two bounds compete: the best rho lies where they are equal or where the second is least.
     weights = [rod.nu / -rod.g] + ([(level - rod.nu) / -rod.g] if level > rod.nu else [])
     return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
 
@@ -86,10 +87,12 @@ def squared_amplification_between(first: Coefficients, last: Coefficients) -> fl
     Every factor used is monotone along a path, so the extremes are at the ends; nu g is not used.
     """
     load = max(abs(first.F), abs(last.F))
+    # F passes 0 between loads of opposite signs.
     least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
     weak = 1.0
     for rod in (first, last):
         if rod.c2 > 0:
+            # The weight rho = 1 gives this bound; it needs no sign of g, but rotational drag.
             weak = max(weak, rod.c2 / rod.gamma3 if rod.gamma3 > 0 else inf)
     g_first = first.nu + first.F * first.c2
     g_last = last.nu + last.F * last.c2
@@ -108,6 +111,7 @@ def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
     bends = [changes(c, path.direction) for c in ends]
+    # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
     span = (stop - start) ** 2 / 8
     G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
     pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)

@@ -89,6 +89,7 @@ class Box(NamedTuple):
 def distance(value: complex, a: complex, b: complex) -> float:
     """A lower bound of |value + x a + y b| over |x|, |y| <= 1; 0 if no positive bound is found."""
     best = 0.0
+    # The set is a parallelogram; a separating line is parallel to a side, or across the value.
     for normal in (value, 1j * a, 1j * b):
         size = abs(normal)
         if size > 0:
@@ -102,6 +103,7 @@ def mean_rates(centre: Centre) -> Pair:
     """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials as weights."""
     root_plus = cmath.sqrt(centre.plus)
     root_minus = cmath.sqrt(centre.minus)
+    # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.
     size_plus = math.exp(root_plus.real - centre.S)
     size_minus = math.exp(root_minus.real - centre.S)
     a = size_plus / (size_plus + size_minus)
@@ -120,6 +122,7 @@ def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: floa
         rest = M * t * t / (1 - t) ** power
         if rest < room:
             return True
+        # The bound has a single minimum in t.
         if rest > last:
             return False
         last = rest
@@ -140,6 +143,7 @@ def examine(
     mean = mean_rates(centre)
     rounding = ROUNDING_OF_D * noise
     if abs(D) > 2 * rounding:
+        # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
@@ -150,6 +154,8 @@ def examine(
     a = 2j * (D_w - mean[0] * D) * half[0]
     b = 2 * (D_p - mean[1] * D) * half[1]
     if abs(D) < 2 * (abs(a) + abs(b)):
+        # The smallest singular value of the linear map is at least |det| over the sum of its columns: at most
+        # one zero.
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         room = (CLEARANCE * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
@@ -171,6 +177,7 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
     in_w = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
+    # Besides the exponents the radicand of P must not change much, for the bounds on the bidisc.
     factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
     return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, LEAST_DIVISOR))
 

@@ -73,6 +73,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     root = cmath.sqrt(z)
     drift = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
     change = abs(slopes[0]) * radii[0] + abs(slopes[1]) * radii[1] + bend
+    # Re sqrt(z) = sqrt((|z| + Re z)/2), which a change of z raises by no more than this.
     crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
     grow = crude
     decay = crude
@@ -85,7 +86,10 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
         grow = min(grow, root.real + with_rates + curve)
         decay = min(decay, -root.real + against + curve)
     exponentials = math.exp(min(grow - S, HUGE)) + math.exp(min(decay - S, HUGE))
+    # The -1 of E = (cosh - 1)/z and its derivative.
     exponentials += 2 * math.exp(min(drift - S, HUGE))
+    # Bounds that hold near z = 0 too, where those by 1/|z| are useless: E(0) = 1/2 is an eighth of four
+    # exponentials.
     E = 1 / 8
     E1 = 1 / 48
     if abs(z) > change:
@@ -145,6 +149,7 @@ def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
     base = abs(g * nu + X * w)
     dG = (abs(G1) + abs(G2) / 2 * sigma) * sigma
     dX = (abs(X1) + abs(X2) / 2 * sigma) * sigma
+    # P = sqrt(w) sqrt(g nu + X w): relative changes of the two factors.
     e1 = rho / abs(w)
     moved = dG + X * rho + dX * (abs(w) + rho)
     e2 = moved / base if base > moved else 1.0
@@ -156,6 +161,8 @@ def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
     steepest = c2 + gamma3 + abs(T1) * sigma
     if P != 0:
         second = abs(G2) / 2 * sigma + abs(X2) / 2 * sigma * (abs(w) + rho) + abs(X1) * rho
+        # 2 - sqrt(1 - e) has the Taylor coefficients of sqrt(1 + e) in modulus, hence bounds the nonlinear
+        # part of P.
         majorant = (2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2
         bend += 2 * abs(P) * (majorant + second * sigma / base / 2)
         least = abs(P) * math.sqrt((1 - e1) * (1 - e2))

@@ -87,6 +87,8 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     L = slope / (2 * root)
     drift = abs(L) * rho
     curve = bend_of_root(root, bend, x)
+    # If the recessive exponent changes little, the two are compared by their rates; otherwise by crude
+    # extremes.
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
@@ -97,6 +99,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
             return False
     elif not lowest > highest:
         return False
+    # D = A (1 + e) with A the part of the dominant exponential; |e| < 1 turns the phase of D into that of A.
     S = root.real
     far = abs(w) + rho
     A = (abs(w) - rho) * (abs(slope) - turn) / (4 * (abs(z) + change)) * math.exp(-curve)
@@ -142,6 +145,7 @@ def dominated_stretch(
         rho = FIRST_RADIUS * abs(w)
         if X > 0:
             rho = min(rho, FIRST_RADIUS * abs(gn + X * w) / X)
+        # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         found = False
         for _ in range(HALVINGS + 1):
@@ -159,6 +163,7 @@ def dominated_stretch(
         t = length if t + 2 * rho >= length * (1 - END_ROUNDING) else t + 2 * rho
         w = start + direction * t
         after = dominant_factors(w, coefficients)
+        # The phase of A in closed form, however many turns it makes over the stretch.
         total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])
         here = after
     if t > 0.0:

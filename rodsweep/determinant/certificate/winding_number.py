@@ -101,6 +101,7 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
     if c2 * gamma3 > 0:
         rho = min(rho, stiffness / (BRANCH_DISTANCE * c2 * gamma3))
     rho = min(rho, (S + 1) / max(abs(L), LEAST_DIVISOR))
+    # Both exponentials count by what they contribute: a recessive one, with much slack, may change faster.
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)
@@ -118,6 +119,7 @@ def node_at(w: complex, coefficients: Coefficients) -> Node:
     """The node at w. The phase of f changes by less than pi/2 within the node's reach."""
     D, D_w, S, noise = scaled_determinant(w, coefficients)
     room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
+    # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
         return Node(w, D, 0j, 0.0)
     L = D_w / D
@@ -127,6 +129,8 @@ def node_at(w: complex, coefficients: Coefficients) -> Node:
     for _ in range(2):
         M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
         q = room / M
+        # The largest r with M r^2/(rho (rho - r)) < room, from Cauchy's estimate of the remainder on the
+        # disc.
         best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
     return Node(w, D, L, best)
@@ -149,6 +153,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
         ahead, change, discs = dominated_stretch(w, direction, length - t, coefficients)
         total += change
         nodes += discs
+        # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
         patience = PATIENCE if ahead > 0 else 2 * patience
         t = length if ahead == length - t else t + ahead
         if t < length:
@@ -188,6 +193,7 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
             ahead = WITHIN_REACH * here.reach
+        # The linear part of arg D may be many turns; only the rest, less than pi/2, is read off the values.
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
         t = length if there.w == end else t + ahead
@@ -234,6 +240,7 @@ def count_right_of(line: float, rod: Rod) -> Count:
         foot = quiet_radius_of(rod.coefficients, imag)
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
+        # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     real = COUNT.width_factor * real + COUNT.width_added
     imag = max(imag, COUNT.least_height * abs(line))
@@ -241,6 +248,7 @@ def count_right_of(line: float, rod: Rod) -> Count:
     if nodes < 0:
         return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
     total += change
+    # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > COUNT.not_an_integer:
         return Count(None, nodes, "the winding number is not an integer within rounding")

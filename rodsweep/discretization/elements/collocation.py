@@ -46,6 +46,8 @@ def radau(stages: int) -> Collocation:
     x[-1] = 1.0
     moments = np.zeros(stages)
     moments[0] = 1.0
+    # Exact for Legendre polynomials: all integrals but the first vanish.
     weights = np.linalg.solve(legendre.legvander(x, stages - 1).T, moments)
     D = 2 * differentiation(np.append(-1.0, x))
+    # The equations hold at the stages, not at the start: its row of D is not used.
     return Collocation((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))

@@ -57,6 +57,7 @@ class Elements:
         inner = (gauss_lobatto(self.order)[0][1:] + 1) / 2
         starts: Array = np.array(self.edges[:-1])
         positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
+        # Edges to the last bit, since jumps of the material are looked up at them.
         positions[self.order :: self.order] = self.edges[1:]
         return positions
 

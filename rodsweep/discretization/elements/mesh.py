@@ -77,7 +77,10 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
         element = slice(first, first + order + 1)
         weighted[element, element] += w[:, None] * slopes  # the length of the element cancels
         total[element] += length / 2 * w
+    # At a node shared by two elements D is the mean of both slopes, weighted by the quadrature, so that W D
+    # stays the assembled matrix.
     D = weighted / total[:, None]
+    # -D^T W: `weighted` is W D.
     parts = D, D.T, -weighted.T, total
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
@@ -112,6 +115,7 @@ def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
         state[0][..., element] = start[0] + length * (slope_x @ integrals)
         state[1][..., element] = start[1] + length * (slope_y @ integrals)
         state[2][..., element] = start[2] + length * (Pi @ ends)
+        # Each element starts where the last one ends.
         start = state[..., element][..., -1:]
     return state
 

@@ -62,6 +62,7 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
         for j in range(nodes):
             cos[j] = turns[0, at]
             sin[j] = turns[1, at]
+            # Multiples of the basic angle by index, so that rounding does not add up over the harmonics.
             at += k if at + k < m else k - m
         for a in range(columns):
             # The second half of the period doubles or cancels a harmonic.
@@ -77,6 +78,7 @@ def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
                 iS -= sin[j] * f[a, j]
                 D += cos[j] * df[a, j]
                 iD -= sin[j] * df[a, j]
+            # Harmonics k and k - m have equal values at m times; the slopes tell them apart.
             share = 1 - k / m
             by_slope = 1 / (2 * np.pi * m)
             c[k, a] = complex(factor * (share * S + by_slope * iD), factor * (share * iS - by_slope * D))
@@ -111,6 +113,7 @@ def sampled_columns(c: Complex, count: int) -> Array:
     equal, odd harmonics change their sign.
     """
     harmonics, columns = c.shape
+    # Half a period later even harmonics are the same and odd ones reversed: half the sums suffice.
     order = np.append(np.arange(0, harmonics, 2), np.arange(1, harmonics, 2))
     odd = (harmonics + 1) // 2
     steps = order % count
@@ -176,8 +179,10 @@ def maxima(c: Complex, samples: Array) -> Array:
         t = float(np.argmax(samples[:, column])) / n
         for _ in range(EXTREMUM_STEPS):
             _, slope, curvature = _expansion(c[:, column], t)
+            # Newton's method would run to a minimum.
             if curvature >= 0:
                 break
+            # The extremum lies beside the largest sample, within one distance of samples.
             step = min(max(slope / curvature, -1 / n), 1 / n)
             t -= step
             if abs(step) < EXTREMUM_FOUND:
@@ -207,6 +212,7 @@ def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
         value += term.real
         slope -= w * term.imag
         curvature -= w * w * term.real
+        # By recurrence: an evaluation has one sine and one cosine for all harmonics.
         wave *= step
     return value, slope, curvature
 

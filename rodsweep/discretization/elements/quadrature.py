@@ -44,6 +44,7 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
         x = x - step
         if np.abs(step).max() < LOBATTO.tolerance:
             break
+    # Nodes are symmetric exactly, so that mirror images stay mirror images.
     x = (x - x[::-1]) / 2
     x[0] = -1.0
     x[-1] = 1.0

@@ -74,12 +74,16 @@ def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatri
     for j in range(size - 1):
         s = [S[a, j] for a in g.components]
         for i in range(size):
+            # Nodes outermost and components innermost: the loops over components are unrolled, and D is read
+            # along rows.
             slope = m.D_transposed[j, i]
             for a in g.components:
                 out[a, i] += slope * s[a]
     for i in range(size):
         force = [out[a, i] for a in g.components]
         for a, b, o, sign in g.terms:
+            # Minus: the co-adjoint term is the transpose of (ad_E V)_a = sum a_abo E_b V_o. S is the
+            # deviation from the tip stress, which the derivative does not see.
             force[o] -= sign * E[b, i] * (c.tip_stress[a] + S[a, i])
         for a in g.components:
             out[a, i] = force[a]
@@ -126,6 +130,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
             V[a, i] *= c.mobility[a, i]
     for k in range(len(c.kept)):
         for i in range(size):
+            # Components that are unknowns have mobility 0, so the line above has set them to 0.
             V[c.kept[k], i] = x[velocity_place(k, i, g.dimension, size - 1)]
     strain_rates(g, E, V, G, m)
 
@@ -155,6 +160,7 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
     n = dS.shape[1] - 1
     k = 0
     for i in range(n + 1):
+        # The tip's stress is no unknown; its deviation is 0.
         q1, q3 = (x[stress_place(0, i, n)], x[stress_place(2, i, n)]) if i < n else (0.0, 0.0)
         if k < len(c.jumps) and c.jumps[k] == i:
             dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.sides[k], change.sides[k], q1, q3)
@@ -185,6 +191,7 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     for i in range(size):
         s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
+        # Gamma V = D* Sigma at fixed state, so d(force) - dGamma V = Gamma dV.
         force = [-change.drag[a, i] * V[a, i] for a in g.components]
         if c.law != LINEAR_LAW:
             for j in range(size):

@@ -59,6 +59,7 @@ class StressForm(RodOnMesh):
         if self.smooth_stresses:
             return self.layout.carried(x, E)
         layout = plane_layout(grid.nodes, self.kept)
+        # Velocities are continuous also where stresses jump, so they are interpolated as they are.
         V = np.zeros((COMPONENTS, *x.shape[:-1], grid.nodes + 1))
         V[list(self.kept)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on(grid, x), V)
@@ -80,5 +81,6 @@ class StressForm(RodOnMesh):
 
     def size(self, x: Array) -> Array:
         """Amplitude of states x: square root of x M x, with x = 0 for the straight rod; shape (...)."""
+        # x M x is twice the elastic energy of a linear rod; Omega has mass 0 and does not count.
         size: Array = np.sqrt(x**2 @ self.mass)
         return size

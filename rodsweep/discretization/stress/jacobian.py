@@ -44,6 +44,7 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     if c.law != LINEAR_LAW:
         P = np.empty(J.shape)
         tip_P = np.empty(tip.shape)
+        # With compliances of 0 the derivative is that by s(S) at fixed strain, on which the law acts.
         _derivative(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
         # Unknown velocities do not depend on the law, so their columns of P are not used.
         _by_law(x, J, P, c)
@@ -67,6 +68,7 @@ def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
         for r in range(len(J)):
             by_pull = P[r, p1]
             by_moment = P[r, p3]
+            # T - 1, because J already has the derivative of a linear law, T = 1.
             J[r, p1] += by_pull * (T.N1 - 1) + by_moment * T.M1
             J[r, p3] += by_pull * T.N3 + by_moment * (T.M3 - 1)
 
@@ -103,6 +105,7 @@ def _velocity_slopes(
         B = [[0.0 for _ in g.components] for _ in g.components]
         for a, b, o, sign in g.terms:
             B[o][a] -= sign * E[b, i]
+            # Product rule: E = E0 + C S depends on S as well.
             B[o][b] -= sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])
         for o in g.components:
             for b in g.components:
@@ -135,6 +138,8 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
         rows = [J[stress_place(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(n):
+                # The second derivative -D^T W Gamma^-1 D depends on the rod alone, so it is made once per
+                # rod.
                 rows[a][stress_place(a, j, n)] = c.second[a, i, j]
         for j in range(n):
             weak = m.weak[i, j]
@@ -142,12 +147,14 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
             for a, b in g.pairs:
                 back = weak * slopes[a, b, j] if g.backward[a][b] else 0.0
                 rows[a][stress_place(b, j, n)] = back + (ahead[a][b] * slope if g.forward[a][b] else 0.0)
+        # The tip's own stress is prescribed: no column belongs to it.
         if i < n:
             same = [[0.0 for _ in g.components] for _ in g.components]
             for a, b, o, sign in g.terms:
                 same[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
             for a, o in g.pairs:
                 for b in g.components:
+                    # Pairs that vanish for every strain are left out when the loops are unrolled.
                     if g.forward[a][o] and g.backward[o][b]:
                         same[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:

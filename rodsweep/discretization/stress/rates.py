@@ -27,6 +27,7 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
     balance(x, V, G, c, m)
     for a in range(d):
         for i in range(size - 1):
+            # W C dS/dt = G with z = C^(1/2) S, so dz/dt = G/(W C^(1/2)).
             out[stress_place(a, i, size - 1)] = G[a, i] / (m.weights[i] * roots[a, i])
 
 

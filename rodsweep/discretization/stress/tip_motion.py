@@ -71,6 +71,8 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
                 v = w * (sin * fields[0, g] + cos * fields[1, g])
                 x = x + u
                 y = y + v
+                # d/dt of R(theta) h: the rate of h, turned, plus the rotation of the contribution (u, v) by
+                # dtheta/dt.
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
             for j in range(size):

@@ -124,6 +124,7 @@ class Build:
         """
         factors = self._factors(at_base["taper"], u)
         law = self.constitutive_law
+        # No load acts along the arm, so every section carries the whole force F.
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
         c2 = 1 / (at_base["k2"] * factors["k2"])
         c3 = 1 / (factors["k3"] * law.bending(nu))
@@ -158,6 +159,7 @@ class Build:
         parameter, by name; missing names have derivative 0.
         """
         factors = self._factors(taper, u)
+        # d log(radius)/d taper.
         growth = slopes.get("taper", 0.0) * u / (1 - (1 - taper) * u)
         compliance = np.zeros((3, *u.shape))
         drag = np.zeros((3, *u.shape))
@@ -168,6 +170,8 @@ class Build:
             own = slopes.get(name, 0.0) * factors[name]
             drag[i] = own + at.drag[i] * RADIUS_POWERS.get(name, 0) * growth
         load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
+        # n1(nu) = -F c1 in units of k1: the shortening changes by the change of the load over the tangent
+        # stiffness.
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
@@ -184,6 +188,7 @@ class Build:
 def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     """Smallest value of k1 or gamma3 along the arm, in units of the value at the base; name: which one."""
     power = RADIUS_POWERS[name]
+    # Both radius and power are monotone, so a cone has its extreme at an end.
     ends = min(1.0, taper**power)
     if profile is None:
         return ends

@@ -70,6 +70,7 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
         return q
     one = _section(sides[0])
     other = _section(sides[1])
+    # The mean is prescribed, so b falls by this ratio as a rises.
     ratio1 = sides[0, 3] / sides[1, 3]
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
@@ -79,8 +80,10 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
         t = stress(law, other, b.q1, b.q3)
         S = tangent(law, one, a.q1, a.q3)
         T = tangent(law, other, b.q1, b.q3)
+        # Newton's method for equal stresses on both sides: the derivative of their difference by a.
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solved(J, t.N - s.N, t.M - s.M)
+        # Neither side may be crushed by a step, since the neo-Hookean stress is infinite there.
         share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
         a = Unknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
         if _small(step, a):
@@ -153,6 +156,7 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
         at = _section(sides[i])
         x = a if i == 0 else b
         own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
+        # At fixed stress the unknowns would move back by this; the mean is fixed, so the stress moves.
         back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1
         moved3 += sides[i, 4] * back.q3

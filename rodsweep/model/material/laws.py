@@ -23,6 +23,7 @@ MAX_COMPRESSION_STEPS = 60
 STEP_TOLERANCE = 1e-15
 """Newton step, relative to nu, at which the iteration has converged to rounding error."""
 POLISHING_STEPS = 2
+# For small x the digits of e = 1 - nu are lost in nu; polishing on e restores them.
 """Newton steps on e = 1 - nu, whose residual has no cancellation; each doubles the number of digits."""
 
 

@@ -64,6 +64,7 @@ class Profile:
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
         pieces = []
+        # A jump splits the profile: no slope is taken across it.
         for part in np.split(np.arange(len(u)), jumps):
             slopes = _monotone_slopes(u[part], rows[part])
             values = rows[part]
@@ -97,6 +98,7 @@ def _monotone_slopes(u: Array, values: Array) -> Array:
     w2 = h[1:] + 2 * h[:-1]
     same = chords[:-1] * chords[1:] > 0
     with np.errstate(divide="ignore", invalid="ignore"):
+        # The weighted harmonic mean never overshoots; next to an extremum the slope is 0.
         inner = (w1 + w2) / (w1 / chords[:-1] + w2 / chords[1:])
     slopes[1:-1] = np.where(same, inner, 0.0)
     for end, near, next_one in ((0, 0, 1), (-1, -1, -2)):

@@ -12,6 +12,7 @@ from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import written_in
+from ...results.file.provenance import FAILURE_REASONS
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.variables import DIMENSIONS, MISSING
@@ -57,7 +58,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     a = view.attributes
     return Summary(
         answer=_answer(view, done, lines),
-        trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust],
+        trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust, *_failures(view, status)],
         statuses=TextTable(("status", plural(noun), "meaning"), tuple(_statuses(view, status, every_status))),
         details=lines.details,
         axes=_axes(view),
@@ -149,6 +150,19 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
             f"{waiting} of the {plural(noun)} that are done {verb} in the journal for the end of the run"
         )
     return lines
+
+
+def _failures(view: View, status: np.ndarray) -> Iterable[str]:
+    """Yields an example point of each distinct reason for which points failed, and the reason."""
+    columns = view.point_columns
+    for line in str(view.attributes.get(FAILURE_REASONS, "")).splitlines():
+        where, _, outcome = line.partition(": ")
+        name, _, reason = outcome.partition(" ")
+        here = np.isin(status.ravel(), [value for value, word in view.flags.items() if word == name])
+        for parameter, _, text in (pair.partition("=") for pair in where.split(", ")):
+            here &= columns.get(parameter, float(text)) == float(text)
+        if here.any() and reason:  # a later run may have computed the point anew
+            yield f"{name}, as at {where.replace('=', ' = ')}: {reason}"
 
 
 def _printed(table: TextTable) -> Table:

@@ -20,6 +20,8 @@ CURVE_END_WORDS = {
     "not_followed": "no further point found",
 }
 """Words for the end of a curve of special points of cycles."""
+SIDES = ("start", "end")
+"""Suffixes of the variables with the reasons for the ends of a curve, at its first and its last point."""
 
 
 def curve_lines(view: View, line: str, row: str) -> list[str]:
@@ -45,8 +47,8 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
         ends = " to ".join(
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{to_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
-            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v['cycle_curve_end'][i])]]})"
-            for i in on[[0, -1]]
+            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
+            for side, i in zip(SIDES, on[[0, -1]], strict=True)
         )
         what = "folds" if kind == "fold" else "torus points"
         error = error_text(float(v["cycle_curve_error"][on].max()))
@@ -81,7 +83,8 @@ def cut_lines(view: View, line: str, row: str) -> list[str]:
     v = view.variables
     lines = []
     for why in ("not_followed", "list_full"):
-        for i in np.flatnonzero(v["curve_end"] == list(CURVE_ENDS).index(why)):
+        reason = list(CURVE_ENDS).index(why)
+        for i in np.flatnonzero((v["curve_start"] == reason) | (v["curve_end"] == reason)):
             what = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
             where = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
             number = int(v["curve_number"][i])
@@ -158,7 +161,7 @@ def bautin_curve_lines(view: View) -> list[str]:
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
         where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
-        ends = [BAUTIN_ENDS[int(end)] for end in v["bautin_along_end"][on][[0, -1]]]
+        ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in SIDES]
         lines.append(
             f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
             f"ends: {ends[0]} and {ends[1]}"

@@ -23,6 +23,11 @@ RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 KERNELS = "blas_kernels"
 """Attribute with the BLAS kernels that computed the points of a file in all runs, a kernel a line, named by
 `rodsweep.solve.backend.blas_kernel`."""
+FAILURE_REASONS = "failure_reasons"
+"""Attribute with an example point of each distinct reason for which points failed, in all runs, a line each:
+parameters, status and reason."""
+MAX_FAILURE_REASONS = 20
+"""Largest number of reasons in a file."""
 KERNEL_NOT_RECORDED = "unknown"
 """Kernel of points from an earlier version, which did not record kernels."""
 
@@ -57,6 +62,14 @@ def united_kernels(*several: Iterable[str]) -> str:
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
+def united_reasons(*several: str) -> dict[str, str]:
+    """The attribute FAILURE_REASONS of a file with the points of several, from their values; may be empty."""
+    lines = dict.fromkeys(line for reasons in several for line in reasons.splitlines())
+    return (
+        {FAILURE_REASONS: "\n".join(list(lines)[:MAX_FAILURE_REASONS])[:LONGEST_ATTRIBUTE]} if lines else {}
+    )
+
+
 def kernels_sentence(attribute: str) -> str:
     """Warning that points of a file were computed by several kernels; empty for a single kernel."""
     kernels = attribute.splitlines()
@@ -74,6 +87,7 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "shard": "",
         KERNELS: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
     }
+    history |= united_reasons(*(str(each.get(FAILURE_REASONS, "")) for each in several))
     runs = [attributes for attributes in several if "ranks" in attributes]
     if not runs:
         return history

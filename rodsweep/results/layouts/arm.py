@@ -83,11 +83,13 @@ EFFECTS = (
     "flattening_of_the_wall",
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
+NOT_KNOWN = -1
+"""Value of model_applies where a motion may have been missed."""
 VALIDITY = (
     word(
         "model_applies",
         "whether the model applies to the arm, judged by the effects that it neglects",
-        ((-1, "not_known"), *((int(each), each.name) for each in Validity)),
+        ((NOT_KNOWN, "not_known"), *((int(each), each.name) for each in Validity)),
     ),
     word(
         "neglected_effect",

@@ -1,5 +1,6 @@
 """Layout of the task phase_diagram: rows, and stability boundaries followed through the rows."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, all_but
@@ -146,7 +147,6 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     along = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
-    end = "reason for the end of the curve at the point"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
         integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", along),
@@ -156,12 +156,21 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
         real("cycle_curve_error", force, error, along),
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", along),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", along),
-        word("cycle_curve_end", end, CYCLE_CURVE_ENDS, along),
+        *end_words("cycle_curve", CYCLE_CURVE_ENDS, along),
         real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
              f"curve, in units of the axis of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
     )  # fmt: skip
     return {variable.name: variable for variable in variables}
+
+
+def end_words(curve: str, reasons: Iterable[str], along: str) -> tuple[Variable, Variable]:
+    """Variables with the reasons for both ends of a curve, along its points."""
+    reasons = tuple(reasons)
+    return (
+        word(f"{curve}_start", "why the curve begins at the point", reasons, along),
+        word(f"{curve}_end", "why the curve ends at the point", reasons, along),
+    )
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
@@ -177,7 +186,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in along),
         real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
-        word("curve_end", "reason for the end of the curve at the point", CURVE_ENDS, "curve_point"),
+        *end_words("curve", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
         word("fold_kind", kind, CURVE_KINDS, "fold"),
         word("fold_of", "parameter that has an extremum along the curve at the fold", along, "fold"),
@@ -236,13 +245,12 @@ def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variabl
     at = "bautin_step"
     unit = {name: PARAMETERS[name].unit for name in names}
     error = "estimate of the error of bautin_along_"
-    why = "reason for the end of the curve, at its first and last point"
     variables = (
         integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
         *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", at) for name in names),
         *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
         real("bautin_along_frequency", ANGULAR, "angular frequency of the pair", at),
         real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c", at),
-        word("bautin_along_end", why, BAUTIN_ENDS, at),
+        *end_words("bautin_along", BAUTIN_ENDS, at),
     )
     return {variable.name: variable for variable in variables}

@@ -11,7 +11,12 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.accuracy.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import (
+    RefinedCycle,
+    matrix_distance,
+    newton_tolerance,
+    with_calibrated_errors,
+)
 from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
@@ -121,12 +126,15 @@ class ArcPoint:
         mesh = mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
         coordinate = last.form.rod.coordinate(name)
+        # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))
+        # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
         apart = np.append(last.values - self.orbit.values, coordinate - self.at)
+        # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
@@ -143,12 +151,14 @@ def placed(found: Converged, scale: Scale, tangent: Array) -> Place:
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
     """Tangent of the branch at an orbit from its matrix, (N + 1,), oriented to a side, (3,)."""
     tangent = matrix.direction(side)
+    # A null vector has no sign; the branch must not turn back.
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
 
 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch; raises Unsolvable if the shortest step fails."""
     end, length = advance(partial(_stepped, start, accuracy), start.length, ARC_STEPS)
+    # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.order))
 
 
@@ -186,7 +196,7 @@ def cycle_ahead(
 
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
-    cycle = judged_by(start.calibration.known, found, accuracy)
+    cycle = with_calibrated_errors(start.calibration.known, found, accuracy)
     place = placed(found, start.scale, tangent)
     curvature = (place.rate - start.rises) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length

@@ -16,7 +16,7 @@ from ..changes.path_problem import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT
-from ..cycle.hopf_start import HOPF_START, orbit_with
+from ..cycle.hopf_start import HOPF_START, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -79,7 +79,10 @@ class HopfBirth:
 
         p is the parameter; a < 0 where the cycles are at p' < p.
         """
+        # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
         turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
+        # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; its sign is the
+        # side.
         squared = -turned * self.slope.real * self.coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
 
@@ -90,6 +93,7 @@ class HopfBirth:
         slope = self.slope
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
+        # Half, because a is a square root.
         return (landau + slope_error + self.crossing.error / abs(self.crossing.at)) / 2
 
     @property
@@ -102,6 +106,7 @@ class HopfBirth:
     def moved_by(self, amplitude: float) -> tuple[float, float]:
         """(change of the coordinate, frequency) of the cycle with a given largest tip y, in L."""
         c = self.normal.c
+        # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.slope.real
         return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
 
@@ -157,11 +162,13 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
     start = predicted_cycle(hopf, amplitude)
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
+    # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * DEFLECTION
     condition = Condition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
+    # Another cycle of the same deflection would be far from the normal form's amplitude.
     if not 0.5 < y / amplitude < 2.0:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
     aim = max(accuracy, REFINEMENT.first_accuracy)
@@ -180,4 +187,4 @@ def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
         form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
-    return orbit_with(hopf.normal, form, amplitude, frequency)
+    return orbit_of_amplitude(hopf.normal, form, amplitude, frequency)

@@ -55,6 +55,7 @@ class Scale:
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
         """The scale at an orbit."""
         largest = float(np.abs(orbit.points @ deflection_row(orbit)).max())
+        # The least unit keeps the scale finite beside a Hopf point, where the deflection vanishes.
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
     def place(self, orbit: Orbit) -> Array:
@@ -83,6 +84,7 @@ def deflection_row(orbit: Orbit) -> Array:
 @lru_cache(maxsize=64)
 def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """`deflection_row`, (n,), shared by all callers and not to be changed."""
+    # Small deflection at the tip: the curvature at u acts with the lever 1 - u. Tip values drop out.
     weights = mesh.quadrature * profile_compliance_on(build, mesh)
     return layout.row({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
 
@@ -115,6 +117,7 @@ class BorderedMatrix:
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[n, :n] = row
+        # `phase_change` is negated as a right side; here it is a column of the matrix.
         self._matrix[n, n + 1] = -shift
         self._right = self._jump(orbit, ends[1])
 
@@ -132,11 +135,12 @@ class BorderedMatrix:
 
     def direction(self, border: Array) -> Array:
         """Tangent, (N + 1,), of unit length in `Scale.place`, on the side of a border, (3,)."""
+        # The null vector of the first n + 1 rows, normalised by the border: residuals do not enter.
         right = np.append(np.zeros(len(self._right)), 1.0)
         change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
-    def varied(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
+    def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
         """Derivatives of residuals along variations, (m, N + 1), reduced, (K, s, m, n); of the end, (m,
         n)."""
         along = change_along(orbit.form, self.scale.name)
@@ -147,11 +151,12 @@ class BorderedMatrix:
         )
         return changed
 
-    def spread(self, starts: Array, columns: Array) -> Array:
+    def back_substitute(self, starts: Array, columns: Array) -> Array:
         """Changes of states, (m, N + 1), from those of the start, (m, n), and reduced sides, (K, s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
+        # Eigenvectors of the flow change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
 
     @property
@@ -174,8 +179,10 @@ class BorderedMatrix:
         At a crossing of branches it points along the branch that the tangent does not follow.
         """
         matrix = self._matrix.copy()
+        # The last row fixes the parameter: the least singular vector then is a direction of cycles at one
+        # parameter.
         matrix[-1, -1] = 1.0
-        return self._spread(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
+        return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def _jump(self, orbit: Orbit, end: Array) -> Array:
         """Right side of an orbit's start and phase, (n + 1,); `end`: contribution of its stages, (n,)."""
@@ -189,10 +196,11 @@ class BorderedMatrix:
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
+        # The border acts on log T, whose derivative is 1/T.
         matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
-        return self._spread(np.linalg.solve(matrix, right), sides, share)
+        return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
-    def _spread(self, found: Array, sides: Array, share: float) -> Array:
+    def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
         """Change of all, (N + 1,), from that of the ends, (n + 2,), and a share of right sides, (K, s, n)."""
         n = len(self.orbit.start)
         stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
@@ -224,7 +232,7 @@ class Condition:
         """Condition at an arc length along a border, (3,), from an orbit."""
         return cls(scale, border, float(border @ scale.place(orbit)) + length)
 
-    def missed(self, orbit: Orbit) -> float:
+    def residual(self, orbit: Orbit) -> float:
         """Prescribed value minus an orbit's value."""
         return self.value - float(self.border @ self.scale.place(orbit))
 
@@ -239,7 +247,7 @@ class Condition:
         matrix = BorderedMatrix(orbit, self.scale, workspace)
         off = 0.0
         last = np.inf
-        step = matrix.step(self.border, self.missed(orbit))
+        step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
@@ -248,16 +256,17 @@ class Condition:
             orbit = moved(orbit, self.scale.name, step)
             off = off + change
             rate = change / last if off > change else np.inf  # known from the second step with one matrix on
+            # The next step would be smaller by the contraction; it is predicted instead of made.
             settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON.new_matrix_ratio
             if (settled or change <= tolerance) and off <= distance:
                 return Converged(orbit, matrix, off)
             if settled or change <= tolerance or (off > change and rate > ORBIT_NEWTON.new_matrix_ratio):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 off = 0.0
-                step = matrix.step(self.border, self.missed(orbit))
+                step = matrix.step(self.border, self.residual(orbit))
                 last = np.inf
             else:
-                step = matrix.correction(orbit, self.border, self.missed(orbit))
+                step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
 
@@ -273,6 +282,7 @@ def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the range of possible rods: {error}") from error
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
+    # Where gamma3 passes the least eliminated drag, states have other unknowns and cannot be compared.
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
     if not result.period > 0:

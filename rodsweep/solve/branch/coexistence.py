@@ -23,7 +23,7 @@ from .branches import BRANCHES, BranchesOfRod, BranchRequest, BranchStatus, solv
 from .special.point import EndReason, SpecialPoint
 
 
-def _as(status: ThresholdStatus) -> tuple[int, str, bool]:
+def _shared_status(status: ThresholdStatus) -> tuple[int, str, bool]:
     """(value, sentence, success) of the status of a row without cycles."""
     return int(status), status.sentence, status.succeeded
 
@@ -31,13 +31,13 @@ def _as(status: ThresholdStatus) -> tuple[int, str, bool]:
 class CoexistenceStatus(PointStatus):
     """Outcome of a row with cycles: of the stability changes if they failed, else of the branches."""
 
-    ok = _as(ThresholdStatus.ok)
-    not_certified = _as(ThresholdStatus.not_certified)
-    window_open = _as(ThresholdStatus.window_open)
-    accuracy_not_reached = _as(ThresholdStatus.accuracy_not_reached)
-    list_full = _as(ThresholdStatus.list_full)
-    failed = _as(ThresholdStatus.failed)
-    ended_early = _as(ThresholdStatus.ended_early)
+    ok = _shared_status(ThresholdStatus.ok)
+    not_certified = _shared_status(ThresholdStatus.not_certified)
+    window_open = _shared_status(ThresholdStatus.window_open)
+    accuracy_not_reached = _shared_status(ThresholdStatus.accuracy_not_reached)
+    list_full = _shared_status(ThresholdStatus.list_full)
+    failed = _shared_status(ThresholdStatus.failed)
+    ended_early = _shared_status(ThresholdStatus.ended_early)
     branches_stopped = (
         6,
         "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: the "

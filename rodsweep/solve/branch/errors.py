@@ -77,9 +77,12 @@ class Place:
         Beside a fold the parameter may not reach that change; the result is then twice the length to the
         fold.
         """
+        # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.rate**2 >= 4 * abs(self.curvature * off):
             return off / self.rate
         way = np.copysign(1.0, off * self.rate)
+        # At a fold off is quadratic in the length: rate s + curvature s^2/2 = off; the root is bounded from
+        # above.
         return float(way * 2 * (abs(off) / max(abs(self.curvature), 1e-300)) ** 0.5)
 
 
@@ -126,6 +129,8 @@ class BranchCalibration:
     @cached_property
     def _demanded(self) -> Calibration:
         """Errors that determine the mesh; the parameter's error counts like the period's."""
+        # Where y is steep in p, errors at equal p grow with the slope although the mesh is as good as
+        # elsewhere.
         steep = max(1.0, self.slope / BRANCH_ERRORS.steep_slope)
         parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
@@ -161,6 +166,7 @@ class BranchCalibration:
 
 def _interpolated(one: Array, other: Array, share: float) -> Array:
     """Errors at a share of the way, times `interpolation_factor`, at most the larger; of any shape."""
+    # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.negligible_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
     bounded: Array = np.minimum(BRANCH_ERRORS.interpolation_factor * means, np.maximum(one, other))
@@ -182,6 +188,7 @@ def measured_errors(
     for part, target in zip(parts, finer, strict=True):
         fine = condition.on(target, found, BRANCH_ERRORS.newton_share * accuracy, COMPARISON.matrix_distance)
         part[:] = _difference(rough, multipliers, fine, place)
+    # The mesh finer in time removes only this share of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
     return BranchCalibration(known, parts[:, -1], slope_at(rough, place))
@@ -199,10 +206,12 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
     length = place.slide(off)
     target = mesh_of(fine.orbit)
     along = np.append(carried(orbit, place.tangent[:-1], target), place.tangent[-1])
+    # The two cycles differ in the parameter; the finer one is moved along the branch to the same value.
     slid = moved(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)
     by_deflection = abs(place.ahead[0])
     by_parameter = abs(place.rate)
+    # Distance of the two branches across their common tangent, in (deflection, parameter).
     apart = abs(off * place.ahead[0] - deflection * place.rate)
     own = apart / max(by_deflection, BRANCH_ERRORS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])

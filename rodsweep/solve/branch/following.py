@@ -19,7 +19,7 @@ from .arc import ARC_STEPS, ArcPoint, arc_between, cycle_ahead, next_point, poin
 from .beginning import HopfBirth, beginning, special_hopf
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve, BranchEnd
-from .settling import due
+from .settling import measurement_due
 from .special.least_stretch import stretch_at
 from .special.locating import Segment, located
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -102,6 +102,7 @@ def followed_from(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
     """Position of a branch's last cycle, and the fraction of the branch's work that is done."""
     name = start.scale.name
+    # The end of the range towards which the parameter moves at present; behind a fold it is the other one.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.at)
     aim_value = PARAMETERS[name].value(aim)
@@ -136,16 +137,18 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
     try:
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
+            # Beyond the point of symmetry the branch runs back through its own mirror images.
             return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
         outside = _beyond(end, limits)
         range_end = _range_end(start, limits, outside) if outside >= 0 else None
         if range_end is not None:
             end = _at_range_end(start, end, range_end, limits)
+        # h1 = 0: the model ends here, whatever the discrete equations still solve.
         if stretch_at(end) <= 0:
             return BranchEnd(located(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True)
         _add_special_points(curve, start, end, limits)
         trail.append(end)
-        last = trail.settle(range_end) if range_end is not None or due(end) else end
+        last = trail.settle(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
         message = f"no cycle is found beyond: {why}"
         return BranchEnd(end_at(start, EndReason.no_cycle_found, message), complete=False)
@@ -180,6 +183,8 @@ def turned_round(start: ArcPoint, end: ArcPoint) -> bool:
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
     one = layout.field(mesh.carry(start.orbit).start, "m3")
+    # The phase fixes t = 0 at the largest y; a sign change of the moments there means that the cycle passed
+    # through amplitude 0.
     return float(one @ layout.field(end.orbit.start, "m3")) < 0
 
 
@@ -192,6 +197,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         return replace(start, length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
+    # Back to deflection d = 0 a parabola p = p0 + k d^2 changes by half of what its tangent says.
     share = start.deflection / (2 * start.ahead[0] * start.scale.deflection)
     at = start.at - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
@@ -230,7 +236,8 @@ def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: 
     segment = Segment(start, end)
 
     def beyond(length: float) -> float:
-        return -range_end.missed(segment.predicted(length))
+        # On the predicted cubic, without solving a cycle: the condition itself is solved for once below.
+        return -range_end.residual(segment.predicted(length))
 
     ends = beyond(0.0), beyond(segment.length)
     length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)

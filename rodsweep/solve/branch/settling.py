@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
 from ..orbit.newton import Converged, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
@@ -52,13 +52,13 @@ def first_point(found: Converged, scale: Scale, side: Array, born: float, accura
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, place, accuracy, None)
-    cycle = judged_by(calibration.known, found, accuracy)
+    cycle = with_calibrated_errors(calibration.known, found, accuracy)
     return refined(
         ArcPoint(cycle=cycle, place=place, length=ARC_STEPS.first, calibration=calibration), accuracy
     )
 
 
-def due(point: ArcPoint) -> bool:
+def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured."""
     growth = float(point.calibration.known.on_branch(point.orbit).growth.max())
     return point.unmeasured >= SETTLING.max_unmeasured or growth > SETTLING.remeasure_growth
@@ -72,7 +72,7 @@ def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
     """The cycle with errors from a calibration."""
-    cycle = judged_by(calibration.known, point.cycle.fine, accuracy)
+    cycle = with_calibrated_errors(calibration.known, point.cycle.fine, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
@@ -113,7 +113,10 @@ def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: fl
         multiplier_rate=known.multiplier_rate,
     )
     return replace(
-        point, cycle=judged_by(point.calibration.known, found, accuracy), place=place, unmeasured=1
+        point,
+        cycle=with_calibrated_errors(point.calibration.known, found, accuracy),
+        place=place,
+        unmeasured=1,
     )
 
 

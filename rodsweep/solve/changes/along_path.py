@@ -103,16 +103,18 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     found = _crossings(problem, low, high, certify)
     tracer = Tracer(problem, certify)
     edges = problem.edges(low, high)
+    # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
         changes, reach = tracer.changes([*(p for p in edges if p < found.reach.p), found.reach.p])
         found = found.up_to(reach) if reach.reason else found
         ends = found.searched(start, stop)
         counts = Counts(problem, found.gaps, certify)
+        # Without load the operator is self-adjoint and negative: nothing is unstable, and no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, found.crossings)
         oscillates = tracer.anchor(path.variable(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.at)
         crossings, at_end = counts.along(ordered, ends, unstable)
-        missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
+        missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
         if not missed:
             break
         near = [(p + side * TRANSITIONS.anchor_distance * (high - low)) for p in missed for side in (-1, 1)]
@@ -201,7 +203,7 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
-def _pairs_that_do_not_lead(
+def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
     """Path variables of crossings whose pair alone is on the axis, hence must lead, but does not in the
@@ -221,6 +223,7 @@ def _hopf(path: Path, zero: Zero) -> Crossing:
     """A crossing; the direction in which the pair moves decides between hopf and hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
+    # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
     growing = (-there.D_p / there.D_w).real > 0
     kind = Kind.hopf if growing != path.inverse else Kind.hopf_reverse
     at, error = path.value(zero.p, zero.error_of_p)

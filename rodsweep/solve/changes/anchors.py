@@ -46,11 +46,12 @@ class Anchor:
         """((w1 - w2)^2 time^2, slope of this value) of the two leading eigenvalues if both are real or a
         pair; else None."""
         if self.oscillates:
-            gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            gap, slope = self._times_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
             return -(gap**2), -2 * gap * slope
         if self.w[1].imag != 0:
             return None
-        gap, slope = self._timed((self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real)
+        gap, slope = self._times_time((self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real)
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
@@ -58,16 +59,17 @@ class Anchor:
         slope of this lead), or None."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
-                return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)
+                return self._times_time((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
-    def _timed(self, value: float, slope: float) -> tuple[float, float]:
+    def _times_time(self, value: float, slope: float) -> tuple[float, float]:
         """(value times time, its slope); the factor time preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
-def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
     """(least value on [0, 1], its place) of the cubic with values a, b and slopes at the ends."""
+    # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
     square = 3 * (b - a) - 2 * slope_a - slope_b
     cube = slope_a + slope_b - 2 * (b - a)
     lowest = min(a, b)
@@ -88,7 +90,7 @@ def lowest_between(a: float, b: float, slope_a: float, slope_b: float) -> tuple[
     return lowest, at
 
 
-def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
+def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
     """(place for an anchor between two of equal character, whether two changes may hide between them).
 
     The place is a fraction of the interval; 0 if the slopes explain the values and exclude a change.
@@ -105,7 +107,7 @@ def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
         smallest = min(abs(a[0]), abs(b[0]))
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
-        lowest, share = lowest_between(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
         if a[0] * b[0] <= 0 or lowest < ANCHORS.explained * smallest:
             return share, True
         if missed > ANCHORS.explained * max(smallest, abs(b[0] - a[0])):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ...arrays import Complex
 from ..point import Unsolvable
 from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import ANCHORS, lowest_between
+from .anchors import ANCHORS, minimum_of_cubic
 from .path_problem import PathProblem
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
@@ -65,6 +65,7 @@ class CrossingSearch:
     def place(self, p: float) -> AxisPlace:
         """The place at p; raises Unsolvable if eigenvalues or count cannot be computed."""
         if p not in self.places:
+            # The neighbour's count tells how many modes are needed: all unstable ones and a pair beyond.
             near = min(self.places.values(), key=lambda place: abs(place.p - p), default=None)
             modes = (
                 ANCHORS.min_known_modes if near is None else max(ANCHORS.min_known_modes, 2 + near.unstable)
@@ -103,7 +104,7 @@ class CrossingSearch:
         left = self.place(a)
         right = self.place(b)
         if left.unstable == right.unstable:
-            share = hidden(left, right)
+            share = next_count_place(left, right)
             if share == 0.0:
                 return
             if b - a <= SMALLEST_INTERVAL * intervals.length:
@@ -111,6 +112,7 @@ class CrossingSearch:
                 return
         else:
             share = 0.5
+            # A change by more than a pair has several crossings, which a bisection must part first.
             crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
             beside = self._confirmed(crossing, left, right, intervals.length) if crossing else None
             if crossing is not None and beside is not None:
@@ -136,6 +138,8 @@ class CrossingSearch:
     def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
         """The crossing between two places with counts that differ by a pair; None if not found."""
         grows = right.unstable > left.unstable
+        # The pair that crosses is stable on one side and unstable on the other; the nearest to the axis is
+        # tried first.
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
@@ -166,6 +170,7 @@ class CrossingSearch:
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
         """The crossing; None if the pair crosses in the opposite direction."""
+        # Newton's method may find another pair of the interval, going the other way.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
         kind = Kind.hopf if grows != self.problem.path.inverse else Kind.hopf_reverse
@@ -181,7 +186,7 @@ def _needed(found: Spectrum) -> int:
     return 2 + max(found.unstable_count, growing)
 
 
-def hidden(left: AxisPlace, right: AxisPlace) -> float:
+def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
     """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if no pair
     can."""
     h = right.p - left.p
@@ -192,11 +197,12 @@ def hidden(left: AxisPlace, right: AxisPlace) -> float:
             continue
         if a is None or b is None:
             value, slope = a or b or (0.0, 0.0)
+            # Of a pair that is known at one end only, its own slope must tell whether it came from the axis.
             towards = slope > 0 if a is None else slope < 0
             if towards and value < abs(slope) * h:
                 return 0.5
             continue
-        lowest, share = lowest_between(a[0], b[0], h * a[1], h * b[1])
+        lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
         if lowest < ANCHORS.explained * min(a[0], b[0]):
             return share
     return 0.0

@@ -70,7 +70,7 @@ class _ChangeBoundaries:
         """The first change on no curve."""
         return left[0]
 
-    def lacking(self, seed: int) -> list[int]:
+    def missing_units(self, seed: int) -> list[int]:
         """No unit of work: a curve takes milliseconds and is traced at once."""
         return []
 

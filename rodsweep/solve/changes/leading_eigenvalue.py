@@ -17,7 +17,7 @@ import numpy as np
 
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
-from .anchors import Anchor, unexplained
+from .anchors import Anchor, next_anchor
 from .path_problem import PathProblem
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
@@ -91,6 +91,8 @@ class Tracer:
         w = found.eigenvalues.copy()
         slope = np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
+            # Newton's method may jump to another eigenvalue, for example in a cluster; then the first value
+            # stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
             if abs(polished - guess) <= max(
                 LEADER.same_errors * found.error_estimate[i], LEADER.same * abs(guess)
@@ -119,7 +121,7 @@ class Tracer:
         right = self.anchor(b)
         share = 0.5
         if left.oscillates == right.oscillates:
-            share, hides = unexplained(left, right)
+            share, hides = next_anchor(left, right)
             smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
             if share == 0.0:
                 return []
@@ -141,6 +143,7 @@ class Tracer:
         """The only change between two anchors of different kind; None unless found and proved to be of the
         leading eigenvalue."""
         pair, real = (left, right) if left.oscillates else (right, left)
+        # Kinds are named in the direction of the parameter, which along a stiffness is that of falling p.
         if right.oscillates != self.path.inverse:
             double = Kind.onset
             single = Kind.pair_leads
@@ -151,6 +154,7 @@ class Tracer:
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
                 continue
+            # Counted halfway to the next eigenvalue: none but those that meet may lie right of it.
             behind = max(left.w[meeting].real, right.w[meeting].real)
             count = self.problem.count((found.growth_rate + behind) / 2, found.p)
             if count.number in (meeting, None):
@@ -167,6 +171,7 @@ class Tracer:
         width = abs(pair.p - real.p)
         if below is None or above is None:
             return None
+        # (w1 - w2)^2 is smooth through the double root, where w itself has a square root: it is interpolated.
         share = above[0] / (above[0] - below[0])
         p = real.p + share * (pair.p - real.p)
         x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
@@ -187,6 +192,7 @@ class Tracer:
             w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
             w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
             slope = s_real.real - s_pair.real
+            # One of the two has changed its kind: it is not the eigenvalue that was followed.
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
             step = -(w_real.real - w_pair.real) / slope

@@ -97,6 +97,7 @@ class UniformPath(PathProblem):
     def relaxation(self, p: float) -> tuple[float, float]:
         here = coefficients_at(p, self.path.origin, self.path.direction)
         rate = self.path.direction
+        # Along a path the eigenvalues may grow without bound; in units of such a time they stay moderate.
         time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
         return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3
 
@@ -140,9 +141,11 @@ class ArmPath(PathProblem):
         Who asks for many modes asks for one pair more next, beside a crossing: this pair is solved for, too.
         """
         earlier = self._solutions.get(p)
+        # A few modes more at first save a second solve where the next request needs one pair more.
         if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
             spare = ARM_PATH.spare_pair if request.modes > ARM_PATH.followed_modes else 0
             earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
+            # The modes beyond those requested may be harder: they must not spoil the answer.
             if spare and earlier.status != SpectrumStatus.ok:
                 earlier = super().spectrum(p, request)
             self._solutions[p] = earlier
@@ -170,6 +173,7 @@ class ArmPath(PathProblem):
             w = found.eigenvalues
             error = found.error_estimate
             clear = (np.abs(w.real - line) > 2 * error).all()
+            # The followed modes are complete down to the last of them, so counting them is a proof.
             if clear and w[-1].real < line <= 0:
                 return Count(int((w.real > line).sum()), 0)
             if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:

@@ -19,7 +19,7 @@ class BoundaryProblem(Protocol[Curve]):
     def next_seed(self, left: Sequence[int]) -> int:
         """Index of the point, among the points on no curve, from which the next curve starts."""
 
-    def lacking(self, seed: int) -> list[int]:
+    def missing_units(self, seed: int) -> list[int]:
         """Units of work with results still needed for the curve from a point."""
 
     def curve(self, seed: int) -> Curve | None:
@@ -75,7 +75,7 @@ def boundary_search(
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:
         seed = problem.next_seed(left)
-        search.needed = problem.lacking(seed)
+        search.needed = problem.missing_units(seed)
         if search.needed:
             search.left = [i for i in left if i != seed]
             break

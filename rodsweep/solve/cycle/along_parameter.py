@@ -88,6 +88,8 @@ class CyclePredictor:
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = combined(self.values, self.data, self.orders, self.weights(step))
+        # The squared size is among the values: near a Hopf point it goes linearly through 0, where cycles
+        # end.
         if not values[-1] > 0:
             raise Unsolvable("the branch is predicted to end")
         target = replace(form, mesh=self.orbit.form.mesh)
@@ -122,10 +124,12 @@ def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -
     if before is None or step == 0:
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
     last = before.on(mesh_of(orbit))
+    # Earlier orbits live on their own meshes; on a new mesh only the tangents are carried over.
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
     older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
     places = [0.0, -step, *(before.places[older] - step)]
+    # Places move by the step, because the polynomial is centred at the newest orbit.
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
     if 1 + len(older) < PREDICTION.orbits_without_slope:

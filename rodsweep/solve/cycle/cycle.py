@@ -104,7 +104,7 @@ def measured(
     """The outcome with the numbers of a cycle, and the requested parts of the path."""
     mesh = path.orbit.form.mesh
     # Unresolved harmonics are smaller than the cycle's error, so 0 is correct within that error.
-    amplitudes = first_of(measures.harmonic_amplitude, request.harmonics, 0.0)
+    amplitudes = padded(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
         elements=mesh.elements,
@@ -117,7 +117,7 @@ def measured(
     )
 
 
-def first_of(values: Array | Complex, count: int, filler: complex) -> Any:
+def padded(values: Array | Complex, count: int, filler: complex) -> Any:
     """The first values of (m,), (count,), with a filler in the places beyond m."""
     first = np.full(count, filler, values.dtype)
     first[: len(values)] = values[:count]

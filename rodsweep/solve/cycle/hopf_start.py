@@ -72,7 +72,7 @@ HOPF_START = HopfStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Onset:
+class HopfPointBelow:
     """A Hopf point: force F in k3/L^2, and frequency of the leading mode in 1/tau2."""
 
     F: float
@@ -90,11 +90,12 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
     return found.w
 
 
-def hopf_point_below(rod: Rod) -> Onset | None:
+def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     """The nearest Hopf point of the leading mode below the rod's force; None without a Hopf point."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START.min_force < F:
+        # In ratios: thresholds of one rod are far apart at large forces.
         lower = F * (1 - HOPF_START.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
@@ -104,7 +105,7 @@ def hopf_point_below(rod: Rod) -> Onset | None:
     return None
 
 
-def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> Onset:
+def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> HopfPointBelow:
     """The Hopf point between two forces, each with its leading eigenvalue; raises Unsolvable.
 
     Newton's method on D, from a secant start, proposes the Hopf point. Bisection continues where the proposal
@@ -116,6 +117,8 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
         share = below.real / (below.real - above.real)
         found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
+            # The eigenvalue on the axis must be the leading one; otherwise another mode has become unstable
+            # below.
             w = leading_eigenvalue(replace(rod, F=found.F))
             tolerance = HOPF_START.tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
@@ -131,7 +134,9 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     raise Unsolvable(f"the mode that grows above F = {a:g} does not oscillate there")
 
 
-def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]) -> Onset | None:
+def _on_the_axis(
+    problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]
+) -> HopfPointBelow | None:
     """The force between `ends`, near F, at which the eigenvalue near a guess is imaginary; or None."""
     for _ in range(HOPF_START.max_steps):
         w, slope, error = problem.eigenvalue(guess, F)
@@ -141,7 +146,7 @@ def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[flo
         if abs(w.real) <= HOPF_START.converged_growth * error or abs(step) <= HOPF_START.converged_step * abs(
             F
         ):
-            return Onset(F, w.imag) if w.imag > 0 else None
+            return HopfPointBelow(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
         if not ends[0] <= F <= ends[1]:
@@ -149,7 +154,7 @@ def _on_the_axis(problem: PathProblem, F: float, guess: complex, ends: tuple[flo
     return None
 
 
-def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -> Orbit:
+def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod on the branch from a Hopf point below its force, on a coarse mesh.
 
     workspace: memory of Newton's matrices. Raises Unsolvable if the branch leads to smaller forces or cannot
@@ -161,7 +166,7 @@ def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -
     if not normal.amplitude > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} leads to smaller forces")
     if hopf.F * (1 + HOPF_START.direct_distance) >= rod.F:
-        return orbit_of(normal, replace(form, mesh=normal.form.mesh))
+        return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh(rod))
     for distance in HOPF_START.distances:
         try:
@@ -191,7 +196,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the amplitude of the start is too large for the normal form")
     if problem_of(form.rod).count(-CANDIDATES.behind * abs(w)).number != 2:
         raise Unsolvable("a second mode may be unstable")
-    return orbit_of(normal, replace(form, mesh=normal.form.mesh))
+    return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
 
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
@@ -202,7 +207,7 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
 
 def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod, followed from the normal form's orbit at the force F; raises Unsolvable."""
-    start = orbit_of(normal, replace(form, rod=replace(form.rod, F=F)))
+    start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     found = at_orbit(
         newton(start, HOPF_START.branch_tolerance, workspace, "F"), HOPF_START.branch_tolerance, "F"
     )
@@ -214,13 +219,13 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
     return in_steps(predictor_from(found, None, "F"), form, "F", HOPF_START.branch_tolerance, workspace).orbit
 
 
-def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
+def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
     """The cycle predicted by the normal form for a rod at a nearby force."""
     squared, frequency = normal.cycle(form.rod.F)
-    return orbit_with(normal, form, squared**0.5, frequency)
+    return orbit_of_amplitude(normal, form, squared**0.5, frequency)
 
 
-def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
+def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of a rod from a normal form. amplitude: largest y of the tip, in L; frequency: in 1/tau2."""
     X = normal.motion(amplitude, np.pi * node_times(HOPF_START.intervals, HOPF_START.stages))
     S, V = normal.form.fields(X)

@@ -24,7 +24,7 @@ from ..motion.time_scheme import CYCLE_PREFIX
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
 from .accuracy.refinement import RefinedCycle, refined_cycle
-from .cycle import Cycle, CycleRequest, MotionShapes, first_of, measured
+from .cycle import Cycle, CycleRequest, MotionShapes, measured, padded
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import Neighbour, followed_cycle
 from .second_state import second_state
@@ -74,7 +74,7 @@ def solve_cycle(
     def solve() -> Cycle:
         stability = straight_rod(rod, start.leading if start else None)
         cycle = _solve(rod, request, stability, start, along, memory)
-        return _with_second_state(rod, _by_the_spectrum(cycle, stability), stability)
+        return _with_second_state(rod, _checked_by_spectrum(cycle, stability), stability)
 
     return solved(solve, failed)
 
@@ -170,7 +170,7 @@ def _with_chain_state(
     return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, leading))
 
 
-def _by_the_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
+def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
     """The cycle, with the status `straight` withdrawn unless the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
@@ -230,7 +230,7 @@ def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> C
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome with the stored multipliers of a cycle and their error."""
-    mu = first_of(found.multipliers, STORED_MULTIPLIERS, NO_MULTIPLIER)
+    mu = padded(found.multipliers, STORED_MULTIPLIERS, NO_MULTIPLIER)
     mu[np.abs(mu) < MIN_STORED_MULTIPLIER] = NO_MULTIPLIER
     return replace(
         cycle,

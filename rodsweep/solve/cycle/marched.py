@@ -97,14 +97,16 @@ class _Marching:
             z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._settled(z)
             path = self._path(settled)
+            in_limit = self.rod != self.limit
+            enough = self.request.accuracy * (MARCHING.pair_share_in_limit if in_limit else 1.0)
             for _ in range(MARCHING.max_comparisons):
                 settled = self._refined(settled)
                 before = path
                 path = self._path(settled)
                 errors = _errors(before, path, MARCHING.settled_distance * self.request.accuracy)
-                if errors.largest <= self.request.accuracy:
+                if errors.largest <= enough:
                     break
-            if self.rod != self.limit:
+            if in_limit:
                 errors = self._errors_of_the_limit(settled, path, errors)
         except _Ended as end:
             return replace(straight, status=end.status, message=end.why, periods=self.waited)
@@ -139,6 +141,7 @@ class _Marching:
                 until_returns(row, z, MARCHING.returns_per_test),
             )
             z = run.states[-1]
+            # The last step of a run suits the next, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
@@ -160,9 +163,13 @@ class _Marching:
                 return _Settled(z, turns, step)
         raise _Ended(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
 
-    def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
-        """A complete run; raises _Ended if the run fails or leaves the model."""
-        run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
+    def _run(
+        self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
+    ) -> Trajectory:
+        """A complete run, by default with the scheme of the motion; raises _Ended if the run fails or leaves
+        the model.
+        """
+        run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
             raise _Ended(status, end.why)
@@ -183,6 +190,7 @@ class _Marching:
             if left > 0:
                 z = self._run(z, left, left, RunLimit()).states[-1]
             rates = self.beam.rate(z[None])[0]
+            # A Newton step in time from the interpolated crossing: theta is smooth there.
             late = float(row @ z) / float(row @ rates)
             times[i] = rough - late
             states[i] = z - late * rates
@@ -192,7 +200,8 @@ class _Marching:
         """One period of the settled motion; raises _Ended."""
         returns = settled.turns + 2
         limit = until_returns(angle_weights(self.beam), settled.z, returns)
-        run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit)
+        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
+        run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit, scheme)
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
             raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
@@ -212,6 +221,7 @@ class _Marching:
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
+        # In coordinates the limit is 0, so twice the coordinate is twice the distance.
         coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()

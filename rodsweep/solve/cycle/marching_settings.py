@@ -24,9 +24,16 @@ class MarchingSettings:
     """Returns of the tip between two tests for repetition."""
     pair_factor: float = 2.0
     """Safety factor on the difference of two integrations."""
+    pair_share_in_limit: float = 0.5
+    """Share of the accuracy for the error by two integrations, where the rod is in a limit; the rest is left
+    for the distance of the integrated rod from the limit."""
     limit_distance_ratio: float = 2.0
     """Ratio of the distances from a limit of two rods that approximate a rod in the limit. Cycles change in
     proportion to the distance, so the cycles' difference is the error of the nearer approximation."""
+    measured_tolerance: float = 2e-8
+    """Largest local tolerance of the integration that is measured. The long steps of a larger tolerance, 20
+    a period at an accuracy of 1e-3, are too few for the cubic between them: rates were 1 to 5 % off
+    (`test_marched.py`)."""
     measured_stages: int = 3
     """Collocation stages of the measured orbit."""
     measured_intervals: int = 48

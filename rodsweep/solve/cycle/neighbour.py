@@ -27,9 +27,9 @@ from .accuracy.calibration import Calibration
 from .accuracy.refinement import (
     RefinedCycle,
     calibrated_cycle,
-    judged_by,
     matrix_distance,
     newton_tolerance,
+    with_calibrated_errors,
 )
 from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
 
@@ -156,7 +156,7 @@ def followed_cycle(
     found = _converged(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
     if known.holds:
-        cycle = judged_by(known, found, accuracy)
+        cycle = with_calibrated_errors(known, found, accuracy)
         if cycle.errors.largest <= accuracy:
             return cycle
     return calibrated_cycle(found, known, accuracy, name)

@@ -95,10 +95,12 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     at = context + OUTPUTS
     outputs = integers(at, 1)
     _object_state(B, at)
+    # PETSc may have scaled the matrix in place; its state counter shows every change.
     untouched = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
         return 0
     J = floats(c.jacobian, n * n).reshape(n, n)
+    # The Jacobian is the expensive part; a new shift alone reuses it.
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
         rate_jacobian(floats(outputs[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
@@ -150,6 +152,7 @@ class Workspace:
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
         self._set({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
         self._set({"jump_count": len(beam.nodal.jumps)})
+        # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknowns**0.5
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
         self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
@@ -166,6 +169,8 @@ class Workspace:
         B = matrix.handle
         snes = ts.getSNES()
         if ts.getType() == "arkimex":
+            # Without an explicit part PETSc 3.20 and newer would take the problem for a DAE, with a first
+            # slope of its own.
             call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
             self.predict_as(ts.getARKIMEXType())
             self.context["middle"] = MIDDLE

@@ -39,9 +39,11 @@ def held_by_tip(beam: Beam, x: float, y: float) -> Array:
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
+    # A moment that falls to 0 at the free tip, as under a force there; its integral is the angle.
     Pi = 2 * side * FIRST_ANGLE * (1 - beam.mesh.positions)
     first = bending.tip(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
+    # A tip as far away as the rod is long would make it straight, where the force is not determined.
     end = np.array([min(hypot(x, y), REACH * bending.length), atan2(y, x)])
     force = np.zeros(2)
     reached = 0.0
@@ -89,11 +91,13 @@ class _Bending:
         matrix = np.zeros((size + 2, size + 2))
         for _ in range(MOST_ITERATIONS):
             first, second = self._derivatives(Pi, force)
+            # Bending energy minus the work of the force, with the tip's place as two constraints.
             matrix[:size, :size] = np.diag(weights) - second
             matrix[:size, size:] = -first.T
             matrix[size:, :size] = first
             misplaced = place - self.tip(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
+            # A step that turns the rod by a radian has left the range of the linearisation.
             if not np.abs(self.angles @ change[:size]).max() < MOST_TURNED:
                 return None
             Pi = Pi + change[:size]

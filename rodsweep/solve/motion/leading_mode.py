@@ -31,5 +31,6 @@ def leading_mode(beam: Beam) -> LeadingMode:
     k = int(np.argmax(values.real + 1e-9 * values.imag))
     z = np.zeros(layout.unknowns, complex)
     layout.transverse(z)[:] = vectors[:, k]
+    # The tip's y is linear in z about the straight rod, and its 'velocity' along z is the deflection.
     tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))
     return LeadingMode(complex(values[k]), z / tip)

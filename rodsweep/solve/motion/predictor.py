@@ -49,6 +49,7 @@ def begin_step(ts: int) -> int:
     states = states_of(c)
     base = floats(c.base, c.unknowns)
     last = c.current * MAX_STAGES
+    # Two halves of one memory take turns: this step's stages and the last one's.
     c.current = 1 - c.current
     now = c.current * MAX_STAGES
     time_of(ts, at)
@@ -62,6 +63,7 @@ def begin_step(ts: int) -> int:
     c.length = real[0]
     base[:] = states[now]
     if c.stages > 0:
+        # A matrix at the predicted middle of the step contracts better at all stages than one at the start.
         base += (states[now] - states[last]) * (c.middle * c.length / (times[now] - times[last]))
     c.steps = min(c.stages, 1)
     c.stages = 1
@@ -95,7 +97,10 @@ def predict(c: Any, guess: Array) -> None:
     times = times_of(c)
     now = c.current * MAX_STAGES
     last = MAX_STAGES - now
+    # Beyond this ratio the last step is too short to extrapolate from, and PETSc's own guess stays.
     if len(points) and c.length <= LARGEST_STEP_RATIO * (times[now] - times[last]):
+        # Points count from the present half; those of the last step are MAX_STAGES on, which the modulus
+        # wraps.
         extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)
 
 

@@ -82,12 +82,14 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     if not np.isfinite(dx):
         linearise_at_start(c)
         return NOT_FINITE
+    # The first iteration has no step before it in this stage.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
         c.contraction = max(MIN_CONTRACTION_RATIO * c.contraction if c.measured else 0.0, theta)
         c.measured = 1
     c.growing = c.growing + 1 if theta > DIVERGING else 0
     c.last_step = dx
+    # The contraction of an earlier stage is a guess for this one.
     unsure = FIRST_ITERATION_SAFETY if iteration == 1 else 1.0
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
     if small or (theta > STAGNANT and iteration > 2 and dx <= c.rounding):
@@ -125,6 +127,7 @@ def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     """
     n = c.unknowns
     outputs = integers(at, 3)
+    # PETSc's stage residual is affine in x but for f: one evaluation without f yields its constant.
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
     c.without_rate = 0

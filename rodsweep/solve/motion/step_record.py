@@ -33,6 +33,7 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     n = c.unknowns
     outputs = integers(at, 3)
     if c.stored == c.capacity:
+        # Doubling keeps the cost of copying proportional to the number of steps.
         c.capacity = max(2 * c.capacity, FIRST_CAPACITY)
         rows = resized_memory(c.rows, 8 * c.capacity * (n + 1))
         if rows == 0:
@@ -47,6 +48,7 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     row[1:] = z
     release_read(outputs[1], at + 16)
     c.stored += 1
+    # z1 is the first of three fields; h1 = 0 at its value in `crushed`.
     nodes = n // 3
     crushed = floats(c.crushed, nodes)
     for i in range(nodes):

@@ -63,6 +63,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     write_element_strains(S, p.rod, order, strains[0])
     write_element_rates(S, rates, p.rod, order, strains[1])
     tip_motion(strains[0], strains[1], m, tip, velocity)
+    # Signs 0 for an orbit without symmetry: its values cover the whole period.
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
     samples = sampled_columns(c, OVERSAMPLING * (len(c) - 1))
     return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
@@ -76,6 +77,7 @@ def node_stresses(states: Array, out: Array) -> None:
         for k in range(len(states)):
             for i in range(n):
                 out[a, k, i] = states[k, stress_place(a, i, n)]
+            # The tip's stress is prescribed, so its deviation from the straight rod vanishes.
             out[a, k, n] = 0.0
 
 
@@ -107,12 +109,14 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
         for i in range(K * s):
             mean[a] += weights[i % s] * p.lengths[i // s] * power[a, i]
         for i in range(K * s):
+            # In a second pass: the difference of mean squares would cancel for a nearly constant power.
             square[a] += weights[i % s] * p.lengths[i // s] * (power[a, i] - mean[a]) ** 2
     stretch = p.rod.rest[0, nodes]  # at the tip
     for i in range(K * s):
         for j in range(nodes):
             pull = flat[i, stress_place(0, j, nodes)]
             stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
+        # At a jump the node has a mean strain; the smaller stretch of both sides counts.
         for j in range(len(p.rod.jumps)):
             stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.sides[j], p.rod))
     return Means(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)

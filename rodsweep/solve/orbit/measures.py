@@ -114,19 +114,23 @@ class CyclePath:
     def energy(self, samples: int) -> Array:
         """(U, injection, dissipation) at equidistant times from `beginning`, (3, samples)."""
         period = self.orbit.period
+        # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
         theta = self.tip(samples)[2]
         dx, dy, _ = self._sampled(times[:, None] * self.tip_coefficients, samples).T
+        # Power of the follower force: F along -e1 of the tip, times the tip's velocity.
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
         U = self.orbit.form.energy(self._ends)
         power = np.empty((2, len(self._ends)))
         powers(self._ends, power, self.orbit.semidiscrete)
         rates = (power[0] - power[1]) * period
         if self.orbit.symmetric:
+            # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             rates = np.tile(rates, 2)
         c = hermite_coefficients(U, rates)
         U, change = self._sampled(np.stack([c, times[: len(c)] * c], axis=1), samples).T
+        # The energy law closes to round-off, so dissipation is injection minus dU/dt.
         return np.stack([U, injection, injection - change])
 
     def shapes(self, count: int, nodes: int) -> Array:

@@ -76,6 +76,7 @@ def newton(
         change = relative_change(orbit, step)
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
+        # A long first step may come from a poor start; a long later step that did not shrink is divergence.
         if iteration > 1 and change > max(last, ORBIT_NEWTON.longest_step):
             raise Unsolvable("there is no orbit near the start of Newton's method")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
@@ -90,6 +91,8 @@ def newton(
         left = ORBIT_NEWTON.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
         if left <= tolerance:
             return Converged(orbit, matrix, distance)
+        # A correction by the old factors is far cheaper than a new elimination, so a matrix is kept while it
+        # contracts.
         if change > ORBIT_NEWTON.new_matrix_ratio * min(last, 1.0):
             matrix = Linearisation(orbit, workspace, parameter)
             distance = 0.0
@@ -119,6 +122,8 @@ def linearised(found: Converged, parameter: str | None = None) -> Converged:
 def multipliers_of(found: Converged) -> tuple[Complex, float]:
     """(nontrivial multipliers, (rank - 1,), by descending modulus; distance of the trivial one from 1)."""
     values = found.matrix.multipliers()
+    # The derivative of the orbit by time is an eigenvector with multiplier 1; its computed distance from 1
+    # shows the error of all.
     trivial = int(np.argmin(np.abs(values - 1)))
     others = np.concatenate([values[:trivial], values[trivial + 1 :]])
     return others, float(abs(values[trivial] - 1))

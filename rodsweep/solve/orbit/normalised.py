@@ -73,6 +73,7 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
     places: place of each datum, (m,). orders: 1 for a slope, 0 for a value minus the value at 0, (m,).
     """
     m = len(places)
+    # Places in units of the largest keep the Vandermonde matrix well conditioned.
     unit = np.abs(places).max()
     unit = unit if unit > 0 else 1.0
     columns = np.empty((m, m))
@@ -81,6 +82,8 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
         right[power - 1] = (step / unit) ** power
         for i in range(m):
             at = places[i] / unit
+            # Rows demand that the monomials without constant term are reproduced: the result is a change from
+            # 0.
             slope = power * at ** (power - 1) / unit
             columns[power - 1, i] = slope if orders[i] == 1 else at**power
     return np.linalg.solve(columns, right)
@@ -95,6 +98,7 @@ def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array
     out = np.zeros(len(values))
     rest = 1.0
     for k in range(len(weights)):
+        # Weights of values plus the weight of the present values add up to 1; slopes do not count.
         rest -= weights[k] if orders[k] == 0 else 0.0
         for i in range(len(values)):
             out[i] += weights[k] * data[k, i]
@@ -108,6 +112,7 @@ def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
     """`normalised_tangent` for values and their tangent, (N,) each."""
     squared = squared_size(values, values, r)
     change = 2 * squared_size(values, tangent, r)
+    # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
     share = change / (2 * squared)
     out = np.empty(len(values) + 1)
     for i in range(len(values)):

@@ -109,6 +109,7 @@ class OrbitMesh:
     @property
     def finer(self) -> "OrbitMesh":
         """Finer mesh for a new attempt without an error estimate."""
+        # A fifth more, and at least one more.
         return replace(self.finer_in_space, intervals=self.intervals * 6 // 5 + 1)
 
     @property
@@ -150,6 +151,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     tails = tails_of(orbit)
     aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
     aim_time = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.time_factor) ** 0.5
+    # Below 1e-15 a tail is rounding error.
     order = present.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / present.elements)
     edges = present.edges
     while order > RESOLUTION.largest_order:

@@ -23,13 +23,14 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
     extrema = fine.extrema
     changes = {name: abs(value - extrema[name]) for name, value in rough.extrema.items()}
     size = abs(extrema["tip_y_max"])
-    period = max(abs(rough.orbit.period / fine.orbit.period - 1), rods_apart(rough.orbit, fine.orbit))
+    period = max(abs(rough.orbit.period / fine.orbit.period - 1), rod_difference(rough.orbit, fine.orbit))
     return np.array([period, *(np.array([changes["tip_y_max"], max(changes.values()), apart]) / size)])
 
 
-def rods_apart(one: Orbit, other: Orbit) -> float:
+def rod_difference(one: Orbit, other: Orbit) -> float:
     """Largest relative difference of two rods' parameters."""
     a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
+    # A coefficient of 0 is a limit, such as c1 = 0, in which both rods agree exactly.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 
 

@@ -37,6 +37,7 @@ class Symmetry:
 
     def returned(self, flow: Array, layout: StateLayout) -> Array:
         """S^-1 times the derivative of the flow over T/p, (unknowns, unknowns)."""
+        # S is orthogonal, so its transpose is its inverse.
         returned: Array = self.matrix(layout).T @ flow
         return returned
 

@@ -41,6 +41,7 @@ class Tails:
 def tails_of(orbit: Orbit) -> Tails:
     """The tails of an orbit."""
     c = _space_coefficients(orbit)
+    # Two coefficients, because by parity a single one may vanish.
     last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), 1e-300)
     return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
 
@@ -53,11 +54,13 @@ def _decay(c: Array) -> float:
     highest = 1e-16
     along = 0.0
     squares = 0.0
+    # From the last coefficient down, so that `highest` is an envelope in which zeros do not count.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
             highest = max(highest, c[a, k] / max(c[a].max(), 1e-300))
         along += (k - middle) * np.log(highest)
         squares += (k - middle) ** 2
+    # Slope of the least-squares line through the logarithms, about the mean of the orders.
     return min(max(-along / squares, MIN_DECAY), MAX_DECAY)
 
 

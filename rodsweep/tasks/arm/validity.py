@@ -1,11 +1,12 @@
 """Whether the model applies at each point of an arm's sweep, from the neglected effects at the arm's motion.
 
 The rate of the motion depends on the task: the rate of the first Hopf point, of the leading oscillating mode,
-or of the cycle. Without motion only compression and weight count.
+or of the cycle. Of an arm at rest only compression and weight count. Where a motion may have been missed, the
+validity is not known, unless compression or weight alone end the model.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
 from typing import Any
@@ -18,15 +19,27 @@ from ...config.arm.axes import SECTION, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
-from ...model.arm.neglected import HALF_LENGTH, effects_of, least_drag, worst_validity
+from ...model.arm.neglected import HALF_LENGTH, Validity, effects_of, least_drag, worst_validity
 from ...model.material.laws import LINEAR
-from ...results.layouts.arm import EFFECTS
+from ...results.layouts.arm import EFFECTS, NOT_KNOWN
+from ...results.layouts.phase_diagram import CLASSES
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...results.layouts.variables import STATUS
+from ...solve.status import PointStatus
 from ...sweep.points.points import Points
 
 Record = Mapping[str, Any]
 ARMS_KEPT = 64
 """Maximum number of cached arms."""
+AT_REST: dict[str, tuple[str, ...]] = {
+    "thresholds": ("accuracy_not_reached", "list_full"),
+    "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
+}
+"""Further statuses, by task, at which the arm is at rest if the file has no motion."""
+HOPF_POINTS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
+"""Kinds of crossings that are Hopf points."""
+MAY_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
+"""Classes of a rod in a phase diagram that may beat."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +53,8 @@ class ArmMotion:
     """Force of each motion; None to take F from the points. An F of the points takes precedence."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
+    missed: NDArray[np.bool_] | bool = False
+    """Whether a point moves although its frequency is not known, of the shape of the points."""
 
 
 def _of_modes(record: Record) -> ArmMotion:
@@ -54,7 +69,7 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     """Motion of the first Hopf point; `at`: name of the variable with its force."""
 
     def found(record: Record) -> ArmMotion:
-        hopf = np.asarray(record["crossing_kind"]) == CROSSING_KINDS.index("hopf")
+        hopf = np.isin(record["crossing_kind"], HOPF_POINTS)
         first = np.argmax(hopf, axis=-1, keepdims=True)
         there = hopf.any(axis=-1)
         pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))
@@ -62,6 +77,12 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
         return ArmMotion(np.abs(frequency), F)
 
     return found
+
+
+def _of_row(record: Record) -> ArmMotion:
+    """Motion of the first Hopf point of a row; missed if rods of the row may beat although it has none."""
+    beats = np.isin(record["class"], MAY_FLUTTER).any(axis=-1)
+    return replace(_of_hopf_point("crossing_at")(record), missed=beats)
 
 
 def _of_flutter(record: Record) -> ArmMotion:
@@ -85,7 +106,7 @@ MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
     "modes": _of_modes,
     "thresholds": _of_flutter,
     "criticality": _of_hopf_point("crossing_F"),
-    "phase_diagram": _of_hopf_point("crossing_at"),
+    "phase_diagram": _of_row,
     "limit_cycle": _of_cycle,
     "branch": _of_branches,
 }
@@ -95,11 +116,15 @@ MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
 class ArmValidity:
     """Validity of the model at the points of a config's arm."""
 
-    def __init__(self, config: Config, points: Points):
+    def __init__(self, config: Config, points: Points, statuses: Iterable[PointStatus] = ()):
+        """`statuses`: all statuses of the task's points."""
         assert config.parameters.arm is not None
         self.section: ArmSection = config.parameters.arm
         self.points = points
         self.task = config.task
+        at_rest = AT_REST.get(self.task, ())
+        self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
+        """Statuses of points at which no motion was missed."""
         sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
@@ -110,7 +135,9 @@ class ArmValidity:
         (n,).
         """
         motion = MOTIONS[self.task](record)
-        return self._validity(self._arm_of(int(np.ravel(index)[0])), motion, index)
+        missed = motion.missed | ~np.isin(record[STATUS.name], self.searched)
+        arm = self._arm_of(int(np.ravel(index)[0]))
+        return self._validity(arm, replace(motion, missed=missed), index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at all points with a rod, (n,), for an arm at rest."""
@@ -140,10 +167,14 @@ class ArmValidity:
         worst = np.argmax(largest, axis=0)
         number = np.array([EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted])[worst]
         at_worst = np.max(largest, axis=0)
+        applies = validity.reshape(*np.shape(index), -1).max(axis=-1)
+        moves = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
+        # Compression or weight beyond its limit ends the model whatever the motion.
+        known = moves | ~np.asarray(motion.missed) | (applies == Validity.does_not_apply)
         return {
-            "model_applies": validity.reshape(*np.shape(index), -1).max(axis=-1),
-            "neglected_effect": np.where(at_worst > 0, number, -1),
-            "neglected_excess": np.where(at_worst >= 0, at_worst, np.nan),
+            "model_applies": np.where(known, applies, NOT_KNOWN),
+            "neglected_effect": np.where(known & (at_worst > 0), number, -1),
+            "neglected_excess": np.where(known & (at_worst >= 0), at_worst, np.nan),
         }
 
     def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:

@@ -31,8 +31,8 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
     folds = []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
-        for *numbers, end in zip(*each, _ends(curve.ends, len(curve.values)), strict=True):
-            named = dict(zip(("frequency", "growth_rate", *plane, "end"), (*numbers, end), strict=True))
+        for *numbers, reasons in zip(*each, _reasons(curve.ends, len(curve.values)), strict=True):
+            named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
             points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
         folds += [_located(fold, plane, curve=number, kind=curve.hopf, of=fold.axis) for fold in curve.folds]
     declared = curve_variables(*plane)
@@ -63,9 +63,9 @@ def criticality_record(
 def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
     """Curves of generalised Hopf points over a third parameter."""
     rows = [
-        _located(point, (*plane, third), curve=number, end=end)
+        _located(point, (*plane, third), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
-        for point, end in zip(curve.points, _ends(curve.ends, len(curve.points)), strict=True)
+        for point, reasons in zip(curve.points, _reasons(curve.ends, len(curve.points)), strict=True)
     ]
     declared = bautin_curve_variables(*plane, third)
     return _filled(declared, _columns(declared, "bautin_step", "bautin_along_", rows))
@@ -77,9 +77,9 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
-        for (beside, point), end in zip(own, _ends(curve.ends, len(own)), strict=True):
-            named = dict(zip(plane, (point.at, point.row), strict=True)) | beside
-            rows.append((SimpleNamespace(number=number, kind=int(curve.kind), end=end, **named), point))
+        for (beside, point), reasons in zip(own, _reasons(curve.ends, len(own)), strict=True):
+            named = dict(zip(plane, (point.at, point.row), strict=True)) | beside | reasons
+            rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **named), point))
     declared = cycle_curve_variables(*plane)
     values = _columns(declared, "cycle_curve_point", "cycle_curve_", rows)
     values |= {"cycle_curve_agreement": found.agreement, "cycle_curves_untraced": found.untraced}
@@ -104,10 +104,11 @@ def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list
     return [(declared[name], np.asarray(value)) for name, value in values.items()]
 
 
-def _ends(ends: Sequence[int], count: int) -> list[int]:
-    """Reason for the end of a curve at each of its points, 0 between its ends; a single point has the last
-    reason.
+def _reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
+    """At each point of a curve the reason for the curve's end before and after the point, 0 for none.
+
+    ends: reasons for the ends at the first and the last point, which a curve of one point has both.
     """
-    why = [0] * count
-    why[0], why[-1] = ends
-    return why
+    reasons = [{"start": 0, "end": 0} for _ in range(count)]
+    reasons[0]["start"], reasons[-1]["end"] = ends
+    return reasons

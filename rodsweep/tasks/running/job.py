@@ -68,7 +68,7 @@ class Job:
         """The solver, with results in SI units and the validity of the model added to every record."""
         layout = LAYOUTS[self.config.task](self.resolved)
         quantities = at_points(self.quantities, self.points)
-        validity = ArmValidity(self.config, self.points)
+        validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             return values | in_si(values, index, layout, quantities) | validity.of(values, index)

@@ -180,7 +180,7 @@ def test_a_diagram_classes_the_plane_and_continues_the_folds(diagram):
     assert set(curve["number"]) == {1}
     assert set(curve["kind"]) == {SpecialKind.fold}
     words = tuple(CYCLE_CURVE_ENDS)
-    assert [words[i] for i in curve["end"] if i] == ["hopf", "edge"]
+    assert [words[i] for name in ("start", "end") for i in curve[name] if i] == ["hopf", "edge"]
     assert (curve["F"][0], curve["k1"][0]) == pytest.approx((BAUTIN_F, BAUTIN_K1), rel=1e-8)
     assert curve["tip_y_max"][0] == 0
     assert curve["k1"][-1] == pytest.approx(152, rel=1e-12)

@@ -17,7 +17,11 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy import refinement
 from rodsweep.solve.cycle.accuracy.cycle_errors import CYCLE_ERRORS
-from rodsweep.solve.cycle.accuracy.minimal_period import common_divisor, shortened, undecided_divisor
+from rodsweep.solve.cycle.accuracy.minimal_period import (
+    common_divisor,
+    over_minimal_period,
+    undecided_divisor,
+)
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 from rodsweep.solve.cycle.transient import schemes, transient
 from rodsweep.solve.motion.integrator import forget_integrators
@@ -334,8 +338,8 @@ def test_three_periods_are_recognised_and_cut_to_one():
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
-    assert shortened(half) is half
-    once = at_orbit(newton(shortened(thrice), 1e-10, NewtonWorkspace()), 0.0)
+    assert over_minimal_period(half) is half
+    once = at_orbit(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 

@@ -21,7 +21,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.along_path import pair_crossings, transitions
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
-from rodsweep.solve.cycle.hopf_start import orbit_of
+from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
 from rodsweep.solve.hopf.criticality import (
     CriticalityRequest,
@@ -81,7 +81,7 @@ def cycle_near(at, hopf, known, gamma1, part):
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
     normal = accurate_normal_form(at.changed(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
     form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), mesh(1, normal.form.mesh.nodes))
-    measures = refined_cycle(orbit_of(normal, form), 1e-11, NewtonWorkspace()).measures
+    measures = refined_cycle(orbit_by_normal_form(normal, form), 1e-11, NewtonWorkspace()).measures
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 
 

@@ -285,9 +285,9 @@ def test_points_of_the_curve_are_those_of_other_equations(over_shear):
 
 def test_curve_ends_at_the_ends_of_the_range_or_of_the_plane(over_shear):
     """From k1 = 147.1, below the plane, to 150.9, which k2 reaches within the range."""
-    ends = over_shear[1].bautin_along_end.values
-    assert (ends[0], ends[-1]) == (BautinEnd.plane_edge, BautinEnd.range_end)
-    assert not ends[1:-1].any()
+    starts, ends = (over_shear[1][f"bautin_along_{side}"].values for side in ("start", "end"))
+    assert (starts[0], ends[-1]) == (BautinEnd.plane_edge, BautinEnd.range_end)
+    assert not starts[1:].any() and not ends[:-1].any()
     assert over_shear[1].bautin_along_k1.values[0] == pytest.approx(148, rel=1e-12)
 
 

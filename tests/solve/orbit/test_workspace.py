@@ -62,8 +62,8 @@ def test_a_matrix_whose_workspace_another_one_used_raises_and_keeps_its_multipli
         lambda matrix: matrix.step(MOMENT, 0.1),
         lambda matrix: matrix.direction(MOMENT),
         lambda matrix: matrix.approximate_null_vector(),
-        lambda matrix: matrix.varied(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
-        lambda matrix: matrix.spread(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
+        lambda matrix: matrix.residual_variations(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
+        lambda matrix: matrix.back_substitute(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
     ],
     ids=["step", "direction", "approximate_null_vector", "varied", "spread"],
 )

@@ -11,7 +11,7 @@ from ....config.arm.axes import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_OF
 from ....results.file.view import View
-from ....results.layouts.arm import EFFECTS, VALIDITY
+from ....results.layouts.arm import EFFECTS, NOT_KNOWN, VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import counted, some_of
 from ..ranges import rounded
@@ -74,18 +74,24 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     validity: the variables of VALIDITY, (n,). when: condition of the validity, as a clause.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
+    unknown = applies == NOT_KNOWN
+    if unknown.all():
+        where = f" at all {len(applies)} points" if len(applies) > 1 else ""
+        return f"whether the model applies is not known{where}{when}: a motion may have been missed"
+    rest = f"; not known at {some_of(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
     worst = Validity(int(applies.max()))
-    if worst == Validity.applies:
-        return f"the model applies{' at all points' * (len(applies) > 1)}{when}"
     affected = applies == worst
     at = f" at {some_of(int(affected.sum()), len(applies), 'point')}"
     if affected.all():
         at = "" if len(applies) == 1 else f" at all {len(applies)} points"
+    if worst == Validity.applies:
+        everywhere = " at all points" if len(applies) > 1 else ""
+        return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
     name = EFFECTS[int(effect[place])].replace("_", " ")
     size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {size} times its limit"
+    return f"the model {verb}{at}{when}: {name} is {size} times its limit{rest}"
 
 
 def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:

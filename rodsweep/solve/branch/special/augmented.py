@@ -112,7 +112,10 @@ class NearbyCycles:
             before = self.function.value(orbit)
             self.function.correct(orbit)
             value = self.function.value(orbit)
+            # The test function converges with its vectors; its change counts as a distance across the curve.
             off = max(change, abs(value - before) / slope)
+            # The first correction has no predecessor: its contraction follows from the distance from the
+            # matrix's cycle.
             rate = off / last if last else min(1.0, self.contraction * distance)
             if last and not self._family.small:
                 measured = AUGMENTED.contraction_safety * rate / distance
@@ -129,7 +132,7 @@ class NearbyCycles:
 
     def _corrected(self, orbit: Orbit, condition: Condition) -> tuple[Orbit, float]:
         """(orbit after one correction, relative change); raises Unsolvable."""
-        step = self.matrix.correction(orbit, self.border, condition.missed(orbit))
+        step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
         if not change <= ORBIT_NEWTON.longest_step:
             raise Unsolvable("no cycle of the branch is near the start of the corrections")
@@ -153,6 +156,7 @@ class FoldFunction:
     def value(self, orbit: Orbit) -> float:
         """The test function from the present tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
+        # Beside a Hopf point the rate vanishes with the amplitude; divided by it the function stays regular.
         return rises * self.matrix.scale.deflection / deflection_of(orbit) if self.small else rises
 
     def start_from(self, tangent: Array) -> None:
@@ -165,7 +169,7 @@ class FoldFunction:
         tangent = self.vectors
         p = orbit.semidiscrete
         change = replace(orbit, values=tangent[:-1])
-        columns, ends = matrix.varied(orbit, tangent[None])
+        columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start))
         phase_row(orbit.start, p.rod, p.matrices, row)
         along = orbit.form.change(matrix.scale.name)
@@ -195,7 +199,7 @@ class TorusFunction:
             start /= np.linalg.norm(start)
         self.border = start.conj()
         K, s, n = matrix.orbit.states.shape
-        self.vectors = matrix.spread(_parts(start), np.zeros((K, s, 2, n)))
+        self.vectors = matrix.back_substitute(_parts(start), np.zeros((K, s, 2, n)))
         n = len(start)
         self.bordered = np.zeros((n + 1, n + 1), dtype=complex)
         self.bordered[:n, :n] = matrix.propagator - pair * p.symmetry
@@ -212,14 +216,14 @@ class TorusFunction:
 
     def correct(self, orbit: Orbit) -> None:
         """Corrects the multiplier and its eigenvector once at a cycle."""
-        columns, ends = self.matrix.varied(orbit, self.vectors)
+        columns, ends = self.matrix.residual_variations(orbit, self.vectors)
         n = ends.shape[1]
         start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
         right = np.append(self.multiplier * (orbit.semidiscrete.symmetry @ start), 1 - self.border @ start)
         right[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered, right)
         self.multiplier += complex(change[-1])
-        self.vectors = self.vectors + self.matrix.spread(_parts(change[:-1]), columns)
+        self.vectors = self.vectors + self.matrix.back_substitute(_parts(change[:-1]), columns)
 
 
 def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:

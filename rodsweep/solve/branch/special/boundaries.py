@@ -119,7 +119,7 @@ class _CurvesOfKind:
         """The middle special point in order: the two halves of its curve are then about equally long."""
         return sorted(left, key=self._place)[len(left) // 2]
 
-    def lacking(self, seed: int) -> list[int]:
+    def missing_units(self, seed: int) -> list[int]:
         """The halves from a special point whose results are needed and lacking."""
         ahead = 2 * seed
         behind = 2 * seed + 1
@@ -133,7 +133,7 @@ class _CurvesOfKind:
         """Units from which further curves may start: special points on the row of the next seed."""
         rows = {self.special[unit // 2].row for unit in search.needed}
         beside = sorted((i for i in search.left if self.special[i].row in rows), key=self._place)
-        return [unit for i in beside for unit in self.lacking(i)]
+        return [unit for i in beside for unit in self.missing_units(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through a special point, joined from its halves; None if the curve cannot be followed."""

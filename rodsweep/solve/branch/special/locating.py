@@ -41,6 +41,8 @@ class Segment:
 
     def predicted(self, length: float) -> Orbit:
         """Orbit at a length from `start`, on the cubic through both cycles and on the mesh of `end`."""
+        # Backwards from the end, whose cubic passes through both cycles; lengths are measured along its
+        # tangent.
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
@@ -54,6 +56,7 @@ class Segment:
             start = self.mesh.carry(self.predicted(length))
         else:
             last, orbit, tangent = self._known
+            # From the last cycle along its tangent: successive lengths of a secant method are close.
             start = moved(orbit, self.start.scale.name, (length - last) * tangent)
         condition = self.start.condition(length)
         workspace = self.start.workspace
@@ -86,15 +89,16 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         correct_fully(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return of_multipliers(kind, matrix.partial_multipliers)
+    return test_of_multipliers(kind, matrix.partial_multipliers)
 
 
-def of_multipliers(kind: SpecialKind, h: Complex) -> float:
+def test_of_multipliers(kind: SpecialKind, h: Complex) -> float:
     """The test function of a kind from multipliers over the solved interval, (rank,); raises Unsolvable."""
     real = np.abs(h.imag) <= LOCATING.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The sign of det(h + 1) changes only when a multiplier crosses -1, whichever multiplier is nearest.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
+    # A pair that met on the real axis is no pair any more.
     if real.all():
         raise Unsolvable("the multiplier that crosses the unit circle is lost")
     beyond = np.abs(h[~real]) - 1
@@ -104,11 +108,12 @@ def of_multipliers(kind: SpecialKind, h: Complex) -> float:
 def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
     """The test function at a known cycle; scale, ahead: as for the segment. Raises Unsolvable."""
     if kind == SpecialKind.fold:
+        # In lengths along the segment's own direction, in which the zero is sought.
         rate = float(scale.moved(point.orbit, point.tangent) @ ahead)
         return float(point.tangent[-1]) / scale.coordinate / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return of_multipliers(kind, point.partial_multipliers)
+    return test_of_multipliers(kind, point.partial_multipliers)
 
 
 def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
@@ -120,6 +125,7 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
         mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
+        # At least as many stages as make this accuracy cheapest.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
         for number in range(LOCATING.max_mesh_pairs + 1):
@@ -144,6 +150,7 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
 
 def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: error of a point on this mesh in units of the accuracy."""
+    # Errors fall with a power of the number of intervals that is proportional to the stages.
     growth = excess ** (1 / (LOCATING.power_by_stages * mesh.stages))
     growth = min(max(growth, LOCATING.more_intervals), LOCATING.max_interval_ratio)
     more = min(max(ceil(log(excess) / LOCATING.fall), LOCATING.more_orders), LOCATING.max_more_orders)
@@ -195,6 +202,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
         at=at,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
+        # The cycles may coincide in the parameter, as on both sides of a fold.
         error=max(abs(at - other), LOCATING.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
@@ -242,6 +250,7 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
         step = -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step between the two cycles")
+        # A short step that does not halve any more is rounding error.
         if abs(step) <= enough or last / 2 < abs(step) <= LOCATING.stalled_secant * segment.length:
             _, orbit, tangent = segment.known
             change = step * tangent

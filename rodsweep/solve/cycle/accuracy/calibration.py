@@ -61,6 +61,7 @@ class Calibration:
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The calibration for the orbit of the next point, after a relative change of the parameter."""
         tails = _tails(orbit)
+        # Errors are relative to the size: of a cycle that shrinks they must be measured anew.
         dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
         return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
@@ -103,6 +104,7 @@ class Calibration:
         in_space, in_time = self.growth
         stated = _stated(self.space * in_space, self.time * in_time, accuracy)
         larger = float(self.growth.max())
+        # Extrema and multipliers mix both parts of the error, so the larger growth counts for them.
         stated[2:] = _stated(self.space * larger, self.time * larger, accuracy)[2:]
         return CycleErrors(*stated.tolist())
 
@@ -121,6 +123,7 @@ class Calibration:
         least = np.minimum(self.fall, self.fall[WHOLE_PATH])
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
+        # Towards finer meshes the order is taken at its smallest, since it was measured on coarser ones.
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _stated(space[:, :, None], time[:, None, :], accuracy)
@@ -163,6 +166,7 @@ def _growth(before: Array, after: Array) -> Array:
     depends on the mesh, the error of its size grows as the reciprocal of the squared size. A decrease is not
     relied on.
     """
+    # Errors are of second order in the tails; a decrease is not trusted, hence at least 1.
     growth: Array = np.maximum(_change(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
     return growth
 
@@ -205,6 +209,7 @@ def _fall(before: Array, after: Array, orders: int) -> Array:
 
 def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of errors in time, (5,), from errors, (5,) each, on two meshes with different intervals."""
+    # Twice the stages minus one is the order of Radau IIA; stages + 1 is the least that stiff problems keep.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
     power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_power_ratio * least)

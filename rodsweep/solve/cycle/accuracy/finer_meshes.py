@@ -39,6 +39,7 @@ COMPARISON = ComparisonSettings()
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """((mesh finer in space, mesh finer in time), share of the error in time that the second removes)."""
     longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
+    # Errors fall with this power of the intervals; the last two intervals count as one.
     share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 

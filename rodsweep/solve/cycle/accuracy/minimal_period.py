@@ -58,7 +58,7 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
     return common_divisor(path, max(MINIMAL_PERIOD.certain * error, MINIMAL_PERIOD.min_present))
 
 
-def shortened(orbit: Orbit) -> Orbit:
+def over_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the common period of its present harmonics, as a start for Newton's method."""
     g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.present)
     if g == 1:

@@ -22,7 +22,7 @@ from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
 from .finer_meshes import calibrated
-from .minimal_period import MINIMAL_PERIOD, common_divisor, shortened, undecided_divisor
+from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period, undecided_divisor
 from .refinement_settings import REFINEMENT
 
 
@@ -81,20 +81,21 @@ class RefinedCycle:
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
 
 
-def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
+def with_calibrated_errors(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
     """A cycle with the errors of its calibrated mesh."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
+    # The matrix was made beside the orbit; how far the trivial multiplier is from 1 shows what that costs.
     by_matrix = REFINEMENT.multiplier_factor * largest * (found.distance + trivial_error)
-    by_exponent = errors.amplitude_error * _by_exponent(multipliers)
+    by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
 
 
-def _by_exponent(multipliers: Complex) -> float:
+def _multiplier_per_exponent(multipliers: Complex) -> float:
     """Change of the largest multiplier per relative change of its exponent, |mu ln |mu||.
 
     Exponents have the relative error of amplitudes, even if the multiplier agrees on two meshes by chance.
@@ -118,7 +119,7 @@ def refine(
     start = orbit
     while True:
         try:
-            rough = same_motion(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
+            rough = of_same_size(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
             near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
@@ -157,6 +158,7 @@ def _predicted_cycle(
             best = orbit, known
         if error <= accuracy:
             break
+        # A prediction that gets worse on a finer mesh has met rounding errors, or another cycle.
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, known.planned(accuracy))
@@ -167,10 +169,12 @@ def _predicted_cycle(
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
-    found = same_motion(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
+    found = of_same_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
     if found.distance > max(REFINEMENT.predicted_within * accuracy, REFINEMENT.min_predicted_distance):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    return judged_by(known, at_orbit(found, min(accuracy, REFINEMENT.max_matrix_distance)), accuracy)
+    return with_calibrated_errors(
+        known, at_orbit(found, min(accuracy, REFINEMENT.max_matrix_distance)), accuracy
+    )
 
 
 def calibrated_cycle(
@@ -184,7 +188,7 @@ def calibrated_cycle(
     last = inf
     for _ in range(REFINEMENT.max_rounds):
         before = calibrated(found, accuracy, before)
-        cycle = judged_by(before, found, accuracy)
+        cycle = with_calibrated_errors(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
@@ -202,12 +206,13 @@ def calibrated_cycle(
 def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
     """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
     # `linearised` makes one more step
+    # The last step is quadratic, so half of the digits suffice before it.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.carry(found.orbit), last, found.workspace)
-    return linearised(same_motion(solution, found.orbit.size), parameter)
+    return linearised(of_same_size(solution, found.orbit.size), parameter)
 
 
-def same_motion(found: Converged, size: float) -> Converged:
+def of_same_size(found: Converged, size: float) -> Converged:
     """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
     if not REFINEMENT.min_size * size < found.orbit.size < REFINEMENT.max_size * size:
         raise Unsolvable("Newton's method converged to another motion than the one at its start")
@@ -222,9 +227,10 @@ def refined_cycle(
     workspace, parameter: as in `refine`. If the multipliers leave the stability open, the cycle is solved
     again for a hundredth of the accuracy.
     """
-    found = refine(shortened(orbit), accuracy, workspace, parameter)
+    found = refine(over_minimal_period(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, MINIMAL_PERIOD.present) > 1:
-        found = refine(shortened(found.orbit), accuracy, workspace, parameter)
+        found = refine(over_minimal_period(found.orbit), accuracy, workspace, parameter)
+    # The multiplier is 1 within its error: a hundredth of the error may tell.
     if found.stable is None:
         found = refine(found.orbit, max(accuracy / 100, REFINEMENT.finest_accuracy), workspace, parameter)
     return found

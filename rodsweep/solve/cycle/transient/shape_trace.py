@@ -43,7 +43,7 @@ class ShapeTrace:
         """Whether no further step is kept."""
         return self.steps >= SHAPE_TRACE.max_steps
 
-    def shows(self, z: Array) -> bool:
+    def records_on(self, z: Array) -> bool:
         """Whether to record the motion from a state z, (unknowns,), on although its outcome is known: until
         the arm is at rest or the trace is full.
         """

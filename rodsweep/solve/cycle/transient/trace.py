@@ -23,7 +23,7 @@ class TipTrace:
     is_full = False
     """A path has any length."""
 
-    def shows(self, z: Array) -> bool:
+    def records_on(self, z: Array) -> bool:
         """Always False: unlike a moving picture, the path ends as soon as the outcome is known. z: state,
         (unknowns,).
         """

@@ -134,25 +134,29 @@ class Transient:
         first = True
         while self.waited < self.most_periods and self.steps < self.max_steps:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
-            run = self._chunk(z, first)
+            run = self._run_of_returns(z, first)
             if end := early_end(self.beam, run, self.waited):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
                 return self._ended(status, end.why)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._remember(run, times, states)
+            # Below rounding a motion has no memory of its amplitude: only a rod that is not unstable stays
+            # straight.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
-            if self.straight.stable is False and not self._swings(z):
+            if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
+                # The rod is unstable, but the start has no part along the growing mode beyond rounding: it is
+                # started anew.
                 z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
                 continue
             early = first
             first = False
             if len(times) < 3 or (early and self.small.slow(times, states)):
                 continue
-            shown = self.trace is not None and self.trace.shows(z)
+            shown = self.trace is not None and self.trace.records_on(z)
             if not early and not shown and self.small.decays_as_linear(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = None if early or self.jumps >= TRANSIENT.max_jumps else self.small.jump(times, states)
@@ -185,14 +189,14 @@ class Transient:
 
     def _not_settled(self, z: Array) -> str:
         """The reason why the motion, now at the state z, has no outcome."""
-        if self._swings(z):
+        if self._bends_visibly(z):
             work = f" in {self.steps} time steps, the most allowed" if self.steps >= self.max_steps else ""
             return f"{counted(self.waited, 'return')} of the tip{work}, none periodic"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
         return f"its deflection has decayed after {self.waited} returns, but {why}"
 
-    def _swings(self, z: Array) -> bool:
+    def _bends_visibly(self, z: Array) -> bool:
         """Whether bending and shear exceed rounding errors."""
         return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
@@ -217,7 +221,7 @@ class Transient:
     def _ended(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, why, self.waited, found)
 
-    def _chunk(self, z: Array, first: bool) -> Trajectory:
+    def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run over TRANSIENT.returns_per_run returns, limited to three times the expected duration."""
         returns, scheme = (
             (TRANSIENT.first_returns, self.first_scheme)
@@ -250,6 +254,7 @@ class Transient:
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found."""
+        # The run is shorter than the period to be cut from it: several returns may make one period.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
             if run.ending != Ending.reached:
@@ -261,4 +266,5 @@ class Transient:
             return None
         if found.stable is False:
             self.unstable = found
+        # A multiplier of 1 to rounding is a closed motion of any amplitude, not a limit cycle.
         return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None

@@ -43,6 +43,7 @@ def eliminate(
     tip = np.empty((3, n))
     right = np.empty((s, n, n))
     parts = np.empty((5, n, n))
+    # Before the first interval the product of maps is the identity, times M as after every interval.
     so_far = np.diag(p.mass)
     ends = np.zeros(columns.shape[2:])
     for k in range(K):
@@ -52,14 +53,20 @@ def eliminate(
             jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.matrices)
             for r in range(n):
                 for q in range(n):
+                    # Diagonal block d_ii M - h F'. Column 0 of d belongs to the start of the interval, hence
+                    # i + 1.
                     B[i, i, r, q] *= -h
                 B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
         _eliminate_interval(B, right, parts, p)
+        # Row 0 of the blocks is free once two stages are eliminated: it keeps the effect of the start on the
+        # end and on the stages between, for `substitute`.
         square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
         for a in range(2, s - 1):
             B[0, a] = right[a]
         reduce(B, columns[k], p)
         to_end(B, columns[k], p, ends)
+        # B[0, 1] acts on M x_0, since `right` belongs to x_0 = M^-1, so M stands between the maps of two
+        # intervals.
         square_product(B[0, 1], so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
             for q in range(n):
@@ -82,6 +89,8 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
     mass = p.mass
     Z = parts[0]
     invert(B[0, 0], pivots, rows)
+    # Schur complement of the second stage. Both off-diagonal blocks are multiples of M, so it costs no
+    # product.
     factor = d[1, 1] * d[0, 2]
     for r in range(n):
         for q in range(n):
@@ -110,6 +119,7 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
     n = B.shape[2]
     d = p.differentiation
     mass = p.mass
+    # `right` is taken for x_0 = M^-1: its columns have no factor M, and the sign of -d_i0 instead.
     minus = -np.ones(n)
     Z = parts[0]
     W = parts[1]

@@ -38,6 +38,7 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
         product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
         extents[0] = n - last
         product(rows.ctypes.data + 8 * PANEL * last, panel, A.ctypes.data + row, extents, ones)
+    # An exchange before the inversion is undone on the other side of the inverse, the last one first.
     for k in range(n - 1, -1, -1):
         if pivots[k] != k:
             p = pivots[k]
@@ -55,6 +56,8 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
         p = k
         for i in range(k, n):
             largest = max(largest, abs(row[i]))
+        # Threshold pivoting: an exchange costs a pass over A, and a pivot ten times smaller loses one digit
+        # at most.
         if abs(row[k]) < MIN_PIVOT * largest:
             for i in range(k, n):
                 if abs(row[i]) == largest:
@@ -65,6 +68,8 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
                 A[j, k], A[j, p] = A[j, p], A[j, k]
         inverse = 1.0 / row[k]
         for i in range(n):
+            # The pivot row is negated so that all updates add; its own entry becomes the inverse pivot at the
+            # end.
             row[i] *= -inverse
         for j in range(first, last):
             if j != k:

@@ -94,6 +94,7 @@ def linearise(
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
     for i in range(n):
+        # Bordered system of the closing condition: (P - S) dx(0) + (dx(T/p)/dT) dT = jump, and the phase row.
         inverse[i, n] = ends[0, i]
         for j in range(n):
             inverse[i, j] -= p.symmetry[i, j]
@@ -107,6 +108,7 @@ def linearise(
     rights[0, n] = -phase(points[0], p.rod, p.matrices)
     if count > 2:
         rights[1, n] = phase_change(points[0], along.change, p.rod, p.matrices)
+    # A contiguous copy, because later corrections at nearby orbits need this column only.
     by_period = columns[:, :, 0].copy()
     return steps_of(rights, by_period, columns[:, :, 1:], p, factors), by_period
 
@@ -205,6 +207,7 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
     duration = values[-1] / p.parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
     rights = np.empty((1, n + 1))
+    # The residuals of the stages move the end as well; the start has to close what is left of the jump.
     rights[0, :n] = jump_of(points, p) - ends[0]
     rights[0, n] = -phase(points[0], p.rod, p.matrices)
     return steps_of(rights, by_period, columns, p, factors)[0]
@@ -215,10 +218,12 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
     """Largest change of n2, m3 and the period by a step, (N,), each in units of its largest value."""
     largest = abs(step[-1]) / abs(values[-1])
     for change in step:
+        # NaN would be lost in the comparisons below.
         if not np.isfinite(change):
             return np.inf
     most = np.zeros(COMPONENTS)
     size = np.zeros(COMPONENTS)
+    # From the first stage on: the state at the start is the last stage of the part before.
     for first in range(unknowns, len(values) - 1, unknowns):
         for a in range(1, COMPONENTS):
             for i in range(nodes):

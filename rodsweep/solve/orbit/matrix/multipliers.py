@@ -69,6 +69,8 @@ def compressed(A: Array, negligible: float) -> Array:
             break
         q = Q[rank]
         r = R[rank]
+        # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; the tiny divisor
+        # keeps a zero matrix from dividing by 0.
         q[:] = columns[p] / max(size, 1e-300)
         for j in range(n):
             if norms[j] > least:
@@ -82,6 +84,7 @@ def compressed(A: Array, negligible: float) -> Array:
         for b in range(rank):
             total = 0.0
             for j in range(n):
+                # A = Q R has the nonzero eigenvalues of R Q, a matrix of the size of the rank.
                 total += R[a, j] * Q[b, j]
             small[a, b] = total
     return small

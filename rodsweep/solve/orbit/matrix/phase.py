@@ -24,6 +24,7 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
     theta = tip_angle(start, c.compliance, m)
     turned = tip_angle(start, change.compliance, m)
     by_angle = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]
+    # Negated: the phase condition has its right side on the other side of the equation.
     return by_angle * turned - lateral_velocity(changes[2], theta)
 
 
@@ -39,6 +40,8 @@ def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
 @compiled_for_vectors
 def lateral_velocity(G: Array, theta: float) -> float:
     """dy/dt of the tip at an angle, from G at all nodes, (3, nodes + 1)."""
+    # G at the tip is the reaction of the weak form: minus the tip's velocity in the body frame, here turned
+    # into the laboratory frame.
     return -(np.sin(theta) * G[0, -1] + np.cos(theta) * G[1, -1])
 
 
@@ -69,5 +72,6 @@ def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     for i in range(n):
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
     for i in range(nodes):
+        # theta is the integral of the curvature C m3, so each node turns the tip by its weight.
         turn = m.weights[i] * c.compliance[BENDING, i]
         row[stress_place(BENDING, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * turn

@@ -94,6 +94,8 @@ def right_sides(
             equations(x, sides[0], V[k, i], G, p)
             _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
             for r in range(n):
+                # F is used twice: times h in the residual, and as derivative of h F by the period in the
+                # column below. The residual comes first, because the column overwrites F.
                 sides[1, r] = duration * length * sides[0, r] - p.mass[r] * slopes[r]
                 sides[0, r] *= length / p.parts
             if count > 2:
@@ -112,6 +114,7 @@ def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Ar
     K, s, count, n = columns.shape
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.parts
+    # The last two entries of a variation are the period and the parameter's coordinate.
     changes = variations[:, :-2].copy().reshape(count, 1 + K * s, n)
     V = np.empty(p.rod.drag.shape)
     G = np.empty(p.rod.drag.shape)
@@ -122,6 +125,7 @@ def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Ar
     J = np.empty((n, n))
     tip = np.empty((len(V), n))
     v = np.empty((count, n))
+    # Eigenvectors of the flow leave the parameter alone; then the derivative by it is not needed.
     moving = np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):
@@ -139,6 +143,7 @@ def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Ar
             add_products(J, v, columns[k, i], h)
             for m in range(count):
                 _slopes(changes[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                # h = T/p times the interval's share, so dh/dT is the share over p.
                 by_period = variations[m, -2] * p.lengths[k] / p.parts
                 for r in range(n):
                     rates = by_period * F[r] + variations[m, -1] * by_parameter[r]

@@ -29,6 +29,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
                 columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
         for a in range(2, i):
             add_products(B[i, a], columns[a], columns[i], -1.0)
+    # The last stage is solved for at once: the end of the interval is all that the next one needs.
     t[:] = columns[s - 1]
     columns[s - 1] = 0.0
     add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
@@ -37,6 +38,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 @compiled_for_vectors
 def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
     """Maps changes of an interval's start to its end, in place, (columns, n), with reduced right sides."""
+    # The map of an interval acts on M x_0, as in `eliminate`.
     scaled = ends * p.mass
     ends[:] = columns[-1]
     add_products(B[0, 1], scaled, ends, 1.0)
@@ -55,6 +57,7 @@ def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
     for m in range(count):
         for r in range(n):
             side[m, r] = y[1, m, r] - d[1, 1] * mass[r] * t[m, r]
+    # B[1, 1] holds the inverse of the Schur complement; t still lacks the coupling to u, subtracted below.
     add_products(B[1, 1], side, u, 1.0)
     for m in range(count):
         for r in range(n):
@@ -66,6 +69,7 @@ def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
 def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
     """Adds factor A x to y for columns x and y, (columns, n) each, two columns at a time."""
     count, n = x.shape
+    # Each entry of A is loaded once for two columns: the product is bound by memory, not by arithmetic.
     for m in range(0, count - 1, 2):
         for i in range(n):
             first = 0.0
@@ -102,6 +106,7 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
                 scaled[m, r] = mass[r] * first[m, r]
                 for i in range(2):
                     y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled[m, r]
+        # Backwards: a stage depends on the later ones, whose blocks were eliminated after it.
         for a in range(s - 1, 1, -1):
             _back_to(B, a, columns[k], scaled, out[k])
             for m in range(count):
@@ -120,6 +125,7 @@ def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> Non
     """
     s = len(B)
     out[a] = 0.0
+    # The last stage was solved for in `reduce`; only the effect of the start is missing.
     if a == s - 1:
         out[a] = columns[a]
         add_products(B[0, 1], scaled, out[a], 1.0)
