@@ -98,7 +98,6 @@ class PageContents:
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
         """Fills the pictures of a kind of question with its answer `found`."""
-        self.numbers.show(kind, found)
         if kind == "spectrum":
             self.spectrum.show(found)
             self.mode.show(found)
@@ -119,6 +118,7 @@ class PageContents:
         else:
             scales = SCALES[state.tab]
             self.diagram.show(found, scales[state.load], scales[state.second])
+        self.numbers.show(kind, found)
 
     def say(self, kind: str, sentence: str) -> None:
         """Shows a sentence instead of the pictures of a kind of question."""

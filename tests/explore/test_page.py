@@ -162,6 +162,25 @@ def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     assert max(drawn["unstable"]) == int(counts.max())
 
 
+def test_the_reset_button_returns_to_what_was_drawn_last():
+    page = page_with(ImmediateSolvers())
+    axes = page.contents.growth.card.figure.x_range
+    assert (axes.reset_start, axes.reset_end) == (axes.start, axes.end) == (0, 200)
+
+
+def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does_not():
+    page = page_with(ImmediateSolvers(()))
+    run_callbacks(page.document, seconds=True)
+    page.change({"F": "61"})
+    sharing = page.contents.sharing
+    assert "F=61" in sharing.address.tags[0]
+    assert "F: 61" in sharing.yaml.tags[0]
+    assert "61" not in sharing.yaml.text
+    run_callbacks(page.document, seconds=True)
+    assert "F: 61" in sharing.yaml.text
+    assert "F=61" in sharing.address.text
+
+
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
     counts = np.array([[0, 0, 2], [0, 2, 2]])
     found = cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)

@@ -10,7 +10,7 @@ from bokeh.models import Legend, LegendItem, Range1d
 from ...arrays import Array
 from ..scales import ControlScale
 from ..solving.diagrams import CRUSHED, NOT_KNOWN
-from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure
+from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure, show_range
 
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
 """Colours of boundaries; areas have the colours of stable states."""
@@ -115,8 +115,8 @@ class DiagramPicture:
             "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds],
         }
         figure = self.card.figure
-        figure.x_range.update(start=float(x[0]), end=float(x[-1]))
-        figure.y_range.update(start=float(grid[0].bottom), end=float(grid[-1].top))
+        show_range(figure.x_range, float(x[0]), float(x[-1]))
+        show_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = second.label
         self.card.reveal()
