@@ -50,5 +50,5 @@ def not_importable(modules: str, reason: object, extra: str = "solvers") -> Envi
         wheel = "pip install 'rodsweep[solvers]', which compiles PETSc"
         if extra != "solvers":
             wheel = f"pip install 'rodsweep[{extra}]' to read and draw results; to solve, {wheel}"
-        remedy = f"`make install` of a clone brings all modules; with a wheel take Debian's or conda's, or {wheel}"
+        remedy = f"`make install` of a clone brings all; beside a wheel take Debian's or conda's, or {wheel}"
     return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")
