@@ -6,12 +6,14 @@ from html import unescape
 import numpy as np
 import pytest
 from bokeh.document import Document
+from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
 from rodsweep.explore.page import AT_ONCE, STOPPED, Page
-from rodsweep.explore.pictures.diagram import DiagramCell, cells
+from rodsweep.explore.pictures.diagram import DiagramCell, cells, in_words
 from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
 from rodsweep.explore.state import PageState
 from rodsweep.explore.stored import opened
@@ -179,6 +181,16 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
     run_callbacks(page.document, seconds=True)
     assert "F: 61" in sharing.yaml.text
     assert "F=61" in sharing.address.text
+
+
+def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
+    picture = page_with(ImmediateSolvers(())).contents.diagram
+    counts = np.array([[0, 1, 2, NOT_KNOWN, CRUSHED]])
+    assert [in_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
+        "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
+    ]  # fmt: skip
+    (hover,) = picture.card.figure.select(HoverTool)
+    assert [renderer.data_source for renderer in hover.renderers] == [picture.cells]
 
 
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():

@@ -5,7 +5,7 @@ from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import Legend, LegendItem, Range1d
+from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ...arrays import Array
 from ...wording import counted
@@ -72,7 +72,7 @@ class DiagramPicture:
 
     def __init__(self) -> None:
         figure = new_figure(
-            "force F (k3/L^2)", "k2", [("", "@words")], y_axis_type="log",
+            "force F (k3/L^2)", "k2", y_axis_type="log",
             x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
         )  # fmt: skip
         self.cells = empty_source(
@@ -82,10 +82,11 @@ class DiagramPicture:
         self.of_cycles = empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
         self.crossings = empty_source(("x", "y", "colour"), "crossing_source")
         self.point = empty_source(("x", "y"), "point_source")
-        figure.quad(
+        areas = figure.quad(
             left="left", right="right", bottom="bottom", top="top", color="colour", alpha="alpha",
             line_width=0, source=self.cells,
         )  # fmt: skip
+        figure.add_tools(HoverTool(renderers=[areas], tooltips=[("", "@words")]))
         figure.multi_line("x", "y", color="colour", line_width=2, source=self.curves)
         figure.multi_line(
             "x", "y", color="colour", line_dash="dash", line_width=3, source=self.of_cycles
