@@ -51,7 +51,7 @@ class PageContents:
                 ("stop", "stop", "Stop"),
             )
         }
-        self.buttons["stop"].visible = False
+        self.buttons["stop"].update(visible=False, stylesheets=[widgets, sheet("late.css")])
         self.numbers.root.stylesheets = [texts]
         for div in (card.message for card in self.cards):
             div.update(sizing_mode="stretch_width", stylesheets=[texts])

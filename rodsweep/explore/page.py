@@ -20,7 +20,7 @@ from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
 
-STOPPED = "Stopped. A change of the rod starts it again, or the button below."
+STOPPED = "Stopped. A change of the rod starts it again."
 """Sentence in place of a picture whose solve the user has stopped."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
@@ -96,7 +96,7 @@ class Page:
                 self._drop(kind)
                 if kind in OF_TIP:
                     self.contents.beating.let_go()
-                elif kind in WHEN_IDLE:
+                elif kind not in ON_REQUEST:
                     self.contents.say(kind, STOPPED)
         self._show_solving()
 

@@ -291,10 +291,11 @@ def test_the_pictures_of_an_arm_are_in_si_units():
 
 
 def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
-    page = page_with(ImmediateSolvers())
+    page = page_with(ImmediateSolvers(("spectrum", "thresholds", "growth")))
     run_callbacks(page.document, seconds=True)
     page.stop()
-    for picture in (page.contents.branches, page.contents.diagram):
+    contents = page.contents
+    for picture in (contents.branches, contents.diagram, contents.beating):
         assert picture.card.message.text == STOPPED
         assert not picture.card.figure.visible
     assert page.contents.working.text == ""

@@ -14,7 +14,7 @@ WHEN_IDLE = ("branch", "diagram")
 """Kinds of questions that take seconds, and are asked when the page has rested."""
 ON_REQUEST = ("motion", "film", "cycles")
 """Questions that only the user asks; a change of the rod drops them."""
-STOPPABLE = (*WHEN_IDLE, *ON_REQUEST)
+STOPPABLE = ("cycle", *WHEN_IDLE, *ON_REQUEST)
 """Questions that the button "Stop" cancels."""
 OF_TIP = ("bent", "motion")
 """Questions of a drag of the tip; an answer to another place of the tip is not shown."""
