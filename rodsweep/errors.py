@@ -47,8 +47,8 @@ def not_importable(modules: str, reason: object, extra: str = "solvers") -> Envi
     if "binary incompatibility" in str(reason):
         remedy = "compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
     else:
-        remedy = (
-            "`make install` of a clone brings all modules; beside a wheel take Debian's or conda's, or "
-            f"pip install 'rodsweep[{extra}]'{', which compiles PETSc' if extra == 'solvers' else ''}"
-        )
+        wheel = "pip install 'rodsweep[solvers]', which compiles PETSc"
+        if extra != "solvers":
+            wheel = f"pip install 'rodsweep[{extra}]' to read and draw results; to solve, {wheel}"
+        remedy = f"`make install` of a clone brings all; beside a wheel take Debian's or conda's, or {wheel}"
     return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")

@@ -19,6 +19,7 @@ from .solving import solve_here
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport
     from ..verdict.flutter import FlutterRange
+    from .answers.rod_portrait import RodPortrait
 
 EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
 EXCLUSIVE = (
@@ -122,6 +123,26 @@ class Arm(SlenderArm):
     def branch(self, **options: Unpack[OfBranch]) -> Answer:
         """The branches of cycles, stable or not, followed from every Hopf point to their ends."""
         return self._answer("branch", options)
+
+    @in_sentences("arm.portrait(F_max=100)")
+    def portrait(
+        self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
+    ) -> "RodPortrait":
+        """All results for the arm up to `F_max`, in a picture and a paragraph, in SI units.
+
+        Thresholds, criticality, branches of cycles, loads with two stable states, modes at the thresholds,
+        and three cycles. The arm needs no load: a load only decides between pressures and forces. F_max:
+        largest load without dimension, in units of the arm's `load_scale`.
+        """
+        from ..post.rod_portrait.results import DescribedRod
+        from ..tasks.rod_portrait import PortraitRequest
+        from .answers.rod_portrait import portrait_of
+
+        default = {each.name: each.default for each in fields(self)}
+        section = tree_of("thresholds", {"arm": self})["parameters"]["arm"]
+        given = {name: value for name, value in section.items() if value != default[name]}
+        own = DescribedRod(arm=given, load=self.load or LOADS[0])
+        return portrait_of(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:

@@ -33,29 +33,23 @@ def rod_from(
 ) -> "DescribedRod":
     """The rod of the options, each None where it is not given; InputError for options that describe no rod.
 
-    quantities: of an arm, with poisson and segments. An arm gives all parameters and keys of `material` that
-    are not given.
+    quantities: of an arm, with poisson and segments. Parameters given beside an arm replace its own.
     """
     from ..config.axes import DEFAULTS
-    from ..config.material import with_profile_read
     from ..model.arm.arm import SlenderArm
-    from ..model.arm.as_rod import material_of, parameters_of
-    from ..model.arm.quantities import ARM_UNITS
     from ..post.rod_portrait.results import DescribedRod
     from .arm_report import as_options
 
     own = _given(parameters)
     words = _given(material)
-    scales = {}
-    if of_arm := _given(quantities):
-        of_build = {name: words[name] for name in ("law", "section") if name in words}
+    of_arm = _given(quantities)
+    if of_arm:
+        of_arm |= {name: words.pop(name) for name in ("law", "section") if name in words}
         try:
-            arm = SlenderArm(**of_arm, **of_build)
+            SlenderArm(**of_arm)
         except InputError as error:
             raise InputError(as_options(str(error))) from None
-        own = parameters_of(arm) | own
-        words = material_of(arm) | words
-        scales = {name: float(getattr(arm, name)) for name in ARM_UNITS}
+        return DescribedRod(parameters=own, material=_read(words), arm=of_arm)
     for name in REQUIRED:
         if name not in own:
             raise InputError(
@@ -63,8 +57,14 @@ def rod_from(
                 "of an arm, such as --length"
             )
     values = {name: own.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
-    read = with_profile_read({"material": words}, Path())["material"]
-    return DescribedRod(parameters=_given(values), material=read, scales=scales)
+    return DescribedRod(parameters=_given(values), material=_read(words))
+
+
+def _read(material: Mapping[str, Any]) -> Any:
+    """The section `material` of a config, its profile read from the file."""
+    from ..config.material import with_profile_read
+
+    return with_profile_read({"material": dict(material)}, Path())["material"]
 
 
 def _given(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -51,7 +51,7 @@ class PageContents:
                 ("stop", "stop", "Stop"),
             )
         }
-        self.buttons["stop"].visible = False
+        self.buttons["stop"].update(visible=False, stylesheets=[widgets, sheet("late.css")])
         self.numbers.root.stylesheets = [texts]
         for div in (card.message for card in self.cards):
             div.update(sizing_mode="stretch_width", stylesheets=[texts])
@@ -98,7 +98,6 @@ class PageContents:
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
         """Fills the pictures of a kind of question with its answer `found`."""
-        self.numbers.show(kind, found)
         if kind == "spectrum":
             self.spectrum.show(found)
             self.mode.show(found)
@@ -119,6 +118,7 @@ class PageContents:
         else:
             scales = SCALES[state.tab]
             self.diagram.show(found, scales[state.load], scales[state.second])
+        self.numbers.show(kind, found)
 
     def say(self, kind: str, sentence: str) -> None:
         """Shows a sentence instead of the pictures of a kind of question."""

@@ -7,6 +7,7 @@ from typing import Any
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
+from ..post.summary.arm.arm import word
 from .scales import SCALES, ControlScale
 from .state import ACROSS, LAW_NAMES, TABS, PageState
 
@@ -85,7 +86,7 @@ class Controls:
         self.law = choice(title="Law of the material", name="law", options=list(LAW_NAMES.items()))
         self.across = choice(title="Second parameter of the diagram", name="across")
         self.F_max = TextInput(
-            title="Largest force F", name="F_max", sizing_mode="stretch_width", stylesheets=sheets
+            title="Largest force F (k3/L^2)", name="F_max", sizing_mode="stretch_width", stylesheets=sheets
         )
         for key, widget in (("law", self.law), ("across", self.across), ("F_max", self.F_max)):
             widget.on_change("value", partial(self._choice_changed, key))
@@ -101,7 +102,7 @@ class Controls:
             for name, field in self.fields[state.tab].items():
                 field.show(state.values[name])
             self.law.value = state.law
-            self.across.options = list(ACROSS[state.tab])
+            self.across.options = [(name, word(name)) for name in ACROSS[state.tab]]
             self.across.value = state.second
             self.F_max.value = state.F_max
         finally:

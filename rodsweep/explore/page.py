@@ -11,24 +11,16 @@ from ..errors import InputError
 from .contents import PageContents
 from .scales import SCALES
 from .sharing import state_of_text
-from .solving.diagrams import uniform
+from .solving.diagrams import Dataset, uniform
 from .solving.letting_go import Tip
-from .solving.needs import OF_TIP, Needs, needs
+from .solving.needs import AT_ONCE, OF_TIP, ON_REQUEST, STOPPABLE, WHEN_IDLE, Needs, needs
 from .solving.questions import Question, Reply
 from .solving.sign import in_words, sign
 from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
 
-AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
-"""Kinds of questions that are asked after every change."""
-WHEN_IDLE = ("branch", "diagram")
-"""Kinds of questions that take seconds, and are asked after a pause of `IDLE`."""
-ON_REQUEST = ("motion", "film", "cycles")
-"""Questions that only the user asks; a change of the rod drops them."""
-STOPPABLE = (*WHEN_IDLE, *ON_REQUEST)
-"""Questions that the button "Stop" cancels."""
-STOPPED = "Stopped. A change of the rod starts it again, or the button below."
+STOPPED = "Stopped. A change of the rod starts it again."
 """Sentence in place of a picture whose solve the user has stopped."""
 IDLE = 900
 """Milliseconds without a change after which the slow questions are asked."""
@@ -93,6 +85,7 @@ class Page:
             self._drop("diagram")
         self._drop(kind)
         self._ask(kind, tip, is_solved_again=True)
+        self._show_solving()
 
     def stop(self) -> None:
         """Cancels the long solves; a bent arm goes on as before it was bent, and pictures of an earlier rod
@@ -103,18 +96,21 @@ class Page:
                 self._drop(kind)
                 if kind in OF_TIP:
                     self.contents.beating.let_go()
-                elif kind in WHEN_IDLE:
+                elif kind not in ON_REQUEST:
                     self.contents.say(kind, STOPPED)
+        self._show_solving()
 
     def bend(self, tip: Tip) -> None:
         """Bends the arm until the tip is at a place, in L."""
         self._drop("motion")
         self._ask("bent", tip)
+        self._show_solving()
 
     def let_go(self, tip: Tip) -> None:
         """Releases the arm with the tip at a place, in L."""
         self._drop("bent")
         self._ask("motion", tip)
+        self._show_solving()
 
     def _drop(self, kind: str) -> None:
         """Drops a question; an answer that still arrives is ignored."""
@@ -122,7 +118,6 @@ class Page:
         if kind in self.solving:
             self.solving.discard(kind)
             self.solvers.drop(self.session, kind)
-            self._show_solving()
 
     def _connections(self) -> dict[str, Callable[..., None]]:
         return {
@@ -152,6 +147,7 @@ class Page:
             self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
+        self._show_solving()
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
@@ -163,6 +159,7 @@ class Page:
                 self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
                 self.contents.say(kind, sentence)
+        self._show_solving()
 
     def _rest(self) -> None:
         """Schedules the slow questions after the pause `IDLE`; a further change restarts the pause."""
@@ -172,6 +169,7 @@ class Page:
 
     def _rested(self) -> None:
         self._idle = None
+        self.contents.sharing.write()
         for kind in WHEN_IDLE:
             if needs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
@@ -180,10 +178,11 @@ class Page:
                 self.contents.say(kind, "This takes a minute for such an arm: press the button below.")
                 continue
             self._ask(kind)
+        self._show_solving()
 
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
         """Asks a question that is not asked yet. A stored answer is shown instead, unless solved again."""
-        question = Question(kind, self.state, tip)
+        question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
         wanted = needs(question)
         if self.asked.get(kind) == wanted:
             return
@@ -196,12 +195,17 @@ class Page:
             return
         self.solving.add(kind)
         self.progress.pop(kind, None)
-        self._show_solving()
 
         def receive(reply: Reply) -> None:
             self._receive(question, reply)
 
         self.solvers.ask(self.session, question, receive, receive)
+
+    def _cycle_to_film(self, kind: str, tip: Tip | None) -> Dataset | None:
+        """The stored cycle that a film shows; None if the film needs a solve, or for another question."""
+        if kind != "film" or tip is not None or self.stored is None:
+            return None
+        return self.stored.cycle_to_film(self.state)
 
     def _receive(self, question: Question, reply: Reply) -> None:
         """Passes a reply to the document's event loop, because only code there may change the document."""
@@ -221,7 +225,6 @@ class Page:
             return
         if is_newest:
             self.solving.discard(kind)
-            self._show_solving()
         elif kind in OF_TIP:
             return
         if reply.outcome == "answer":
@@ -230,6 +233,7 @@ class Page:
             self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.say(kind, reply.content["sentence"])
+        self._show_solving()
 
     def _show_solving(self) -> None:
         shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)

@@ -8,6 +8,7 @@ from ..errors import InputError
 from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import in_si
+from ..post.summary.arm.arm import word
 from .state import PageState, number, rod_of
 
 
@@ -105,7 +106,7 @@ def _of_rod(
 def _of_arm(
     name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
-    label = f"{name} ({unit})"
+    label = f"{word(name)} ({unit})"
     return ControlScale(
         name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
     )

@@ -46,7 +46,7 @@ class Sharing:
         self.task = Select(
             title="Config of the task", name="task", options=TASKS, value=TASKS[0], stylesheets=[widgets]
         )
-        self.task.on_change("value", lambda attribute, old, new: self._show_yaml())
+        self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
         save.js_on_click(CustomJS(args={"yaml": self.yaml}, code=read("download.js") + SAVE))
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
@@ -68,25 +68,33 @@ class Sharing:
         )  # fmt: skip
 
     def show(self, state: PageState) -> None:
-        """Shows the address, config and Python lines of a state."""
+        """Takes the address, config and Python lines of a state; `write` shows them."""
         self._state = state
-        query = state.address()
-        self.address.tags = [query]
-        self.address.text = f'<a href="?{escape(query)}">This page as an address</a>'
+        self.address.tags = [state.address()]
         self.python.tags = [state.python()]
-        self.python.text = f"<pre>{escape(state.python())}</pre>"
-        self._show_yaml()
+        self.yaml.tags = [self._config()]
+
+    def write(self) -> None:
+        """Writes the texts of the latest state. Each is a new layout of the page, for which pictures that
+        follow a slider must not wait.
+        """
+        self.address.text = f'<a href="?{escape(self.address.tags[0])}">This page as an address</a>'
+        for shown in (self.python, self.yaml):
+            shown.text = f"<pre>{escape(shown.tags[0])}</pre>"
 
     def give_film(self, gif: bytes) -> None:
         """Lets the browser save a film."""
         self.film.tags = [b64encode(gif).decode()]
         self.film.tags = [""]  # a film of half a megabyte need not stay in the page
 
-    def _show_yaml(self) -> None:
+    def _choose_task(self, attribute: str, old: str, new: str) -> None:
+        self.yaml.tags = [self._config()]
+        self.write()
+
+    def _config(self) -> str:
+        """The config of the chosen task."""
         text = self._state.yaml(self.task.value)
-        text += FILM if self.task.value == TASKS[0] else ""
-        self.yaml.tags = [text]
-        self.yaml.text = f"<pre>{escape(text)}</pre>"
+        return text + FILM if self.task.value == TASKS[0] else text
 
     def _take(self, attribute: str, old: str, new: str) -> None:
         self._loaded(b64decode(new).decode(errors="replace"))

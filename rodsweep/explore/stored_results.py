@@ -13,6 +13,7 @@ from ..api.dataset import view_of
 from ..arrays import Array
 from ..model.parameters import PARAMETERS
 from ..post.branch_curves import curves_of
+from ..post.figures.cycle.animation import MIN_SHAPES
 from .scales import SCALES
 from .solving.branches import drawn_branches, straight_pieces
 from .solving.diagrams import Dataset, code_of
@@ -55,6 +56,17 @@ class StoredResults:
         if kind == "branch":
             return self._cycles_over_force(state) if self.has_cycles else self._branch(state)
         return None
+
+    def cycle_to_film(self, state: PageState) -> Dataset | None:
+        """The stored cycle of a rod, with axes of length 1, if it has enough shapes for a film; else None."""
+        numbers = self._points(state)
+        is_other = state.tab != self.state.tab or state.law != self.state.law
+        if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
+            return None
+        places = np.unravel_index(numbers[0], self.data["status"].shape) if self.dims else ()
+        point = self.data.isel({name: [int(i)] for name, i in zip(self.dims, places, strict=True)})
+        is_filmed = _word(point["status"].squeeze()) == "cycle" and point.sizes["shape"] >= MIN_SHAPES
+        return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
         """The stored load, in the unit of its control, that a click at a load means, or the load itself."""

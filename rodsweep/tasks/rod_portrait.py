@@ -47,7 +47,8 @@ class PortraitRequest:
         """Job of a task for this rod, at a force if the task takes a force."""
         names = (*CONFIGS[task].taken_of_a_rod(options), *OPTIONAL_PARAMETERS)
         own = self.rod.parameters
-        values = {name: own[name] for name in names if name in own and name != "F"}
+        values: dict[str, Any] = {name: own[name] for name in names if name in own and name != "F"}
+        values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}
         values |= {} if F is None else {"F": F}
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
         tree |= {"material": dict(self.rod.material)} if self.rod.material else {}

@@ -11,6 +11,7 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.post.rod_portrait.paragraph import paragraph
+from rodsweep.post.rod_portrait.picture import portrait_figure
 from rodsweep.tasks.rod_portrait import cycle_forces
 
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
@@ -45,12 +46,64 @@ def test_thresholds_and_criticality_are_those_of_their_tasks(portrait):
     assert re.findall(r"(supercritical|subcritical)", text) == sides == ["supercritical", "subcritical"]
 
 
-def test_an_arm_has_the_si_values_of_its_units(portrait):
-    scales = {"force_scale": 0.012, "pressure_scale": 155.0, "tau2": 3.5}
-    rod = replace(portrait.results.rod, scales=scales)
-    sentence = "F = 1 stands for 0.012 N, or a pressure of 155 Pa on the face of its tip, and tau2 for 3.5 s."
-    assert sentence in paragraph(replace(portrait.results, rod=rod))
-    assert "stands for" not in portrait.paragraph
+SCALES = {"force_scale": 0.012, "pressure_scale": 155.0, "tau2": 3.5, "length": 0.1}
+"""Units of an arm with the rod `FOLDED`, in SI units."""
+
+
+@pytest.fixture(scope="module")
+def of_arm(portrait):
+    """The results as those of an arm whose length is typed in cm."""
+    view = portrait.results.views["thresholds"]
+    validity = {
+        "model_applies": np.zeros(1),
+        "neglected_effect": np.zeros(1),
+        "neglected_excess": np.zeros(1),
+    }
+    quantities = {name: np.array(value) for name, value in SCALES.items()}
+    as_arm = replace(
+        view, variables={**view.variables, **validity, **quantities}, typed={"length": "cm", "young": "kPa"}
+    )
+    rod = replace(portrait.results.rod, arm={"length": "10 cm"})
+    return replace(portrait.results, rod=rod, views={**portrait.results.views, "thresholds": as_arm})
+
+
+def test_the_paragraph_of_an_arm_is_in_si_units(portrait, of_arm):
+    text = paragraph(of_arm)
+    assert "tau2 for 3.5 s. The model applies." in text
+    again, fold = portrait.thresholds.F_restabilization, portrait.branch.special_points["special_at"].max()
+    found = re.search(r"beside the stable straight arm at a pressure of ([\d.]+) to ([\d.]+\d) kPa", text)
+    assert [float(end) for end in found.groups()] == pytest.approx([0.155 * again, 0.155 * fold], rel=1e-8)
+    frequency = portrait.thresholds.crossings["crossing_frequency"].iloc[1:]
+    assert numbers(text, "(frequency ") == pytest.approx((frequency / (2 * np.pi * 3.5)).tolist(), rel=1e-5)
+    cycle = list(portrait.cycles.values())[0]
+    assert numbers(text, "its period is ")[0] == pytest.approx(3.5 * cycle.period, rel=1e-3)
+    assert numbers(text, "largest y of its tip ")[0] == pytest.approx(10 * cycle.tip_y_max, rel=1e-3)
+    assert "F = " not in text.replace("F = 1 stands for", "")
+
+
+def test_the_picture_of_an_arm_has_round_numbers_of_si_units(of_arm):
+    bar, upper, lower, *small = portrait_figure(of_arm).axes
+    assert (lower.get_xlabel(), upper.get_ylabel()) == ("pressure (kPa)", "largest $y$ of the tip (cm)")
+    for axis, factor in ((lower.xaxis, 0.155), (upper.yaxis, 10.0), (lower.yaxis, 3.5)):
+        texts = [axis.get_major_formatter()(at) for at in axis.get_majorticklocs()]
+        assert [float(text) for text in texts] == pytest.approx(
+            [factor * at for at in axis.get_majorticklocs()]
+        )
+        assert max(len(text.lstrip("-0.")) for text in texts) <= 3
+    assert small[-1].get_xlim()[1] > 10  # cm
+
+
+def test_an_arm_that_bends_first_in_the_other_plane_is_warned():
+    arm = rs.Arm(length="10 cm", width="8 mm", height="9 mm", young="100 kPa", viscosity="12 Pa s")
+    portrait = arm.portrait(F_max=5)
+    assert "the arm flutters first in the other plane, at a lower load" in portrait.paragraph
+    assert "has no threshold up to a pressure of " in portrait.paragraph
+    assert portrait.thresholds.pressure_end == pytest.approx(5 * arm.pressure_scale)
+    with_force = arm.replace(force="1 mN").portrait(F_max=5)
+    assert with_force.paragraph.startswith(
+        "The arm with length 10 cm, width 8 mm, height 9 mm, young 100 kPa, viscosity 12 Pa s was searched "
+        f"up to a force of {5 * arm.force_scale:.6g} N. "
+    )
 
 
 def test_ranges_with_two_states_are_those_of_the_branch(portrait):

@@ -8,6 +8,7 @@ import pytest
 import rodsweep as rs
 from rodsweep.cli.portrait_rod import rod_from, showing
 from rodsweep.errors import InputError
+from rodsweep.post.rod_portrait.results import DescribedRod
 from rodsweep.tasks.rod_portrait import PortraitRequest
 from rodsweep.watch import SolvePosition, report
 
@@ -16,15 +17,24 @@ ROD = {"k1": 1e4, "k2": 100.0, "gamma3": 0.01}
 ARM = {"length": "10 cm", "radius": "5 mm", "tip_radius": "4 mm", "young": "100 kPa", "viscosity": "12 Pa s"}
 
 
-def test_an_arm_is_the_rod_that_it_is_in_python():
+def test_an_arm_is_the_arm_that_it_is_in_python(monkeypatch):
     arm = rs.Arm(**ARM, law="neo_hookean", section="swelling")
     swelling = {"law": "neo_hookean", "section": "swelling", "profile": None}
     found = rod_from({}, ARM, swelling)
-    rod = rs.Rod(arm=arm)
-    assert found.parameters == rod.parameters
-    assert rs.Rod(**found.parameters, **found.material) == rod
-    assert found.scales == {name: getattr(arm, name) for name in ("tau2", "force_scale", "pressure_scale")}
-    assert rod_from({"gamma3": 0.5}, ARM, NO_MATERIAL).parameters["gamma3"] == 0.5
+    assert found == DescribedRod(arm={**ARM, "law": "neo_hookean", "section": "swelling"})
+    described = []
+    monkeypatch.setattr(
+        "rodsweep.api.answers.rod_portrait.portrait_of", lambda *words: described.append(words[1])
+    )
+    arm.portrait()
+    assert points_of(described[0].rod) == points_of(found)
+    assert points_of(rod_from({"gamma3": 0.5}, ARM, NO_MATERIAL))["gamma3"] == 0.5
+
+
+def points_of(rod: DescribedRod) -> dict[str, float]:
+    """Parameters that a task has of a rod at F = 40."""
+    points = PortraitRequest(rod=rod).job("limit_cycle", {}, 40.0).points
+    return {name: float(values[0]) for name, values in points.by_name.items()}
 
 
 def test_an_arm_in_segments_has_the_profile_of_its_config():
@@ -32,7 +42,7 @@ def test_an_arm_in_segments_has_the_profile_of_its_config():
     found = rod_from({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
     build = PortraitRequest(rod=found).job("thresholds", {}).config.build
     assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
-    assert found.words.endswith("a profile along its length")
+    assert found.words == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
 
 
 def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):

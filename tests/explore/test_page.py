@@ -6,12 +6,14 @@ from html import unescape
 import numpy as np
 import pytest
 from bokeh.document import Document
+from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
 from rodsweep.explore.page import AT_ONCE, STOPPED, Page
-from rodsweep.explore.pictures.diagram import DiagramCell, cells
+from rodsweep.explore.pictures.diagram import DiagramCell, cells, in_words
 from rodsweep.explore.pictures.numbers import written
+from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
 from rodsweep.explore.state import PageState
 from rodsweep.explore.stored import opened
@@ -162,6 +164,35 @@ def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     assert max(drawn["unstable"]) == int(counts.max())
 
 
+def test_the_reset_button_returns_to_what_was_drawn_last():
+    page = page_with(ImmediateSolvers())
+    axes = page.contents.growth.card.figure.x_range
+    assert (axes.reset_start, axes.reset_end) == (axes.start, axes.end) == (0, 200)
+
+
+def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does_not():
+    page = page_with(ImmediateSolvers(()))
+    run_callbacks(page.document, seconds=True)
+    page.change({"F": "61"})
+    sharing = page.contents.sharing
+    assert "F=61" in sharing.address.tags[0]
+    assert "F: 61" in sharing.yaml.tags[0]
+    assert "61" not in sharing.yaml.text
+    run_callbacks(page.document, seconds=True)
+    assert "F: 61" in sharing.yaml.text
+    assert "F=61" in sharing.address.text
+
+
+def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
+    picture = page_with(ImmediateSolvers(())).contents.diagram
+    counts = np.array([[0, 1, 2, NOT_KNOWN, CRUSHED]])
+    assert [in_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
+        "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
+    ]  # fmt: skip
+    (hover,) = picture.card.figure.select(HoverTool)
+    assert [renderer.data_source for renderer in hover.renderers] == [picture.cells]
+
+
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
     counts = np.array([[0, 0, 2], [0, 2, 2]])
     found = cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)
@@ -260,10 +291,11 @@ def test_the_pictures_of_an_arm_are_in_si_units():
 
 
 def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
-    page = page_with(ImmediateSolvers())
+    page = page_with(ImmediateSolvers(("spectrum", "thresholds", "growth")))
     run_callbacks(page.document, seconds=True)
     page.stop()
-    for picture in (page.contents.branches, page.contents.diagram):
+    contents = page.contents
+    for picture in (contents.branches, contents.diagram, contents.beating):
         assert picture.card.message.text == STOPPED
         assert not picture.card.figure.visible
     assert page.contents.working.text == ""

@@ -1,7 +1,10 @@
 """The page of a result file: its cycles, branches and curves are drawn, and only the rest is solved."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
+import xarray as xr
 from explore.test_page import ImmediateSolvers, page_with, run_callbacks, shown
 from surveyed import few
 
@@ -10,6 +13,7 @@ from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import TORUS
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.solving.diagrams import code_of
+from rodsweep.explore.solving.questions import answer_to
 from rodsweep.explore.stored import opened, stored_diagram
 from rodsweep.explore.stored_results import StoredResults
 
@@ -27,6 +31,12 @@ class NoSolvers(ImmediateSolvers):
 
     def __init__(self) -> None:
         super().__init__(())
+
+
+class Filmed(NamedTuple):
+    """Stands for a film; image: the cycle that it shows."""
+
+    image: xr.Dataset
 
 
 def opened_page(command, text: str, query: str = "") -> tuple[Page, NoSolvers]:
@@ -54,6 +64,24 @@ def test_stored_cycles_are_drawn_and_not_solved_again(command):
     drawn = page.contents.branches.cycles.data
     assert drawn["F"] == pytest.approx([20, 40, 50])
     assert drawn["y"] == pytest.approx([0, *data["tip_y_max"].sel(F=[40, 50]).values])
+
+
+def test_the_film_of_a_stored_cycle_is_drawn_from_its_stored_shapes(command, monkeypatch):
+    page, solvers = opened_page(command, CYCLES)
+    page.solve("film")
+    question = solvers.questions[-1]
+    stored = rs.open(command.directory / "result.h5").sel(F=[40])
+    assert (question.kind, question.stored["shape_y"].equals(stored["shape_y"])) == ("film", True)
+    monkeypatch.setattr("rodsweep.explore.solving.questions.plot", lambda cycle, what: Filmed(cycle))
+    monkeypatch.setattr(rs.Rod, "cycle", None)  # no solve is needed
+    assert answer_to(question)["gif"] is question.stored
+
+
+@pytest.mark.parametrize(("shapes", "query"), few([(16, "F=41"), (16, "F=20"), (7, "")], 2))
+def test_a_film_that_the_file_does_not_hold_is_solved(command, shapes, query):
+    page, solvers = opened_page(command, CYCLES.replace("16", str(shapes)), query)
+    page.solve("film")
+    assert solvers.questions[-1].stored is None
 
 
 def test_a_click_beside_a_stored_force_shows_its_cycle(command):

@@ -11,7 +11,7 @@ from ...arrays import Array
 from ..look import read
 from ..scales import PictureAxis
 from ..solving.letting_go import Tip
-from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of
+from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of, show_range
 
 SECONDS = 2.0
 """Duration of one period on the screen."""
@@ -121,8 +121,8 @@ class BeatingPicture:
         """Ranges of the picture for shapes, (shapes, nodes), in its unit of length."""
         factor = self.length.factor
         reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
-        self.card.figure.y_range.update(start=-reach, end=reach)
-        self.card.figure.x_range.update(start=min(0.0, float(x.min())) - 0.1 * factor, end=1.1 * factor)
+        show_range(self.card.figure.y_range, -reach, reach)
+        show_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:

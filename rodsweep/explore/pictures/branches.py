@@ -7,7 +7,18 @@ import numpy as np
 from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ..scales import PictureAxis
-from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, vertical_line
+from .card import (
+    NEUTRAL,
+    POINT,
+    STABLE,
+    UNSTABLE,
+    Card,
+    empty_source,
+    limits,
+    new_figure,
+    show_range,
+    vertical_line,
+)
 
 COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
 NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
@@ -70,8 +81,8 @@ class BranchPicture:
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
             margin = SIDES if len(cycles["F"]) else 0.0
-            self.card.figure.x_range.update(**ends(all_F * load.factor, margin))
-            self.card.figure.y_range.update(**ends(all_y * length.factor))
+            show_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
+            show_range(self.card.figure.y_range, *limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]

@@ -5,7 +5,7 @@ from html import escape
 from textwrap import fill
 from typing import Any
 
-from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Span
+from bokeh.models import Column, ColumnDataSource, Div, InlineStyleSheet, Range1d, Span
 from bokeh.plotting import figure
 
 from ...arrays import Array
@@ -32,11 +32,10 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
         height=HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
-    made.toolbar.autohide = True
-    made.toolbar_inner = True
+    made.toolbar.autohide = True  # beside the frame, so that no button covers a place to click
     made.toolbar.logo = None
     made.toolbar.active_drag = None
-    made.min_border_right = 20
+    made.min_border_right = 10
     # The outermost half pixel of a canvas is white even on a dark page, so clip it.
     made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
     made.xaxis.ticker.desired_num_ticks = TICKS
@@ -64,10 +63,9 @@ def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     return low - pad, high + pad
 
 
-def ends(values: Array, margin: float = 0.08) -> dict[str, float]:
-    """`limits` of values, (n,), as the ends of a range."""
-    start, end = limits(values, margin)
-    return {"start": start, "end": end}
+def show_range(axis: Range1d, start: float, end: float) -> None:
+    """Sets the ends of an axis, and the ends to which the reset button of the figure returns."""
+    axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
 def sentence_of(found: dict[str, Any]) -> str:

@@ -5,12 +5,13 @@ from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import Legend, LegendItem, Range1d
+from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ...arrays import Array
+from ...wording import counted
 from ..scales import ControlScale
 from ..solving.diagrams import CRUSHED, NOT_KNOWN
-from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure
+from .card import FOLD, NEUTRAL, POINT, STABLE, TORUS, UNSTABLE, Card, empty_source, new_figure, show_range
 
 BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
 """Colours of boundaries; areas have the colours of stable states."""
@@ -60,25 +61,32 @@ def shade(count: int) -> tuple[str, float]:
     return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DEEPEST) / DEEPEST)
 
 
+def in_words(count: int) -> str:
+    """Words for a number of unstable modes."""
+    special = {0: "stable", CRUSHED: "crushed by the load", NOT_KNOWN: "not searched, or not known"}
+    return special.get(count, counted(count, "unstable mode"))
+
+
 class DiagramPicture:
     """Blue: stable; orange: flutter, the deeper the more modes are unstable; grey: crushed or not known."""
 
     def __init__(self) -> None:
         figure = new_figure(
-            "force F (k3/L^2)", "k2", [("unstable modes", "@unstable")], y_axis_type="log",
+            "force F (k3/L^2)", "k2", y_axis_type="log",
             x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
         )  # fmt: skip
         self.cells = empty_source(
-            ("left", "right", "bottom", "top", "unstable", "colour", "alpha"), "cell_source"
+            ("left", "right", "bottom", "top", "unstable", "words", "colour", "alpha"), "cell_source"
         )
         self.curves = empty_source(("x", "y", "colour"), "curve_source")
         self.of_cycles = empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
         self.crossings = empty_source(("x", "y", "colour"), "crossing_source")
         self.point = empty_source(("x", "y"), "point_source")
-        figure.quad(
+        areas = figure.quad(
             left="left", right="right", bottom="bottom", top="top", color="colour", alpha="alpha",
             line_width=0, source=self.cells,
         )  # fmt: skip
+        figure.add_tools(HoverTool(renderers=[areas], tooltips=[("", "@words")]))
         figure.multi_line("x", "y", color="colour", line_width=2, source=self.curves)
         figure.multi_line(
             "x", "y", color="colour", line_dash="dash", line_width=3, source=self.of_cycles
@@ -105,6 +113,7 @@ class DiagramPicture:
         grid = cells(x, y, found["unstable_count"])
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [shade(cell.unstable) for cell in grid]
+        data["words"] = [in_words(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cells.data = data
         self._show_curves(found)
@@ -115,8 +124,8 @@ class DiagramPicture:
             "colour": [BOUNDARIES.get(kind, STABLE) for kind in kinds],
         }
         figure = self.card.figure
-        figure.x_range.update(start=float(x[0]), end=float(x[-1]))
-        figure.y_range.update(start=float(grid[0].bottom), end=float(grid[-1].top))
+        show_range(figure.x_range, float(x[0]), float(x[-1]))
+        show_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = second.label
         self.card.reveal()

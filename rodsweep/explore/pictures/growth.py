@@ -6,7 +6,18 @@ import numpy as np
 from bokeh.models import HoverTool, Range1d, Span
 
 from ..scales import PictureAxis
-from .card import NEUTRAL, POINT, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, vertical_line
+from .card import (
+    NEUTRAL,
+    POINT,
+    STABLE,
+    UNSTABLE,
+    Card,
+    empty_source,
+    limits,
+    new_figure,
+    show_range,
+    vertical_line,
+)
 from .numbers import IN_SI
 
 NAMED = ("F_onset", "F_hopf", "F_restabilization")
@@ -57,8 +68,8 @@ class GrowthPicture:
         F = found["F"] * load.factor
         self.rates.data = {"F": F, **{name: rates[:, i] for i, name in enumerate(names)}}
         leading = rates[:, 0]
-        self.card.figure.y_range.update(**ends(np.append(leading[np.isfinite(leading)], 0.0)))
-        self.card.figure.x_range.update(start=F[0], end=F[-1])
+        show_range(self.card.figure.y_range, *limits(np.append(leading[np.isfinite(leading)], 0.0)))
+        show_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
         self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"
         self.card.reveal()

@@ -5,7 +5,18 @@ from typing import Any
 import numpy as np
 from bokeh.models import Range1d
 
-from .card import NEUTRAL, STABLE, UNSTABLE, Card, empty_source, ends, new_figure, sentence_of, vertical_line
+from .card import (
+    NEUTRAL,
+    STABLE,
+    UNSTABLE,
+    Card,
+    empty_source,
+    limits,
+    new_figure,
+    sentence_of,
+    show_range,
+    vertical_line,
+)
 from .numbers import IN_SI
 
 
@@ -37,8 +48,8 @@ class SpectrumPicture:
         colours = np.where(growth > 0, UNSTABLE, STABLE)
         self.source.data = {"growth": growth, "frequency": frequency, "colour": colours}
         figure = self.card.figure
-        figure.x_range.update(**ends(np.append(growth, 0.0)))
-        figure.y_range.update(**ends(frequency))
+        show_range(figure.x_range, *limits(np.append(growth, 0.0)))
+        show_range(figure.y_range, *limits(frequency))
         figure.xaxis.axis_label, figure.yaxis.axis_label = (
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
@@ -80,5 +91,5 @@ class ModePicture:
             self.card.say(sentence_of(found))
             return
         self.source.data = {"u": found["u"], "real": real, "imaginary": imaginary}
-        self.card.figure.y_range.update(**ends(np.append(real, imaginary)))
+        show_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
         self.card.reveal()

@@ -1,4 +1,4 @@
-"""What the answer to a question depends on, so that no question is asked twice."""
+"""Kinds of questions by when they are asked, and what an answer depends on, so that none is asked twice."""
 
 from dataclasses import replace
 
@@ -8,6 +8,14 @@ from .questions import Question
 
 Needs = tuple[PageState, Tip | None]
 """What an answer depends on."""
+AT_ONCE = ("spectrum", "cycle", "thresholds", "growth")
+"""Kinds of questions that are asked after every change."""
+WHEN_IDLE = ("branch", "diagram")
+"""Kinds of questions that take seconds, and are asked when the page has rested."""
+ON_REQUEST = ("motion", "film", "cycles")
+"""Questions that only the user asks; a change of the rod drops them."""
+STOPPABLE = ("cycle", *WHEN_IDLE, *ON_REQUEST)
+"""Questions that the button "Stop" cancels."""
 OF_TIP = ("bent", "motion")
 """Questions of a drag of the tip; an answer to another place of the tip is not shown."""
 

@@ -20,7 +20,7 @@ from ...errors import InputError
 from ...post.branch_curves import curves_of
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches, straight_pieces
-from .diagrams import cycle_diagram, diagram, words_of
+from .diagrams import Dataset, cycle_diagram, diagram, words_of
 from .letting_go import Tip, bent, film_of_motion, motion, straight
 
 Found = dict[str, Any]
@@ -40,12 +40,13 @@ class Question:
     """A question of a page.
 
     kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP`, which need the place of the tip, in L.
-    state: state of the page when asked.
+    state: state of the page when asked. stored: a cycle of a result file, of which a film needs no solve.
     """
 
     kind: str
     state: PageState
     tip: Tip | None = None
+    stored: Dataset | None = None
 
 
 class Reply(NamedTuple):
@@ -103,11 +104,16 @@ def cycle(state: PageState) -> Found:
 
 
 def film(state: PageState) -> Found:
-    """gif: the film that `rodsweep plot` makes of the limit cycle; empty for a rod without a cycle."""
+    """gif: the film that `rodsweep plot` makes of the limit cycle; InputError for a rod without a cycle."""
     answer = state.subject().cycle(shapes=SHAPES, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
-    return {"gif": plot(answer, what="animation").image}
+    return film_of(answer)
+
+
+def film_of(cycle: Answer | Dataset) -> Found:
+    """gif: the film of a cycle whose shapes are solved."""
+    return {"gif": plot(cycle, what="animation").image}
 
 
 def branch(state: PageState) -> Found:
@@ -146,6 +152,8 @@ ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], Found]] = {
 
 def answer_to(question: Question) -> Found:
     """The answer to a question; InputError for invalid values."""
+    if question.stored is not None:
+        return film_of(question.stored)
     if question.tip is not None:
         return ANSWERS_TO_TIP[question.kind](question.state, question.tip)
     return ANSWERS[question.kind](question.state)

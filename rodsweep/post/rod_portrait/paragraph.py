@@ -1,31 +1,33 @@
 """The portrait of a rod in words: thresholds, criticality, branches, coexistence, cycles, missing results."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from math import isfinite
 
 import numpy as np
 
 from ...results.file.view import View
+from ...results.layouts.arm import VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
-from ..branch_curves import Range, coexistence_is_decided, count_incomplete_branches, curves_of
+from ..branch_curves import coexistence_is_decided, count_incomplete_branches, curves_of
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
+from ..summary.arm.answer import plane_lines, validity_sentence
 from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
 from ..summary.criticality import SIDES
-from ..summary.ranges import listed, rounded
+from ..summary.ranges import rounded
 from ..summary.thresholds import ended_early
 from .results import RodResults
 
 SAME_FORCE = 1e-6
 """Largest relative distance of a Hopf point of one task from the same Hopf point of another."""
 EVENTS = {
-    "onset": "it starts to oscillate at F = {F}",
-    "hopf": "a pair of modes becomes unstable at F = {F}",
-    "hopf_reverse": "a pair becomes stable at F = {F}, where other modes stay unstable",
-    "restabilization": "it is stable again from F = {F}",
-    "real_again": "it stops oscillating as it decays at F = {F}",
-    "real_leads": "a real eigenvalue takes the lead at F = {F}",
-    "pair_leads": "a complex pair takes the lead at F = {F}",
+    "onset": "it starts to oscillate at {F}",
+    "hopf": "a pair of modes becomes unstable at {F}",
+    "hopf_reverse": "a pair becomes stable at {F}, where other modes stay unstable",
+    "restabilization": "it is stable again from {F}",
+    "real_again": "it stops oscillating as it decays at {F}",
+    "real_leads": "a real eigenvalue takes the lead at {F}",
+    "pair_leads": "a complex pair takes the lead at {F}",
 }
 """Clauses on the straight rod at a threshold, by kind."""
 SEARCHES = ("thresholds", "criticality", "branch")
@@ -49,21 +51,32 @@ def paragraph(results: RodResults) -> str:
 def _rod(results: RodResults) -> Iterator[str]:
     """Yields sentences on the rod, its units in SI and the searched range."""
     end = float(results.views["thresholds"].of_point(0)["F_end"])
-    reached = f"{end:.6g}"
-    wanted = f"{results.F_max:.6g}"
-    searched = f"was searched up to F = {reached}"
+    units = results.units
+    reached = units.force_at(end)
+    wanted = units.force_at(results.F_max)
+    kind = results.rod.kind
+    searched = f"was searched up to {reached}"
     if not isfinite(end):
         searched = "could not be searched"
     elif reached != wanted:
-        searched += f", not to F = {wanted}: beyond it the rod is crushed, or its modes cannot be counted"
-    yield f"The rod with {results.rod.words} {searched}."
-    if scales := results.rod.scales:
-        force = scales["force_scale"]
-        pressure = scales["pressure_scale"]
-        yield (
-            f"F = 1 stands for {force:.6g} N, or a pressure of {pressure:.6g} Pa on the face of its tip, "
-            f"and tau2 for {scales['tau2']:.6g} s."
-        )
+        searched += f", not to {wanted}: beyond it the {kind} is crushed, or its modes cannot be counted"
+    yield f"The {kind} with {results.rod.words} {searched}."
+    if results.rod.arm:
+        yield from _arm(results)
+
+
+def _arm(results: RodResults) -> Iterator[str]:
+    """Yields sentences on an arm: its units, whether the model applies, and the plane of its motion."""
+    view = results.views["thresholds"]
+    quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
+    yield (
+        f"F = 1 stands for {quantities['force_scale']:.6g} N, or a pressure of "
+        f"{quantities['pressure_scale']:.6g} Pa on the face of its tip, and tau2 for "
+        f"{quantities['tau2']:.6g} s."
+    )
+    validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY}
+    sentences = [validity_sentence(validity), *plane_lines(view.quantities)]
+    yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 
 
 def _thresholds(results: RodResults) -> Iterator[str]:
@@ -71,19 +84,22 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     view = results.views["thresholds"]
     v = view.of_point(0)
     places = np.flatnonzero(v["crossing_kind"] > 0)
+    units = results.units
+    end = units.force_at(float(v["F_end"]))
     clauses = []
     for i in places:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        clause = EVENTS[kind].format(F=rounded(v["crossing_F"][i], v["crossing_error"][i]))
+        clause = EVENTS[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
         if frequency := float(v["crossing_frequency"][i]):
-            clause += f" (frequency {frequency:.6g} rad/tau2{_side(results, float(v['crossing_F'][i]))})"
+            clause += f" (frequency {units.frequency_text(frequency)}"
+            clause += f"{_side(results, float(v['crossing_F'][i]))})"
         clauses.append(clause)
     if clauses:
         yield f"Straight, {'; '.join(clauses)}."
     elif v["crossing_count"] == 0:
-        yield f"The straight rod has no threshold up to F = {v['F_end']:.6g}."
+        yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
-        range_ = f" up to F = {v['F_end']:.6g}" if ended_early(view).all() else ""
+        range_ = f" up to {end}" if ended_early(view).all() else ""
         proof = "proved complete" if v["certified"] else "not proved complete"
         yield f"This list of thresholds{range_} is {proof}."
 
@@ -99,7 +115,7 @@ def _side(results: RodResults, F: float) -> str:
     if not sides.size:
         return ""
     a = float(v["amplitude_coefficient"][same][0])
-    return f"; {SIDES[int(sides[0])]}, its cycles are at F {'above' if a > 0 else 'below'} it"
+    return f"; {SIDES[int(sides[0])]}, its cycles are {'above' if a > 0 else 'below'} it"
 
 
 def _branches(results: RodResults) -> Iterator[str]:
@@ -117,11 +133,12 @@ def _branches(results: RodResults) -> Iterator[str]:
     if not curves:
         yield "No branch of cycles begins at a Hopf point in this range."
         return
+    units = results.units
     cycles = sum(int(curve.cycles.sum()) for curve in curves)
     special = [
-        f"{counted(len(at), word)} at F = {', '.join(at)}"
+        f"{counted(len(at), word)} at {units.at(', '.join(at))}"
         for kind, word in SPECIAL_WORDS.items()
-        if (at := _special(view, kind))
+        if (at := _special(view, kind, units.force.factor))
     ]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
     verb = "begins" if len(curves) == 1 else "begin"
@@ -131,28 +148,30 @@ def _branches(results: RodResults) -> Iterator[str]:
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
     no_cycle = "none" if is_decided and not hidden else "none is known"
-    yield f"Stable cycles: {f'F = {listed(stable, errors)}' if stable else no_cycle}."
+    yield f"Stable cycles: {units.forces_at(stable, errors) if stable else no_cycle}."
     if not hidden:
-        yield _beside(coexistence(view, 0), coexistence_is_decided(view, 0), errors)
+        beside = coexistence(view, 0)
+        ranges = units.forces_at(beside, errors) if beside else ""
+        yield _beside(ranges, coexistence_is_decided(view, 0), results.rod.kind)
         if pairs := two_cycles(view, 0):
-            yield f"Two different cycles are stable at F = {listed(pairs, errors)}."
+            yield f"Two different cycles are stable at {units.forces_at(pairs, errors)}."
 
 
-def _beside(ranges: Sequence[Range], is_decided: bool, errors: Mapping[float, float]) -> str:
-    """Sentence on the ranges with a stable cycle and a stable straight rod. is_decided: whether all
-    stabilities are known. errors: of the ends of ranges, by their positions.
+def _beside(ranges: str, is_decided: bool, kind: str) -> str:
+    """Sentence on the loads with a stable cycle and a stable straight rod, empty without. is_decided: whether
+    all stabilities are known. kind: rod or arm.
     """
     if ranges:
-        return f"A stable cycle exists beside the stable straight rod at F = {listed(ranges, errors)}."
+        return f"A stable cycle exists beside the stable straight {kind} at {ranges}."
     if is_decided:
-        return "On these branches no stable cycle exists beside the stable straight rod."
-    return "It is not known whether a stable cycle exists beside the stable straight rod."
+        return f"On these branches no stable cycle exists beside the stable straight {kind}."
+    return f"It is not known whether a stable cycle exists beside the stable straight {kind}."
 
 
-def _special(view: View, kind: str) -> list[str]:
-    """Forces of the special points of a kind, each point once."""
+def _special(view: View, kind: str, factor: float) -> list[str]:
+    """Loads at the special points of a kind, each point once. factor: the load at F = 1."""
     found = {
-        rounded(special.at, special.error): None
+        rounded(factor * special.at, factor * special.error): None
         for curve in curves_of(view, 0)
         for special in curve.special
         if special.kind == kind
@@ -162,20 +181,24 @@ def _special(view: View, kind: str) -> list[str]:
 
 def _cycles(results: RodResults) -> Iterator[str]:
     """Yields a sentence on the cycles that are drawn, and on forces at which none was found."""
+    units = results.units
     clauses = []
     for F, view in results.cycles:
         v = view.of_point(0)
         word = str(outcomes(view)[0])
         if word not in CYCLE_WORDS:
-            clauses.append(f"at F = {F:.6g} no cycle is drawn ({word.replace('_', ' ')})")
+            clauses.append(f"at {units.force_at(F)} no cycle is drawn ({word.replace('_', ' ')})")
             continue
         period, y = (
-            rounded(float(v[name]), float(v[name] * v[error]))
-            for name, error in (("period", "period_error"), ("tip_y_max", "amplitude_error"))
+            unit.text(float(v[name]), float(v[name] * v[error]))
+            for name, error, unit in (
+                ("period", "period_error", units.time),
+                ("tip_y_max", "amplitude_error", units.length),
+            )
         )
         unstable = ", unstable," if word == "unstable" else ""
         clauses.append(
-            f"at F = {F:.6g}{unstable} its period is {period} tau2 and the largest y of its tip {y} L"
+            f"at {units.force_at(F)}{unstable} its period is {period} and the largest y of its tip {y}"
         )
     if clauses:
         yield f"Beating, {'; '.join(clauses)}."

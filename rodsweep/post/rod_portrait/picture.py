@@ -18,9 +18,9 @@ from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, clamp, force_ar
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
 from ..summary.branch import coexistence, two_cycles
-from ..summary.ranges import rounded
 from .paragraph import paragraph, status_meaning
 from .results import RodResults
+from .units import label_in
 
 SIZE = (10.0, 10.4)
 """Width and height of the picture, in inches."""
@@ -40,8 +40,6 @@ CYCLE_WORD = "cycle drawn below"
 FAINT_PART = 1e-3
 """Fraction of a mode below which its imaginary part is not drawn: at a double eigenvalue half of the digits
 are rounding errors."""
-MODE_TITLES = {"onset": r"mode at ${symbol}_* = {F}$", "hopf": r"mode at ${symbol}_{{**}} = {F}$"}
-"""Titles of the panels of modes, by the kind of their threshold."""
 
 
 def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
@@ -57,7 +55,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         bar = figure.add_subplot(grid[0, :])
         upper = figure.add_subplot(grid[1, :], sharex=bar)
         lower = figure.add_subplot(grid[2, :], sharex=bar)
-        handles = _draw_thresholds(bar, results.views["thresholds"])
+        handles = _draw_thresholds(bar, results)
         handles += _draw_branches(upper, lower, results)
         for place, kind in enumerate(modes):
             _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
@@ -70,8 +68,9 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         return figure
 
 
-def _draw_thresholds(axes: Axes, view: View) -> list[Artist]:
+def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     """Draws the behaviour of the straight rod along F, with its thresholds; returns legend entries."""
+    view = results.views["thresholds"]
     v = view.of_point(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
     axes.spines["left"].set_visible(False)
@@ -82,7 +81,9 @@ def _draw_thresholds(axes: Axes, view: View) -> list[Artist]:
         return []
     axes.set_xlim(0, float(v["F_end"]))
     seen = draw_class_bar(axes, view, 0, upright=False)
-    return [*class_entries(seen), *mark_thresholds_on_bars(axes, view, upright=False)]
+    force = results.units.force
+    marks = mark_thresholds_on_bars(axes, view, upright=False, unit=force.name, factor=force.factor)
+    return [*class_entries(seen), *marks]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
@@ -107,8 +108,12 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
             handles += bands[:1]
     handles += _mark_cycles(upper, lower, results)
     upper.tick_params(labelbottom=False)
-    upper.set_ylabel("largest $y/L$ of the tip")
-    lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS["F"], yscale="log")
+    units = results.units
+    force, y, period = units.labels
+    upper.set_ylabel(y)
+    lower.set(ylabel=period, xlabel=force, yscale="log")
+    for axis, unit in ((lower.xaxis, units.force), (lower.yaxis, units.time), (upper.yaxis, units.length)):
+        label_in(axis, unit)
     return handles
 
 
@@ -136,7 +141,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
         return
     F, view = results.modes[kind]
     v = view.of_point(0)
-    axes.set_title(MODE_TITLES[kind].format(symbol=style.SYMBOLS["F"], F=f"{F:.6g}"))
+    axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
         word = view.flags[int(v["status"])]
         _say(axes, f"no mode: {status_meaning(view, word)}", PANEL_WIDTH)
@@ -158,23 +163,26 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_WIDTH)
         return
     drawn = [view.of_point(0) for _, view in results.cycles if _is_cycle(view)]
+    units = results.units
+    length = units.length.factor
     reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
         v = view.of_point(0)
-        force = rf"${style.SYMBOLS['F']} = {F:.6g}$"
+        force = units.force_title(F)
         if not _is_cycle(view):
             axes.set_title(force)
             _say(axes, f"no cycle: {status_meaning(view, str(outcomes(view)[0]))}", PANEL_WIDTH)
             continue
         shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(v["shape_x"])))
-        clamp(axes, 1.0)
+        clamp(axes, length)
         for x, y, theta, shade in zip(v["shape_x"], v["shape_y"], v["shape_theta"], shades, strict=True):
-            axes.plot(x, y, color=shade, lw=1.3)
-            force_arrow(axes, x, y, theta, shade, 1.0)
-        period = rounded(float(v["period"]), float(v["period"] * v["period_error"]))
-        axes.set_title(rf"{force}" + "\n" + rf"$T = {period}\,\tau_2$")
-        axes.set(xlim=(-0.1, 1 + ARROW_LENGTH), ylim=(-reach, reach), aspect="equal")
-        axes.set(xlabel="$x/L$", ylabel="$y/L$" if axes is panels[0] else "")
+            axes.plot(length * x, length * y, color=shade, lw=1.3)
+            force_arrow(axes, length * x, length * y, theta, shade, length)
+        period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
+        axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
+        ends = length * np.array([-0.1, 1 + ARROW_LENGTH])
+        axes.set(xlim=ends, ylim=(-length * reach, length * reach), aspect="equal")
+        axes.set(xlabel=units.along("x"), ylabel=units.along("y") if axes is panels[0] else "")
         axes.tick_params(labelleft=axes is panels[0])
 
 

@@ -5,24 +5,33 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ...results.file.view import View
+from .units import PortraitUnits, units_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DescribedRod:
     """A rod as a user describes it.
 
-    parameters: values by name. material: section `material` of a config, empty for a uniform rod of linear
-    material. scales: SI values of the units of the rod, `ARM_UNITS`, by name; empty for a rod without.
+    parameters: values by name; of an arm those that replace the arm's own. material: section `material` of
+    a config, empty for a uniform rod of linear material. arm: section `parameters.arm` of a config without
+    load, empty for a rod. load: the load of the arm, "pressure" or "force".
     """
 
-    parameters: Mapping[str, float]
+    parameters: Mapping[str, float] = field(default_factory=dict)
     material: Mapping[str, Any] = field(default_factory=dict)
-    scales: Mapping[str, float] = field(default_factory=dict)
+    arm: Mapping[str, Any] = field(default_factory=dict)
+    load: str = "pressure"
+
+    @property
+    def kind(self) -> str:
+        """The word for it in a sentence."""
+        return "arm" if self.arm else "rod"
 
     @property
     def words(self) -> str:
-        """The parameters but F, and the material."""
-        words = [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
+        """The quantities of an arm, the parameters but F, and the material."""
+        words = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
+        words += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
         words += [f"{name} {self.material[name]}" for name in ("law", "section") if name in self.material]
         words += ["a profile along its length"] if "profile" in self.material else []
         return ", ".join(words)
@@ -45,6 +54,19 @@ class RodResults:
     missing: Mapping[str, str]
 
     @property
+    def units(self) -> PortraitUnits:
+        """Units of the portrait, chosen for the largest force of the search."""
+        view = self.views["thresholds"]
+        return units_of(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
+
+    @property
     def branch(self) -> View | None:
         """Branches of cycles; None if they are missing."""
         return self.views.get("branch")
+
+
+def _quantity(value: Any) -> str:
+    """A quantity of an arm as the user wrote it; segments from base to tip."""
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        return str(value)
+    return " | ".join(map(str, value))

@@ -144,8 +144,13 @@ def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
     return {word for *_, word in pieces}
 
 
-def mark_thresholds_on_bars(axes: Axes, view: View, upright: bool) -> list[Line2D]:
-    """Marks the thresholds; returns legend entries, for a single rod with the forces."""
+def mark_thresholds_on_bars(
+    axes: Axes, view: View, upright: bool, unit: str = "", factor: float = 1.0
+) -> list[Line2D]:
+    """Marks the thresholds; returns legend entries, for a single rod with the forces.
+
+    unit: of the loads in the entries, empty for F of a rod. factor: the load in this unit at F = 1.
+    """
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
     chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != FURTHER_HOPF}
@@ -158,7 +163,10 @@ def mark_thresholds_on_bars(axes: Axes, view: View, upright: bool) -> list[Line2
         force = F[rods, places]
         x, y = (rods + 1, force) if upright else (force, rods)
         name = plural(word) if kind == FURTHER_HOPF and rods.size > 1 else word
-        label = name if upright else f"{name} = " + ", ".join(f"{at:#.{THRESHOLD_DIGITS}g}" for at in force)
+        if unit:
+            name = name.partition(" $")[0]
+        loads = ", ".join(f"{factor * at:#.{THRESHOLD_DIGITS}g}" for at in force)
+        label = name if upright else f"{name} = {loads} {unit}".rstrip()
         handles += axes.plot(
             x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
         )

@@ -1,0 +1,137 @@
+"""Units of a portrait: without dimension for a rod, SI units with prefixes for an arm."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import tau
+
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, Locator, LogLocator, MaxNLocator, NullFormatter
+
+from ...model.arm.quantities import SCALE_OF
+from ...results.file.view import View
+from ..branch_curves import Range
+from ..figures import style
+from ..summary.arm.arm import own_unit
+from ..summary.ranges import listed, rounded
+
+THRESHOLDS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
+"""Index of the symbol of a threshold, and its word, by kind."""
+TICK_SPACES = 8
+"""Largest number of spaces between labels of a linear axis."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unit:
+    """A unit. factor: value in this unit of a quantity whose dimensionless value is 1."""
+
+    name: str
+    factor: float = 1.0
+
+    def text(self, value: float, error: float) -> str:
+        """A value with its unit. value and absolute error: dimensionless."""
+        return f"{rounded(self.factor * value, self.factor * error)} {self.name}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PortraitUnits:
+    """Units of the portrait of a rod or an arm. load: name of an arm's load, empty for F of a rod."""
+
+    force: Unit
+    length: Unit
+    time: Unit
+    frequency: Unit
+    load: str = ""
+
+    def along(self, axis: str) -> str:
+        """Label of the x or the y of shapes."""
+        return f"${axis}$ ({self.length.name})" if self.load else f"${axis}/L$"
+
+    def at(self, text: str) -> str:
+        """A load, or several, whose number in the portrait's unit is given as text."""
+        return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
+
+    def force_at(self, F: float, error: float = 0.0) -> str:
+        """The load at a force, with the digits that its absolute error allows."""
+        return self.at(rounded(self.force.factor * F, self.force.factor * error))
+
+    def forces_at(self, ranges: Sequence[Range], errors: Mapping[float, float]) -> str:
+        """Loads of ranges of the force. errors: absolute errors of ends of ranges, by end."""
+        factor = self.force.factor
+        own = [(factor * low, factor * high) for low, high in ranges]
+        return self.at(listed(own, {factor * end: factor * error for end, error in errors.items()}))
+
+    def frequency_text(self, omega: float) -> str:
+        """An angular frequency in 1/tau2 as text; of an arm the frequency in Hz."""
+        return f"{self.frequency.factor * omega:.6g} {self.frequency.name}"
+
+    @property
+    def labels(self) -> tuple[str, str, str]:
+        """Labels of the axes of the load, the largest y of the tip, and the period."""
+        if not self.load:
+            return style.LABELS["F"], "largest $y/L$ of the tip", r"period$/\tau_2$"
+        length, time = self.length.name, self.time.name
+        return f"{self.load} ({self.force.name})", f"largest $y$ of the tip ({length})", f"period ({time})"
+
+    def mode_title(self, kind: str, F: float) -> str:
+        """Title of the panel of the mode at the threshold of a kind."""
+        symbol, word = THRESHOLDS[kind]
+        if self.load:
+            return f"mode at {word},\n{self.force_title(F)}"
+        return rf"mode at ${style.SYMBOLS['F']}_{{{symbol}}} = {F:.6g}$"
+
+    def force_title(self, F: float) -> str:
+        """The load at a force as the title of a panel."""
+        text = f"{self.force.factor * F:.6g}"
+        return f"{text} {self.force.name}" if self.load else rf"${style.SYMBOLS['F']} = {text}$"
+
+
+ROD_UNITS = PortraitUnits(
+    force=Unit(name=""), length=Unit(name="L"), time=Unit(name="tau2"), frequency=Unit(name="rad/tau2")
+)
+"""Units of a rod: forces in k3/L^2."""
+
+
+def units_of(view: View, load: str, largest: float) -> PortraitUnits:
+    """Units for the thresholds of an arm or a rod. load: of an arm. largest: largest force F."""
+    if not view.quantities:
+        return ROD_UNITS
+    force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_OF[load], "length", "tau2"))
+    units = [
+        Unit(name=name, factor=scale * factor)
+        for scale, (factor, name) in (
+            (force, own_unit(view, "N" if load == "force" else "Pa", force * largest)),
+            (length, own_unit(view, "m", length)),
+            (tau2, own_unit(view, "s", tau2)),
+        )
+    ]
+    hertz = Unit(name="Hz", factor=1 / (tau * tau2))
+    return PortraitUnits(force=units[0], length=units[1], time=units[2], frequency=hertz, load=load)
+
+
+def label_in(axis: Axis, unit: Unit) -> None:
+    """Labels an axis of dimensionless values with values in a unit, at round numbers of the unit."""
+    if unit.factor == 1:
+        return
+    inner: Locator = MaxNLocator(TICK_SPACES, steps=[1, 2, 5, 10])
+    if axis.get_scale() == "log":
+        inner = LogLocator(subs=(1.0, 2.0, 5.0))
+    axis.set_major_locator(ScaledLocator(inner, unit.factor))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * unit.factor:.6g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+class ScaledLocator(Locator):
+    """Ticks at the places of an inner locator for values that are multiplied by a factor."""
+
+    def __init__(self, inner: Locator, factor: float):
+        self.inner = inner
+        self.factor = factor
+
+    def __call__(self) -> Sequence[float]:
+        """Ticks in the range in view."""
+        assert self.axis is not None
+        return self.tick_values(*self.axis.get_view_interval())
+
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+        """Ticks between two values."""
+        return [at / self.factor for at in self.inner.tick_values(vmin * self.factor, vmax * self.factor)]
