@@ -185,7 +185,7 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
             growth = (there.reach - here.reach) / ahead
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
-            # The reaches leave a gap: place the next node closer, within the reach of the present node at last.
+            # The reaches leave a gap: place the next node closer, at last within the reach of the present one.
             nearer = min(_stride(here.reach, growth), 0.9 * ahead)
             ahead = nearer if nearer > here.reach else min(0.99 * here.reach, ahead / 2)
         total += _turn(here, there)
@@ -195,7 +195,7 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
 
 
 def _stride(reach: float, growth: float) -> float:
-    """Distance at which the reaches of two nodes just overlap, if the reach grows by `growth` per distance."""
+    """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
     return 2 * OVERLAP * reach / (1 - OVERLAP * min(max(growth, -1.0), LARGEST_GROWTH))
 
 
