@@ -185,7 +185,7 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
             growth = (there.reach - here.reach) / ahead
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
-            # The reaches leave a gap: place the next node closer, at last within the reach of the present one.
+            # The reaches leave a gap: place the next node closer, at last within the present one's reach.
             nearer = min(_stride(here.reach, growth), 0.9 * ahead)
             ahead = nearer if nearer > here.reach else min(0.99 * here.reach, ahead / 2)
         total += _turn(here, there)
