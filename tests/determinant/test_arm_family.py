@@ -47,6 +47,23 @@ def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, see
                 assert abs(here.D_p * scale - slope) < 1e-5 * (abs(slope) + abs(own.D / p))
 
 
+def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
+    """Equal steps would need an interval of a tenth of the length."""
+    rod = Rod(F=0.0, k1=20.0, k2=200.0, gamma3=1e-2, taper=0.9, build=Build("neo_hookean", "fixed"))
+    path = Path(rod, "F")
+    family = family_of(path, 0.0, 60.0, 4.0**5)
+    assert family is not None
+    assert family.scale < np.inf
+    for p in (0.0, 0.3, 7.0, 31.0, 60.0):
+        own = ArmDeterminant(path.at(p))
+        for w in (-3.0 + 0j, 60j, -300 + 70j):
+            here, value = along(family, w, p), own.value(w)
+            assert abs(here.D * np.exp(here.S - value.S) - value.D) < 1e-13 + 20 * value.noise
+            if 0 < p < 60:
+                slope = ArmAlongPath(path).derivative(w, p, value.S)
+                assert here.D_p * np.exp(here.S - value.S) == pytest.approx(slope, rel=1e-5, abs=1e-8)
+
+
 def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
     family = family_of(path, 10.0, 20.0, 4.0**5)

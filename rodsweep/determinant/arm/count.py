@@ -47,7 +47,7 @@ CLEARANCE = 0.9
 """Largest allowed change of f, in units of |D|."""
 ROUNDING_OF_ARM_D = 100.0
 """Bound of the rounding error of D, in units of its noise; a node needs a larger |D|."""
-FIRST_RADIUS, SMALLEST_RADIUS, LARGEST_RADIUS = 3.0, 0.75, 48.0
+FIRST_RADIUS, SMALLEST_RADIUS, LARGEST_RADIUS = 12.0, 0.75, 48.0
 """Radii of circles to try, in units of the length over which D changes: the first at the first node of a
 side, and the smallest and largest at any node. Every trial halves the radius."""
 STEEPEST = 1.0
@@ -62,8 +62,10 @@ LEVELS_ABOVE = 1
 elements of their own."""
 MAX_NODES = 5000
 """Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
-STRIDE = 1.9
-"""First trial distance to the next node, in units of the reach of the present node."""
+OVERLAP = 0.95
+"""Distance of two nodes in units of the sum of their expected reaches."""
+LARGEST_GROWTH = 0.5
+"""Largest expected growth of the reach per distance: the next node is 3.6 reaches ahead at most."""
 GIVEN_UP = 0.2
 """A circle is given up for the next smaller one once its reach is below this fraction of its radius: the
 smaller one may reach 0.27 of the radius."""
@@ -169,24 +171,32 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
     t = 0.0
     total = 0.0
     nodes = 1
+    growth = 0.0  # change of the reach per distance
     here = node_at(start, divided)
     while t < length:
         if not here.reach > SMALLEST_ARM_REACH * abs(here.w) or nodes > MAX_NODES:
             raise PhaseLost(nodes)
-        ahead = min(STRIDE * here.reach, length - t)
+        ahead = min(_stride(here.reach, growth), length - t)
         radius = min(2 * here.radius, LARGEST_RADIUS) if here.radius > 0 else FIRST_RADIUS
         while True:
             w = end if ahead == length - t else start + direction * (t + ahead)
             there = node_at(w, divided, radius)
             nodes += 1
+            growth = (there.reach - here.reach) / ahead
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
-            # The reaches leave a gap: place the next node within the reach of the present node.
-            ahead = 0.99 * here.reach if ahead > here.reach else ahead / 2
+            # The reaches leave a gap: place the next node closer, at last within the present one's reach.
+            nearer = min(_stride(here.reach, growth), 0.9 * ahead)
+            ahead = nearer if nearer > here.reach else min(0.99 * here.reach, ahead / 2)
         total += _turn(here, there)
         t = length if there.w == end else t + ahead
         here = there
     return total, nodes
+
+
+def _stride(reach: float, growth: float) -> float:
+    """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
+    return 2 * OVERLAP * reach / (1 - OVERLAP * min(max(growth, -1.0), LARGEST_GROWTH))
 
 
 def _turn(here: PhaseNode, there: PhaseNode) -> float:
