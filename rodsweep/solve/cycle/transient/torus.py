@@ -40,6 +40,10 @@ class TorusTestSettings:
     angle_tolerance: float = 0.3
     """Largest difference between torus and cycle in the angle per return, rad. It vanishes where the torus is
     born; 0.18 was seen far from there."""
+    trials_per_width: int = 4
+    """Angles tried over the width of the minimum for one harmonic, before the best one is refined."""
+    angle_share: float = 1e-4
+    """Tolerance of the angle, in units of the width of its minimum."""
     period_tolerance: float = 0.1
     """Largest relative difference between torus and cycle in the mean return time; it vanishes where the
     torus is born, too."""
@@ -135,14 +139,18 @@ def fitted_angle(returns: Array, angle: float) -> float:
     tried = np.linspace(
         angle - TORUS_TEST.angle_tolerance,
         angle + TORUS_TEST.angle_tolerance,
-        int(4 * TORUS_TEST.angle_tolerance * len(returns)) + 1,
+        int(TORUS_TEST.trials_per_width * TORUS_TEST.angle_tolerance * len(returns)) + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
     for harmonics in range(1, TORUS_TEST.harmonics + 1):
         reach = np.pi / (len(returns) * harmonics)
         bounds = (best - reach, best + reach)
         found = minimize_scalar(
-            residual, bounds=bounds, args=(harmonics,), method="bounded", options={"xatol": 1e-4 * reach}
+            residual,
+            bounds=bounds,
+            args=(harmonics,),
+            method="bounded",
+            options={"xatol": TORUS_TEST.angle_share * reach},
         )
         best = float(found.x)
     return best
