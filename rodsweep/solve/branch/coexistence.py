@@ -41,7 +41,8 @@ class CoexistenceStatus(PointStatus):
     branches_stopped = (
         6,
         "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: the "
-        "stable states are undecided where no stable cycle is known; the message says where the branch stopped",
+        "stable states are undecided where no stable cycle is known; the message says where the branch "
+        "stopped",
     )
     special_undecided = (
         7,
