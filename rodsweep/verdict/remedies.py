@@ -20,12 +20,12 @@ def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
     says = [
-        f"The model does not apply{at}: {first.name} is {times_the_limit(first)} what the model allows; {remedy}."
+        f"The model does not apply{at}: {first.name} is {as_multiple(first)} what the model allows; {remedy}."
     ]
     for effect in others:
         name = effect.name.capitalize()
         says.append(
-            f"{name} is {times_the_limit(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
+            f"{name} is {as_multiple(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
         )
     return says
 
@@ -40,7 +40,7 @@ def kind_of(effect: Effect) -> str:
     return effect.name.split()[0]
 
 
-def times_the_limit(effect: Effect) -> str:
+def as_multiple(effect: Effect) -> str:
     """Ratio of an effect to its limit, in words."""
     excess = float(effect.excess)
     return f"{float(f'{excess:.2g}'):g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"

@@ -110,6 +110,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
 def _hermite_weights(x: float) -> tuple[float, float, float, float]:
     """Weights of two values and two slopes, at 0 and 1, in the value at x of the cubic through these data."""
     rest = 1 - x
+    # Cubic Hermite basis on [0, 1].
     return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
 
 

@@ -121,6 +121,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
         return None
     basis = fourier(best * numbers, TORUS_TEST.harmonics)
+    # Fitted on the first half, tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], fitted, rcond=None)[0]
     return Modulation(best, float(np.linalg.norm(later - basis[half:] @ series)) / size)
 
