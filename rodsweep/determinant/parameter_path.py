@@ -73,6 +73,7 @@ class Path:
 
     def value(self, p: float, error: float) -> tuple[float, float]:
         """(value of the parameter, error of the value) for p and the error of p."""
+        # k = 1/p, so dk = dp/p^2.
         return self.parameter.value(p), error / p**2 if self.inverse else error
 
     def at(self, p: float) -> Rod:
@@ -97,6 +98,7 @@ def changes(coefficients: Coefficients, direction: Coefficients) -> Changes:
     F, nu, c2, gamma3 = coefficients
     F1, nu1, c21, gamma31 = direction
     g = nu + F * c2
+    # Product rule; the second derivatives below are constants, because the coefficients are linear in p.
     g1 = nu1 + F1 * c2 + F * c21
     return Changes(
         c21 + gamma31,

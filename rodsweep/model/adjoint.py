@@ -50,6 +50,7 @@ def slaving_layer(rod: Rod) -> float:
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     square = rod.g * rod.nu / rod.c2
+    # For imaginary kappa tanh becomes tan; the series joins both.
     if abs(square) < SERIES_BELOW:
         return 1 - square / 3 + 2 * square**2 / 15
     kappa = sqrt(abs(square))

@@ -41,6 +41,7 @@ class Algebra(NamedTuple):
 
 def algebra(size: int, terms: list[Term]) -> Algebra:
     """The algebra of `size` components whose nonzero structure constants are `terms`."""
+    # Which blocks of the Jacobian can be nonzero for any E: loops skip the others.
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
     forward, backward = (

@@ -34,6 +34,7 @@ def ad(E: Values, V: Values) -> Values:
     """ad_E V of two elements of se(2) or se(3), (3, ...) or (6, ...)."""
     out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
+        # With an output argument that is a view also for single elements, which out[a] alone is not.
         (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
     return out
 
@@ -42,6 +43,7 @@ def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma of an element E of the algebra and an element Sigma of the dual, (3, ...) or (6, ...)."""
     out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
+        # Minus the transpose of `ad`: work of the stress is invariant under rigid motions.
         (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c, ...])
     return out
 

@@ -85,9 +85,12 @@ def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Arra
     square = c2 * gamma3
     K = top * FRACTIONS
     with np.errstate(all="ignore"):
+        # Growth rates as functions of K = q^2: waves with K < F g grow.
         drive = K * (top - K)
         linear = (c2 + gamma3) * K + relaxation
         spread = np.sqrt(linear**2 + 4 * square * drive)
+        # The root of square r^2 + linear r = drive; each formula is free of cancellation for one sign of
+        # `linear`.
         slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)
         rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)
     return K, np.where(rates > 0, rates, 0.0)

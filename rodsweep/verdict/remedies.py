@@ -19,16 +19,18 @@ def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
     first, *others = _one_of_a_kind(assessment.those(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
-    says = [f"The model does not apply{at}: {first.name} is {times(first)} what the model allows; {remedy}."]
+    says = [
+        f"The model does not apply{at}: {first.name} is {as_multiple(first)} what the model allows; {remedy}."
+    ]
     for effect in others:
         name = effect.name.capitalize()
         says.append(
-            f"{name} is {times(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
+            f"{name} is {as_multiple(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
         )
     return says
 
 
-def words_of(effects: Iterable[Effect]) -> str:
+def kinds_in_words(effects: Iterable[Effect]) -> str:
     """Kinds of neglected effects, joined by "and"."""
     return " and ".join(dict.fromkeys(map(kind_of, effects)))
 
@@ -38,7 +40,7 @@ def kind_of(effect: Effect) -> str:
     return effect.name.split()[0]
 
 
-def times(effect: Effect) -> str:
+def as_multiple(effect: Effect) -> str:
     """Ratio of an effect to its limit, in words."""
     excess = float(effect.excess)
     return f"{float(f'{excess:.2g}'):g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"

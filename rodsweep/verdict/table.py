@@ -82,7 +82,7 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 
-def over(arm: SlenderArm, values: list[float], unit: str = "") -> str:
+def with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:
     """Text of the value for the likeliest drag, with the range over drag in brackets."""
     return f"{values[0]:.3g} ({rounded(min(values), max(values))}){unit}"
 
@@ -94,24 +94,27 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
     return [
         NumberRow(
             "drag across",
-            over(arm, [d.gamma2 for d in drags], " Pa s"),
+            with_drag_range(arm, [d.gamma2 for d in drags], " Pa s"),
             "4 pi eta/(ln(2 L/a) - 1/2)",
             translation,
         ),
         NumberRow(
             "axial drag",
-            over(arm, [d.gamma1 for d in drags], " Pa s"),
+            with_drag_range(arm, [d.gamma1 for d in drags], " Pa s"),
             "2 pi eta/(ln(2 L/a) - 3/2)",
             translation,
         ),
         NumberRow(
             "rotational drag",
-            over(arm, [d.gamma3 for d in drags], " Pa s m^2"),
+            with_drag_range(arm, [d.gamma3 for d in drags], " Pa s m^2"),
             "pi to 4 pi eta a^2",
             "section turning about a diameter; Powers 2010",
         ),
         NumberRow(
-            "tau2", over(arm, [arm.tau2_with(d) for d in drags], " s"), "drag across L^4/k3", "paper, Sec. VI"
+            "tau2",
+            with_drag_range(arm, [arm.tau2_with(d) for d in drags], " s"),
+            "drag across L^4/k3",
+            "paper, Sec. VI",
         ),
     ]
 
@@ -125,13 +128,13 @@ def dimensionless(arm: SlenderArm) -> list[NumberRow]:
         NumberRow("k2", f"{arm.k2:.5g}", "kappa G A L^2/k3, G = E/(2 (1 + nu))", "paper, Sec. III, VI"),
         NumberRow(
             "gamma3",
-            over(arm, [arm.gamma3_with(d) for d in drags]),
+            with_drag_range(arm, [arm.gamma3_with(d) for d in drags]),
             "rotational drag/(drag across L^2)",
             "paper, Sec. VI",
         ),
         NumberRow(
             "gamma1",
-            over(arm, [d.gamma1 / d.gamma2 for d in drags]),
+            with_drag_range(arm, [d.gamma1 / d.gamma2 for d in drags]),
             "axial drag/drag across",
             "paper, Sec. VI",
         ),

@@ -43,6 +43,7 @@ from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
+from rodsweep.solve.motion.held_tip import held_by_tip
 from rodsweep.solve.motion.integrator import Ending, forget_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -286,6 +287,16 @@ def on_mesh(accuracy: float) -> Answer:
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
 
 
+def held_tip(accuracy: float) -> Answer:
+    """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
+    beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    z = held_by_tip(beam, 0.5, 0.4)
+    x, y, _ = beam.tip(z)
+    if np.hypot(x - 0.5, y - 0.4) > 1e-6:
+        return None
+    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (beam.energy(z), 1e-6)}
+
+
 def small_drag(accuracy: float) -> Answer:
     """Branches of a rod whose rotational drag is near the least that is eliminated."""
     return branch_answer(replace(WITH_FOLD, gamma3=1.4e-5), 60.0, 110.0, accuracy)
@@ -393,6 +404,7 @@ CHANGES = Case(curves_of_changes, 1e-8, 1e-10)
 CONE_MODES = Case(modes_of_a_cone, 1e-6, 1e-8)
 MESH = Case(on_mesh, 1.0, 1.0)
 SMALL_DRAG = Case(small_drag, 1e-6, 1e-8)
+HELD = Case(held_tip, 1.0, 1.0)
 CASES = {
     "SETTLING": BRANCH,
     "BRANCH_ERRORS": BRANCH,
@@ -467,6 +479,9 @@ CASES = {
     "LEADER": THRESHOLDS,
     "CHANGE_COUNTS": THRESHOLDS,
     "ANCHORS": CONE,
+    "ARM_CROSSINGS": CONE,
+    "SEARCH_RANGE": CONE,
+    "HELD_TIP": HELD,
     "ARM_PATH": CONE,
     "CHANGE_BOUNDARIES": CHANGES,
     "CHANGE_CURVES": CHANGES,

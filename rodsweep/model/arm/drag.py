@@ -87,6 +87,7 @@ def range_of_drag(viscosity: float, length: float, radius: float, half_height: f
     least = least_rotational(1.0, half_height)
     most = most_rotational(1.0, half_height)
     translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
+    # All estimates are for viscosity 1: drag is proportional to it.
     members = [(*cox(1.0, slenderness), (least * most) ** 0.5)]
     members += [(*translation, rotational) for translation in translations for rotational in (least, most)]
     return tuple(

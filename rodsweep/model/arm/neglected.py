@@ -138,6 +138,7 @@ def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
 def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase lag m omega/gamma2 of the drag, caused by the arm's mass, of the shape of `rate`."""
     along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
+    # The heaviest section for its drag counts.
     value = max(arm.mass_at(station) / own.gamma2 for station, own in along) * rate
     # omega falls like 1/viscosity and gamma2 grows like it, so the value falls like 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)
@@ -147,6 +148,7 @@ def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase lag of the drag, caused by inertia of the fluid, of the shape of `rate`."""
     logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
+    # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length
     s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
     return Effect(
@@ -233,6 +235,7 @@ def wall_effect(
 
 def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
     """rho U (2 a)/eta at the tip, whose speed U is rate times amplitude times L; of the shape of `rate`."""
+    # The tip is the fastest point of the arm.
     speed = rate * amplitude * arm.si.length
     value = arm.si.fluid_density * speed * 2 * arm.shape.drag_radius / arm.si.viscosity
     return Effect(
@@ -246,5 +249,6 @@ def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
 
 def _independent_of_viscosity(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
     """An effect that is independent of the viscosity of the fluid."""
+    # No viscosity helps against such an effect, and none is needed where it is small.
     factor = np.where(value > limit, inf, 0.0)
     return Effect(name=name, value=value, limit=limit, viscosity_factor=factor, of_cycles_only=of_cycles_only)

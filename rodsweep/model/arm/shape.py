@@ -83,6 +83,7 @@ class Shape:
         rows = list[tuple[float, ...]]()
         for start, station in zip(ends, self.stations, strict=False):
             row = self._factors(station, poisson, drag)
+            # Equal neighbours are one piece: a jump of nothing would still split elements.
             if rows and rows[-1] == row:
                 u[-1] = station.end
             else:
@@ -93,6 +94,7 @@ class Shape:
     def _logarithms(self, drag: int) -> Profile:
         """Factors of gamma1 and gamma2 along a cone; the parameter `taper` implies all other factors."""
         pieces = max(2, ceil(abs(log(self.taper)) / log(RADIUS_STEP)))
+        # In equal ratios of the radius, since the drag depends on its logarithm.
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
         base = self.drags(self.base, 1.0)[drag]
@@ -130,12 +132,15 @@ class Shape:
         and m(1) = 0 if 1 is an eigenvalue of theta -> int_0^u (1/(E I)) int_u^1 W theta.
         """
         h, area, stiffness = self._at_midpoints()
+        # Weight above each section, with half of the section's own piece.
         beyond = np.tril(np.ones((len(h), len(h)))).T * (weight * area * h)
         np.fill_diagonal(beyond, weight * area * h / 2)
         moment = np.tril(np.ones((len(h), len(h)))).T * h * beyond.sum(axis=1)
         moment[np.diag_indices_from(moment)] /= 2
         turn = np.tril(np.ones((len(h), len(h)))) * (h / stiffness)
         turn[np.diag_indices_from(turn)] /= 2
+        # Euler buckling: theta' = m/(E I), m' = -(weight above) theta; its largest eigenvalue is weight over
+        # buckling weight.
         return float(np.abs(np.linalg.eigvals(turn @ moment)).max())
 
     def _at_midpoints(self) -> tuple[Array, Array, Array]:

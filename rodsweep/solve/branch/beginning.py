@@ -40,6 +40,8 @@ class BeginningSettings:
     normal form is too inaccurate."""
     min_deflection_amplitude: float = 0.1
     """Tip y, in L, of the cycle whose deflection is the smallest unit of deflections."""
+    amplitude_ratios: tuple[float, float] = 0.5, 2.0
+    """Allowed range of the largest tip y of the first cycle, in units of the normal form's."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency of a Hopf point, a root of D."""
 
@@ -169,7 +171,8 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     # Another cycle of the same deflection would be far from the normal form's amplitude.
-    if not 0.5 < y / amplitude < 2.0:
+    least_ratio, largest_ratio = BEGINNING.amplitude_ratios
+    if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
     aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))

@@ -41,7 +41,8 @@ class CoexistenceStatus(PointStatus):
     branches_stopped = (
         6,
         "the changes are found, but a branch of cycles is incomplete or a Hopf point may be missing: the "
-        "stable states are undecided where no stable cycle is known; the log says where the branch stopped",
+        "stable states are undecided where no stable cycle is known; the message says where the branch "
+        "stopped",
     )
     special_undecided = (
         7,
@@ -138,6 +139,7 @@ def _judged(
     undecided: values of the parameter whose stable states the cycles leave undecided, (n,).
     """
     message = "; ".join(filter(None, [row.message, branches.message]))
+    # The gravest first: without the changes of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
     if len(special_of(branches)) > special:
@@ -182,6 +184,7 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
     stretches = []
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
         signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
+        # Stability can change at special points only; cycles that disagree between two of them leave it open.
         stable = 1 if signs == {0} else 0 if signs and 0 not in signs else -1
         low, high = sorted((one, other), key=lambda point: point.at)
         within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error
@@ -199,6 +202,7 @@ def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray
     """Stable states, (values,), from the straight rod's classes and the stable cycles, both (values,)."""
     straight = (motion == Motion.monotone) | (motion == Motion.oscillatory)
     states = np.where(straight, Stable.straight, Stable.neither_known).astype(np.int8)
+    # 1 for a straight rod plus 2 for a cycle is 3, both.
     states[cycles > 0] += Stable.cycle
     states[(cycles < 0) | (motion == Motion.undecided)] = Stable.undecided
     states[motion == Motion.crushed] = Stable.crushed

@@ -50,6 +50,8 @@ def first_point(found: Converged, scale: Scale, side: Array, born: float, accura
     place = placed(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
+    # From the Hopf point, where rate and lost multiplier vanish: one is linear in the deflection, the other
+    # quadratic.
     place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, place, accuracy, None)
     cycle = with_calibrated_errors(calibration.known, found, accuracy)
@@ -91,6 +93,8 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
         planned = known.planned(SETTLING.planned_share * accuracy)
+        # A mesh that is good enough is left only for a much cheaper one, and never once it was too coarse
+        # before.
         if enough and (finest or planned.cost > SETTLING.cheaper_cost * known.mesh.cost):
             return point
         if not enough:
@@ -136,6 +140,7 @@ def settled(
         _with_errors_between(last, point, end, point.arc_since_measured / whole, accuracy)
         for point in between
     ]
+    # Only after the errors between were interpolated, since those belong to the old mesh.
     end = refined(end, accuracy, condition)
     again = [
         point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
@@ -147,6 +152,7 @@ def settled(
 def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """A cycle solved on the mesh of a later cycle, with errors of that cycle; raises Unsolvable."""
     solved = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
+    # With the errors of the end, on whose mesh the cycle now is.
     solved = _with_errors_between(end, solved, end, 1.0, accuracy)
     return refined(solved, accuracy)
 

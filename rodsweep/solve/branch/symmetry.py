@@ -101,6 +101,7 @@ def over_whole_period(orbit: Orbit) -> Orbit:
     times = 2 * node_times(intervals, orbit.stages)
     later = times > 1
     points = orbit.at(np.where(later, times - 1, times))
+    # The second half of the period is the mirror image of the first.
     points[later] = orbit.symmetry.of(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
     return replace(orbit, symmetry=NONE, intervals=intervals, values=values)
@@ -129,11 +130,14 @@ def beginning_without_symmetry(
     whole = over_whole_period(breaking.point.orbit)
     scale = Scale.of(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
+    # At the breaking a cycle at one parameter has a second direction, along which symmetry is lost.
     way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])
     for share in ASYMMETRIC_START.first_changes:
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
+            # The two ways are mirror images; the one with the larger y is followed, so that answers do not
+            # depend on a sign.
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
             return _first_cycle(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
         except Unsolvable as error:
@@ -169,6 +173,7 @@ def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy
     """
     reference = asymmetry(start.orbit)
     other = end.orbit.on(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
+    # The asymmetry changes sign where the branch passes a symmetric cycle, or falls steeply just before.
     if float(asymmetry(other) @ reference) < ENDINGS.lost_asymmetry * float(reference @ reference):
         return True
     return start.rises * end.rises < 0 and _nearly_symmetric(start) and _nearest(start, known, accuracy) >= 0
@@ -202,6 +207,7 @@ def _nearest(start: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int
     orbit = start.orbit
     present = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))
+    # Half the derivative of the squared asymmetry; it must fall for a symmetric cycle to lie ahead.
     falls = -float(present @ change)
     if falls <= 0:
         return -1

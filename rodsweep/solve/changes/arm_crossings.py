@@ -16,17 +16,29 @@ from .path_problem import PathProblem
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
 
-MAX_KNOWN_MODES = 200
-"""Largest number of leading eigenvalues known at a place."""
-SMALLEST_INTERVAL = 1e-6
-"""Length of an interval, in units of the path, that is not divided further: two crossings inside stay
-undecided."""
-COUNT_DISTANCE = 1e-5
-"""Distance from a crossing, in units of the path, of the counts on both its sides."""
-MAX_CROSSING_STEPS = 20
-"""Maximum number of Newton steps for one crossing."""
-CONVERGED_STEP = 4.0
-"""Newton's method ends at a step below this multiple of the error of p."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmCrossingSettings:
+    """Settings for the crossings along a path of arms."""
+
+    max_known_modes: int = 200
+    """Largest number of leading eigenvalues known at a place."""
+    smallest_interval: float = 1e-6
+    """Length of an interval, in units of the path, that is not divided further: two crossings inside stay
+    undecided."""
+    smallest_step: float = 1e-12
+    """Relative length of an interval without a place between its ends, up to some thousand roundings."""
+    count_distance: float = 1e-5
+    """Distance from a crossing, in units of the path, of the counts on both its sides."""
+    max_steps: int = 20
+    """Maximum number of Newton steps for one crossing."""
+    converged: float = 4.0
+    """Newton step, in units of the error of p, at which a crossing has converged."""
+    rounding: float = 4e-16
+    """Relative rounding error of the path variable: two units in the last place."""
+
+
+ARM_CROSSINGS = ArmCrossingSettings()
 
 
 @dataclass(frozen=True)
@@ -71,7 +83,7 @@ class CrossingSearch:
                 ANCHORS.min_known_modes if near is None else max(ANCHORS.min_known_modes, 2 + near.unstable)
             )
             found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
-            while modes < _needed(found) <= MAX_KNOWN_MODES:
+            while modes < _needed(found) <= ARM_CROSSINGS.max_known_modes:
                 if self.certify and found.unstable_count < 0:
                     break  # a count that fails does not succeed with more modes
                 modes = _needed(found)
@@ -107,7 +119,7 @@ class CrossingSearch:
             share = next_count_place(left, right)
             if share == 0.0:
                 return
-            if b - a <= SMALLEST_INTERVAL * intervals.length:
+            if b - a <= ARM_CROSSINGS.smallest_interval * intervals.length:
                 self.gaps.append((a, b))
                 return
         else:
@@ -119,7 +131,7 @@ class CrossingSearch:
                 self.found[self.problem.path.variable(crossing.at)] = crossing
                 intervals.divide((a, beside[0]), (beside[1], b))
                 return
-            if b - a <= 1e-12 * max(abs(a), abs(b)):
+            if b - a <= ARM_CROSSINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
@@ -130,8 +142,8 @@ class CrossingSearch:
         """(p just before, p just behind) a crossing; None if the counts at these two places do not confirm
         the crossing."""
         p = self.problem.path.variable(crossing.at)
-        before = max(left.p, p - COUNT_DISTANCE * length)
-        behind = min(right.p, p + COUNT_DISTANCE * length)
+        before = max(left.p, p - ARM_CROSSINGS.count_distance * length)
+        behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
         change = self.place(behind).unstable - self.place(before).unstable
         return (before, behind) if change == right.unstable - left.unstable else None
 
@@ -154,7 +166,7 @@ class CrossingSearch:
         p = start.p
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
-        for _ in range(MAX_CROSSING_STEPS):
+        for _ in range(ARM_CROSSINGS.max_steps):
             if slope.real == 0 or not math.isfinite(slope.real):
                 return None
             step = -w.real / slope.real
@@ -163,8 +175,8 @@ class CrossingSearch:
             if not ends[0] <= p <= ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
-            blur = error / abs(slope.real) + 4e-16 * abs(p)
-            if abs(w.real / slope.real) <= CONVERGED_STEP * blur:
+            blur = error / abs(slope.real) + ARM_CROSSINGS.rounding * abs(p)
+            if abs(w.real / slope.real) <= ARM_CROSSINGS.converged * blur:
                 return self._crossing(p, w, slope, blur, grows)
         return None
 

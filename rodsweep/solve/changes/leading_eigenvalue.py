@@ -23,7 +23,8 @@ from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
 
 ANCHOR_MODES = 4
-"""Number of leading eigenvalues at an anchor: two that lead, and their rivals."""
+"""Number of leading eigenvalues at an anchor: the two that lead, and two that may overtake them. Fewer would
+not tell which eigenvalues meet, so the number is no setting."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,12 +5,21 @@ search: what lies left of it is complete.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..point import Unsolvable
 
-LAST_HALVINGS = 4
-"""Number of halvings of the interval in which a search ends early, to come closer to its end."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchRangeSettings:
+    """Settings for the end of a search along a path."""
+
+    last_halvings: int = 4
+    """Number of halvings of the interval in which a search ends early, to come closer to its end."""
+
+
+SEARCH_RANGE = SearchRangeSettings()
 
 
 class Reach(NamedTuple):
@@ -38,7 +47,7 @@ class SearchedIntervals:
     def __iter__(self) -> Iterator[tuple[float, float]]:
         """Yields each interval once; raises Unsolvable if nothing beyond the first edge can be searched."""
         while True:
-            if not self._left and self.reach.reason and self._halvings < LAST_HALVINGS:
+            if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE.last_halvings:
                 self._halvings += 1
                 middle = (self.reach.p + self._unsolvable) / 2
                 self._left.append((self.reach.p, middle))

@@ -35,11 +35,11 @@ class ThresholdStatus(PointStatus):
         "coincide; request a lower accuracy",
     )
     list_full = 4, "there are more changes than the list holds; raise the option crossings"
-    failed = 5, "the search failed and nothing is stored; the log has the message"
+    failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,
         "the search ends before the requested range, at a rod whose unstable modes could not be counted; the "
-        "list holds the changes up to this end, those beyond are not known; the log has the message",
+        "list holds the changes up to this end, those beyond are not known; the message says why",
     )
 
 

@@ -77,6 +77,7 @@ def boundary_search(
         seed = problem.next_seed(left)
         search.needed = problem.missing_units(seed)
         if search.needed:
+            # Other units may run meanwhile: points that this curve may turn out to contain, too.
             search.left = [i for i in left if i != seed]
             break
         tried.add(seed)

@@ -89,6 +89,7 @@ class StepControl:
 
     def next_length(self, length: float, there: Stepped[Solution], solutions: int) -> float:
         """Length of the step after an accepted step, for a curve with a number of solutions."""
+        # The error of a prediction through m solutions grows with the m-th power of the step.
         by_distance = (self.aim / max(there.off, self.min_measured)) ** (1 / min(self.order, solutions))
         by_turn = self.turn / max(_angle(there.cosine), self.min_measured)
         factor = min(max(min(by_distance, by_turn), self.shrinkage), self.growth)
@@ -162,6 +163,7 @@ def follow(
             last = problem.landed(solutions, there.solution, outside)
             return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
         if problem.closes(solutions, there.solution):
+            # The start itself, not a point close to it, closes the curve exactly.
             return Curve([*solutions, start], CurveStop.closed)
         solutions.append(there.solution)
         margins = ahead
@@ -172,6 +174,7 @@ def follow(
 def crossed(before: Array, after: Array) -> int:
     """Index of the margin, of (margins,), that is first to fall below 0 along a straight step; -1 for
     none."""
+    # A margin that is negative already, but rises, is being entered from outside.
     falls = (after < 0) & (after < before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.
     share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)

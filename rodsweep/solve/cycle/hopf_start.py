@@ -57,6 +57,8 @@ class HopfStartSettings:
     """Relative distances from the Hopf point at which the normal form starts Newton's method, tried in this
     order. In most rods the normal form's amplitude is off by a quarter at the first, by a tenth at the
     second."""
+    squared_ratios: tuple[float, float] = 0.3, 3.0
+    """Allowed range of the squared largest y of the orbit found, in units of the normal form's."""
     direct_distance: float = 1e-2
     """Relative distance from the Hopf point within which the normal form's orbit starts Newton's method for
     the rod itself: the amplitude is off by 1 percent there in most rods."""
@@ -212,7 +214,8 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
         newton(start, HOPF_START.branch_tolerance, workspace, "F"), HOPF_START.branch_tolerance, "F"
     )
     squared = normal.cycle(F)[0]
-    if not 0.3 < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < 3.0:
+    least, most = HOPF_START.squared_ratios
+    if not least < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < most:
         raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit

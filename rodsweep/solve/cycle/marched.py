@@ -128,7 +128,7 @@ class _Marching:
         """The settled motion that starts from z, (unknowns,); raises _Ended."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = angle_weights(self.beam)
-        step = self.mode.period / 1000
+        step = self.mode.period / MARCHING.first_steps
         last = nan
         rate = 0.0
         most = self.request.most_periods
@@ -136,7 +136,7 @@ class _Marching:
             report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
             run = self._run(
                 z,
-                3 * MARCHING.returns_per_test * self.mode.period,
+                MARCHING.longest_wait * MARCHING.returns_per_test * self.mode.period,
                 step,
                 until_returns(row, z, MARCHING.returns_per_test),
             )
@@ -201,7 +201,9 @@ class _Marching:
         returns = settled.turns + 2
         limit = until_returns(angle_weights(self.beam), settled.z, returns)
         scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
-        run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit, scheme)
+        run = self._run(
+            settled.z, MARCHING.longest_wait * returns * self.mode.period, settled.step, limit, scheme
+        )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
             raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")

@@ -20,6 +20,10 @@ class MarchingSettings:
     """Relative distance from the cycle, in units of the accuracy, at which a motion has settled."""
     return_noise: float = 10.0
     """Distance of two returns, in units of the tolerance, that the integrator's error may cause."""
+    first_steps: int = 1000
+    """Period of the leading mode in units of a motion's first time step."""
+    longest_wait: int = 3
+    """Longest duration of a run in units of the expected duration of its returns."""
     returns_per_test: int = 5
     """Returns of the tip between two tests for repetition."""
     pair_factor: float = 2.0

@@ -86,6 +86,7 @@ class Neighbour:
         orbit = branch.orbit
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
+            # Checkpoints hold arrays only, so a text is stored as its bytes.
             "build": np.frombuffer(orbit.form.rod.build.text.encode(), np.uint8),
             "symmetric": np.array(orbit.symmetric),
             "mesh": mesh_of(orbit).numbers,
@@ -137,6 +138,7 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
     if not found.calibration.reach:
         return NEIGHBOUR.calibrated_mesh_cost
     step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
+    # A mesh whose errors must be measured anyway may as well be another one.
     return 0.0 if found.calibration.lasts(step) else NEIGHBOUR.new_mesh_cost
 
 
@@ -171,6 +173,7 @@ def _converged(
     try:
         found = near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
     except Unsolvable:
+        # Steps on a coarser mesh lead to the cycle; only the last correction is made on the wanted mesh.
         start = in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)
         found = newton(target.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)

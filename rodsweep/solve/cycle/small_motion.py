@@ -54,6 +54,7 @@ def decay(rod: Rod, w: complex, amplitude: float) -> str:
         normal = accurate_normal_form(rod, w, SMALL_MOTION.weak_bending)
     except Unsolvable:
         return ""
+    # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
     share = abs(normal.c.real) * amplitude**2 / -w.real
     if share >= SMALL_MOTION.weak_bending:
         return ""

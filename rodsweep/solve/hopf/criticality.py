@@ -37,10 +37,10 @@ class CriticalityStatus(PointStatus):
         "accuracy",
     )
     list_full = 4, "there are more Hopf points than the list holds; raise the option crossings"
-    failed = 5, "the search for Hopf points failed and nothing is stored; the log has the message"
+    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
     coefficients_failed = (
         6,
-        "a Hopf point has no coefficients; the other Hopf points are stored; the log has the message",
+        "a Hopf point has no coefficients; the other Hopf points are stored; the message says why",
     )
     sign_undecided = (
         7,
@@ -50,7 +50,7 @@ class CriticalityStatus(PointStatus):
     ended_early = (
         9,
         "the search ends before the requested force, at a rod whose unstable modes could not be counted; the "
-        "list holds the Hopf points up to this end, those beyond are not known; the log has the message",
+        "list holds the Hopf points up to this end, those beyond are not known; the message says why",
     )
 
 

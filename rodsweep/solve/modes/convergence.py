@@ -66,6 +66,7 @@ def converged_vectors(
         fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
         error = max(result.errors().values())
+        # A mesh that does not halve the error has met rounding errors.
         improved = error < least / 2
         if best is None or error < least:
             best = result

@@ -114,6 +114,7 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
             Z[:, i] = Z[:, i - 1].conj()
         else:
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
+    # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
     right, left = (V * tip_scale(*form.fields(V)) for V in (X, Z))
@@ -122,6 +123,7 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
     """Right and left vector of eigenvalue w, (unknowns,) each, with largest entry 1; real for real w."""
+    # The inverse is wanted although the matrix is singular to rounding: its error lies along the null vector.
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
     return _iterated(inverse, B), _iterated(inverse.T, B)
 
@@ -142,4 +144,5 @@ def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
         x = inverse @ (B * x)
         growth = float(np.abs(x).max())
         x = x / growth
+    # Growth falls once rounding errors of the iterate dominate.
     return x if growth >= last else before

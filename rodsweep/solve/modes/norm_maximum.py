@@ -70,6 +70,7 @@ def highest(
         ceiling = max(ceiling, bound[~open_ | given_up].max(initial=0.0))
         if given_up or not open_.any():
             break
+        # Only intervals in which a larger norm may hide are halved.
         t, h, left, right, bend = (x[open_] for x in (t, h / 2, left, right, bend))
         middle, new_bend = _squares(propagator, t + h)
         i = int(middle.argmax())
@@ -93,6 +94,7 @@ def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) ->
     """Bound of N^2 over intervals of width h, from N^2 at both ends and c at the left end; all
     (intervals,)."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM.largest_exponent))
+    # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
 
@@ -112,6 +114,8 @@ def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float
         if rate > 0:
             low = t
             rate_low = rate
+            # Illinois: an end that stays is weighted half, otherwise the bracket would shrink from one side
+            # only.
             rate_high = rate_high / 2
         else:
             high = t

@@ -41,6 +41,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     A = form.with_tip_terms(*hermitian_tip(rod.F, slaving_of(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
+    # Any shift above the abscissa will do; the bound of eigenvalues is only a first guess of it.
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(ABSCISSA.max_shifts):
         H = shifted_inverse(A, B, shift)
@@ -48,9 +49,13 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
         if values[-1] > -ABSCISSA.positive * values[0]:  # an eigenvalue lies above the shift
             shift = 2 * abs(shift) + 1
             continue
+        # Eigenvalues of the inverse of (L + L+)/2 - shift, all negative above the abscissa; the most negative
+        # is nearest.
         abscissa = shift + 1 / float(values[0])
         close = abscissa + ABSCISSA.close_shift * abs(abscissa) + ABSCISSA.close_shift
         if shift - abscissa <= 2 * (close - abscissa):
             return abscissa
+        # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the
+        # digits.
         shift = close
     return nan

@@ -52,6 +52,8 @@ class Propagator:
         self.G = G
         values, right = np.linalg.eig(G)
         finite = np.nonzero(np.abs(values) > PROPAGATOR.infinite * np.abs(values).max())[0]
+        # G is the inverse of L: its eigenvalues near 0 are the infinite ones of the pencil, which carry no
+        # dynamics.
         w = 1 / values[finite]
         order = np.lexsort((-w.imag, -w.real))
         self.w: Complex = w[order].astype(complex)
@@ -69,10 +71,12 @@ class Propagator:
         modes of the mesh, and without splitting a conjugate pair.
         """
         k = min(k, len(self.w))
+        # A complex pair must not be split, or the basis would not be real.
         if self.w[k - 1].imag > 0:
             k += 1
         Q = _orthonormal(self.right[:, :k], self.w[:k])
         Z = _orthonormal(self.left[:, :k], self.w[:k])
+        # In the basis of nested invariant subspaces G is block triangular: what lies below is rounding error.
         inside = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
         self.generator = np.linalg.inv(np.where(inside, Q.T @ self.G @ Q, 0.0))
         self.overlap = Z.T @ Q
@@ -84,6 +88,7 @@ class Propagator:
 
     def norm(self, time: float) -> tuple[float, float]:
         """(|exp(L t)|, its logarithmic derivative) at one time."""
+        # d|E|/dt = u . dE/dt v = |E| u . L u, with u the left singular vector.
         u, sizes, _ = np.linalg.svd(self.at(np.array([time]))[0])
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
@@ -125,6 +130,7 @@ def exponential(matrices: Array) -> Array:
     identity = np.eye(matrices.shape[-1])
     powers = [identity, scaled, scaled @ scaled]
     powers += [powers[2] @ scaled, powers[2] @ powers[2]]
+    # exp(x) - 1 is squared, not exp(x): small norms keep their digits, since (1 + r)^2 - 1 = 2 r + r^2.
     result = np.zeros_like(scaled)
     for order in range(TAYLOR_ORDER - 4, -1, -4):  # four terms a product
         terms = sum(powers[i] / factorial(order + i) for i in range(4) if order + i > 0)

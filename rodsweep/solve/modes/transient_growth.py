@@ -103,6 +103,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
         abscissa = numerical_abscissa(rod, pencil)
         change = abs(abscissa - before)
         found = GROWTH_BY_STABILITY[stable]
+        # No growth at t = 0+ and none later: the norm of exp(L t) falls from 1.
         if found is None and abscissa + change <= 0:
             found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if found is None:
@@ -140,6 +141,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     k = GROWTH.min_modes
     while True:
         k = fine.keep(k)
+        # After this time the modes left out have decayed to the accuracy; before it more modes are needed.
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
         if not stop:
             stop, tail = _end(fine, first, patience)
@@ -148,6 +150,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
             best = max(best, peak)
             ceiling = max(ceiling, bound)
         stop = first
+        # |exp(L t)| <= exp(abscissa t) bounds the growth over the early times that the modes do not resolve.
         before = exp(min(abscissa * first, NORM_MAXIMUM.largest_exponent))
         if before <= best[0] * (1 + tolerance) or k == len(fine.w):
             break
@@ -173,6 +176,7 @@ def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, 
     w = propagator.w[: len(propagator.generator)]
     m = 2 if w[0].imag else 1
     gap = w[0].real - w[m].real
+    # Norm of the projection onto the leading modes: how large non-normal modes may become before they decay.
     share = 1 / np.linalg.svd(propagator.overlap[:m, :m], compute_uv=False)[-1]
     alone = (patience + log(share)) / gap if gap > 0 else inf
     end = first
@@ -181,4 +185,5 @@ def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, 
             return end, 0.0
         end *= 2
     alone = max(alone, first)
+    # The norm of a decaying pair repeats with half its period, so a maximum may come that much later.
     return alone + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.left_over(m, alone)

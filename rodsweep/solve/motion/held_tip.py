@@ -10,6 +10,7 @@ there. Newton's method solves for the curvatures and the force f, with W the wei
 along a path of places from the tip of a slightly bent rod.
 """
 
+from dataclasses import dataclass
 from math import atan2, hypot
 
 import numpy as np
@@ -18,37 +19,50 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.elements.mesh import configuration
 
-REACH = 0.98
-"""Largest distance of the tip from the clamp, in lengths of the straight rod: at 1 the rod cannot be bent."""
-FIRST_ANGLE = 0.8
-"""Angle of the tip, rad, where the path begins: the tip of a straight rod cannot move towards the clamp."""
-FIRST_STEP, LEAST_STEP = 0.1, 1e-3
-"""Length of the first step as a share of the path, and the length at which the path is given up."""
-MOST_ITERATIONS, PLACED = 12, 1e-10
-"""Maximum Newton iterations of a step, and the distance of the tip from its target, in L, at which iterations
-end."""
-MOST_TURNED = 1.0
-"""Change of the angle by a Newton step, in rad, beyond which the step may lead to a different shape."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldTipSettings:
+    """Settings for the rod bent with its tip at a chosen place."""
+
+    reach: float = 0.98
+    """Largest distance of the tip from the clamp, in lengths of the straight rod: at 1 the rod cannot be
+    bent."""
+    first_angle: float = 0.8
+    """Angle of the tip, rad, where the path begins: the tip of a straight rod cannot move towards the
+    clamp."""
+    first_step: float = 0.1
+    """Length of the first step as a share of the path."""
+    least_step: float = 1e-3
+    """Length of a step, as a share of the path, at which the path is given up."""
+    max_iterations: int = 12
+    """Maximum Newton iterations of a step."""
+    placed: float = 1e-10
+    """Distance of the tip from its target, in L, at which iterations end."""
+    largest_turn: float = 1.0
+    """Change of the angle by a Newton step, in rad, beyond which the step may lead to a different shape."""
+
+
+HELD_TIP = HeldTipSettings()
 
 
 def held_by_tip(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y) in L.
 
-    A target beyond `REACH` is moved towards the clamp. If the tip cannot be moved to the target, the last
-    state on the way is returned.
+    A target beyond `HeldTipSettings.reach` is moved towards the clamp. If the tip cannot be moved to the
+    target, the last state on the way is returned.
     """
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
     # A moment that falls to 0 at the free tip, as under a force there; its integral is the angle.
-    Pi = 2 * side * FIRST_ANGLE * (1 - beam.mesh.positions)
+    Pi = 2 * side * HELD_TIP.first_angle * (1 - beam.mesh.positions)
     first = bending.tip(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # A tip as far away as the rod is long would make it straight, where the force is not determined.
-    end = np.array([min(hypot(x, y), REACH * bending.length), atan2(y, x)])
+    end = np.array([min(hypot(x, y), HELD_TIP.reach * bending.length), atan2(y, x)])
     force = np.zeros(2)
     reached = 0.0
-    step = FIRST_STEP
-    while reached < 1 and step > LEAST_STEP:
+    step = HELD_TIP.first_step
+    while reached < 1 and step > HELD_TIP.least_step:
         share = min(1.0, reached + step)
         radius, angle = start + share * (end - start)
         found = bending.placed(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
@@ -89,7 +103,7 @@ class _Bending:
         size = len(Pi)
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
-        for _ in range(MOST_ITERATIONS):
+        for _ in range(HELD_TIP.max_iterations):
             first, second = self._derivatives(Pi, force)
             # Bending energy minus the work of the force, with the tip's place as two constraints.
             matrix[:size, :size] = np.diag(weights) - second
@@ -98,11 +112,11 @@ class _Bending:
             misplaced = place - self.tip(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian has left the range of the linearisation.
-            if not np.abs(self.angles @ change[:size]).max() < MOST_TURNED:
+            if not np.abs(self.angles @ change[:size]).max() < HELD_TIP.largest_turn:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
-            if np.abs(misplaced).max() < PLACED:
+            if np.abs(misplaced).max() < HELD_TIP.placed:
                 return Pi, force
         return None
 

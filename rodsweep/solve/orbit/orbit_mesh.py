@@ -27,6 +27,8 @@ class OrbitMeshSettings:
     costs a fifth more than necessary."""
     time_factor: float = 1.5
     """Largest stated error of period and extrema in units of the squared tail in time."""
+    smallest_tail: float = 1e-15
+    """Smallest tail from which a mesh is chosen; smaller ones are rounding errors."""
     expected_share: float = 1 / 3
     """Error in space, and error in time, for which a mesh is chosen, in units of the accuracy."""
     coarser_order: int = 2
@@ -151,14 +153,16 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     tails = tails_of(orbit)
     aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
     aim_time = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.time_factor) ** 0.5
-    # Below 1e-15 a tail is rounding error.
-    order = present.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / present.elements)
+    # Below `smallest_tail` a tail is rounding error.
+    order = present.order + ceil(
+        log(max(tails.space, ORBIT_MESH.smallest_tail) / aim_space) / tails.decay / present.elements
+    )
     edges = present.edges
     while order > RESOLUTION.largest_order:
         order = ceil(ORBIT_MESH.halved_order * order)
         edges = halved(edges)
     # A tail falls as intervals**-stages. With other stages it starts from about a power of the known tail.
-    tail = max(tails.time, 1e-15) ** (stages / present.stages)
+    tail = max(tails.time, ORBIT_MESH.smallest_tail) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
     order = min(max(order, ORBIT_MESH.min_order), present.order + ORBIT_MESH.max_more_orders)
     intervals = min(

@@ -26,4 +26,4 @@ class SpectrumStatus(PointStatus):
         4,
         "fewer eigenvalues are found than the winding number counts, so none are stored; request more modes",
     )
-    failed = 5, "the solver failed and nothing is stored; the log has the message"
+    failed = 5, "the solver failed and nothing is stored; the message says why"

@@ -7,7 +7,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.motion.held_tip import REACH, held_by_tip
+from rodsweep.solve.motion.held_tip import HELD_TIP, held_by_tip
 
 RODS = {
     "flutter": Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2),
@@ -62,4 +62,4 @@ def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     beam = beam_of(rod)
     length = beam.tip(np.zeros(beam.unknowns))[0]
     x, y = beam.tip(held_by_tip(beam, 3.0, 4.0))[:2]
-    assert (x, y) == pytest.approx((0.6 * REACH * length, 0.8 * REACH * length), abs=1e-8)
+    assert (x, y) == pytest.approx((0.6 * HELD_TIP.reach * length, 0.8 * HELD_TIP.reach * length), abs=1e-8)

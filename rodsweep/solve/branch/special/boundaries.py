@@ -80,6 +80,7 @@ class SpecialBoundaries:
         located: solves the special points of a row anew, by the row's number. workspace: memory of Newton's
         matrices.
         """
+        # A unit is half a curve: twice the index of its special point, plus one for the half behind it.
         place, behind = divmod(unit, 2)
         one = self.special[place]
         limits = CurveLimits(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
@@ -126,6 +127,7 @@ class _CurvesOfKind:
         if ahead not in self.results:
             return [unit for unit in (ahead, behind) if unit not in self.results]
         half = TracedHalf.of(self.results[ahead]).half
+        # A closed curve has no second half, and a curve not found ahead is not sought behind.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
 
@@ -154,6 +156,8 @@ class _CurvesOfKind:
         """Distance of a special point from a curve in units of the line's axis; inf unless it is near."""
         near = curve.distances.get(seed, math.inf)
         lies_off = near > CURVE_IDENTITY.on_curve
+        # The last part of a curve is extrapolated: no cycle is solved there from which a distance could be
+        # measured.
         return 0.0 if lies_off and self._vanishes(curve.curve, self.special[seed]) else near
 
     def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
@@ -179,6 +183,8 @@ class _CurvesOfKind:
                 continue
             x = self.line.scaled(end.at)
             y = self.rows.scaled(end.row)
+            # Straight chord from the Hopf point to the last cycle: where cycles vanish both move in
+            # proportion.
             share = (self.rows.scaled(one.row) - y) / (last.place - y)
             chord = x + share * (self.line.scaled(last.at) - x)
             if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= CURVE_IDENTITY.on_last_chord:

@@ -125,6 +125,7 @@ class CurveLimits:
         point = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
+        # Prediction and point must live on one mesh to be compared.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
             return Stepped(point, min(off, CURVE_STEPS.far), 1.0)
@@ -210,6 +211,7 @@ class CurveLimits:
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(first)
+        # The start lies within the last step, both along it and in distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
@@ -239,6 +241,7 @@ class CurveLimits:
 def lengths_of(points: Sequence[OnCurve]) -> Array:
     """Arc lengths of points relative to the last, (points,), none positive."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
+    # Counted from the last point, so that a prediction is at a positive length.
     lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
     return lengths
 

@@ -79,6 +79,7 @@ class CycleFamily:
         rates: approximate derivatives across the curve. same: whether `rates` belong to the point sought, on
         another mesh.
         """
+        # Derivatives along another direction across the curve would mislead the secant method.
         known = rates if rates and rates.direction @ across >= ACROSS_CURVE.min_cosine else None
         search = _SecantAcross(self, start, place, across, known, same)
         for _ in range(ACROSS_CURVE.max_secants):
@@ -111,6 +112,8 @@ class CycleFamily:
             if not finer.allowed:
                 break
             fine = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
+            # The two points may lie at different places along the curve; the slope takes this out of the
+            # error.
             off = abs(fine.at - last.at - slope * (fine.place - last.place))
             error = ACROSS_CURVE.error_factor * off + ACROSS_CURVE.secant_error * abs(fine.at)
             if error <= ACROSS_CURVE.accuracy * abs(fine.at):
@@ -157,6 +160,7 @@ class _SecantAcross:
             self.trusted = ACROSS_CURVE.max_linear_step
             enough = ACROSS_CURVE.max_linear_product / own.span
         rates = self.rates
+        # Without derivatives any small step serves: two cycles then give them.
         step = -present.test / rates.test if rates else ACROSS_CURVE.first_secant
         if not abs(step) <= ACROSS_CURVE.longest_secant:
             raise Unsolvable("the secant method leaves the curve")
@@ -192,6 +196,8 @@ class _SecantAcross:
         if abs(present.at - before.at) < ACROSS_CURVE.min_cycle_distance:
             return None
         name = self.family.scale.name
+        # Difference quotients of whole cycles are as good as derivatives here: the test function is nearly
+        # linear.
         span = present.at - before.at
         one = before.orbit
         other = present.orbit

@@ -101,6 +101,7 @@ class CurveErrors:
 
     def at(self, point: "OnCurve") -> float:
         """Absolute error of a neighbouring point on the same mesh."""
+        # Errors are of second order in the tails.
         growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
@@ -148,6 +149,7 @@ class OnCurve:
         """Unit direction perpendicular to a step, (4,), in the plane (along the branch, along the rows),
         (2,)."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
+        # Turned by a right angle: the correction must not slide along the curve.
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
@@ -156,6 +158,7 @@ def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
     behind."""
     found: list[OnCurve] = []
     behind: CurveErrors | None = None
+    # Backwards, so that every point knows the measurement behind it as well as the one before it.
     for point in reversed(points):
         if point.errors is None:
             raise ValueError("the point has no error estimate")

@@ -30,9 +30,11 @@ def changes_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], 
     found = []
     if start.rises * end.rises < 0:
         found.append(SpecialKind.fold)
+    # Two multipliers may pass -1 together or meet there; an odd difference needs a crossing.
     if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
         found.append(through_minus_one(start.orbit))
     change = abs(unstable_multipliers(end) - unstable_multipliers(start))
+    # Beside a fold a multiplier is 1 within its error, and may be counted on either side.
     slack = 1 if _near_one(start) or _near_one(end) else 0
     if not found and change - slack > 1:
         return [SpecialKind.torus], change == 2 and all(map(_has_pair, (start, end)))
@@ -70,6 +72,7 @@ def special_points(
     points = [located(kind, start, end, accuracy) for kind in kinds] if explained else []
     if depth < LOCATING.max_halvings and (not explained or any(point.message for point in points)):
         try:
+            # Half the step parts special points that are too close to be told apart by counts.
             middle = step(start, arc_between(start, end) / 2)
         except Unsolvable:
             pass

@@ -46,6 +46,7 @@ def _divisor_of(sizes: Array, present: float) -> int:
     least = present * sizes.max()
     for k in range(len(sizes)):
         if sizes[k] > least:
+            # Harmonics that are all multiples of g repeat g times within the period.
             divisor = gcd(divisor, k + 1)
     return divisor
 

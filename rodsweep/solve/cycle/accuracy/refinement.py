@@ -232,13 +232,18 @@ def refined_cycle(
         found = refine(over_minimal_period(found.orbit), accuracy, workspace, parameter)
     # The multiplier is 1 within its error: a hundredth of the error may tell.
     if found.stable is None:
-        found = refine(found.orbit, max(accuracy / 100, REFINEMENT.finest_accuracy), workspace, parameter)
+        found = refine(
+            found.orbit,
+            max(accuracy / REFINEMENT.undecided_divisor, REFINEMENT.finest_accuracy),
+            workspace,
+            parameter,
+        )
     return found
 
 
 def newton_tolerance(accuracy: float) -> float:
     """Relative tolerance of Newton's method for a cycle of this accuracy."""
-    return max(1e-2 * accuracy, 1e-13)
+    return max(REFINEMENT.newton_share * accuracy, REFINEMENT.min_newton_tolerance)
 
 
 def matrix_distance(accuracy: float) -> float:

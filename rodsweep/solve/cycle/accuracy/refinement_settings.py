@@ -7,6 +7,12 @@ from dataclasses import dataclass
 class RefinementSettings:
     """Settings for the meshes and Newton tolerances for a cycle of a requested accuracy."""
 
+    newton_share: float = 1e-2
+    """Relative tolerance of Newton's method for a cycle, in units of the accuracy."""
+    min_newton_tolerance: float = 1e-13
+    """Smallest such tolerance: some hundred roundings."""
+    undecided_divisor: float = 100.0
+    """Divisor of the accuracy of a cycle whose largest multiplier is 1 within its error."""
     matrix_distance_share: float = 3.0
     """Relative distance of Newton's matrix for accurate multipliers, in units of the accuracy."""
     min_matrix_distance: float = 1e-7

@@ -62,6 +62,7 @@ class AmplitudeEquation:
         sizes = np.linalg.norm(states[-2:], axis=1)
         duration = float(times[-1] - times[-2])
         growth = float(np.log(sizes[1] / sizes[0]))
+        # The beam of a coarse mesh grows at a slightly different rate; the difference is taken out.
         return growth + self.excess * duration, self.linear_rate * duration
 
     def slow(self, times: Array, states: Array) -> bool:
@@ -98,6 +99,7 @@ class AmplitudeEquation:
         if not self.slow(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))
+        # d|z|/dt = linear |z| - c |z|^3, so what the growth lacks is c |z|^2.
         measured = (linear - growth) / size**2
         if abs(linear - growth) > self.noise * (
             1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.significant_growth
@@ -109,6 +111,7 @@ class AmplitudeEquation:
         elif linear > 0 and coefficient > 0:
             factor = float(
                 np.clip(
+                    # The amplitude at which linear = c |z|^2.
                     np.sqrt(linear / coefficient) / size,
                     1 / AMPLITUDE_EQUATION.max_jump,
                     AMPLITUDE_EQUATION.max_jump,

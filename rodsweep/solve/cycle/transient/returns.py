@@ -96,6 +96,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
         angles = (cubic @ row).tolist()
         low = 0.0
         high = 1.0
+        # Bisection of a scalar cubic: no step can leave the interval, and the full state is evaluated once.
         for _ in range(RETURNS.bisections):
             middle = (low + high) / 2
             if sum(map(mul, _hermite_weights(middle), angles)) < 0:
@@ -110,6 +111,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
 def _hermite_weights(x: float) -> tuple[float, float, float, float]:
     """Weights of two values and two slopes, at 0 and 1, in the value at x of the cubic through these data."""
     rest = 1 - x
+    # Cubic Hermite basis on [0, 1].
     return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
 
 
@@ -124,6 +126,7 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     if size < RETURNS.straight_size:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
+    # The first repetition that is nearly as good as the best: multiples of a period repeat as well.
     enough = max(2 * min(found)[0], RETURNS.same_return)
     return next((m, distance) for distance, m in found if distance <= enough)
 

@@ -40,6 +40,10 @@ class TorusTestSettings:
     angle_tolerance: float = 0.3
     """Largest difference between torus and cycle in the angle per return, rad. It vanishes where the torus is
     born; 0.18 was seen far from there."""
+    trials_per_width: int = 4
+    """Angles tried over the width of the minimum for one harmonic, before the best one is refined."""
+    angle_share: float = 1e-4
+    """Tolerance of the angle, in units of the width of its minimum."""
     period_tolerance: float = 0.1
     """Largest relative difference between torus and cycle in the mean return time; it vanishes where the
     torus is born, too."""
@@ -117,6 +121,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
         return None
     basis = fourier(best * numbers, TORUS_TEST.harmonics)
+    # Fitted on the first half, tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], fitted, rcond=None)[0]
     return Modulation(best, float(np.linalg.norm(later - basis[half:] @ series)) / size)
 
@@ -135,14 +140,18 @@ def fitted_angle(returns: Array, angle: float) -> float:
     tried = np.linspace(
         angle - TORUS_TEST.angle_tolerance,
         angle + TORUS_TEST.angle_tolerance,
-        int(4 * TORUS_TEST.angle_tolerance * len(returns)) + 1,
+        int(TORUS_TEST.trials_per_width * TORUS_TEST.angle_tolerance * len(returns)) + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
     for harmonics in range(1, TORUS_TEST.harmonics + 1):
         reach = np.pi / (len(returns) * harmonics)
         bounds = (best - reach, best + reach)
         found = minimize_scalar(
-            residual, bounds=bounds, args=(harmonics,), method="bounded", options={"xatol": 1e-4 * reach}
+            residual,
+            bounds=bounds,
+            args=(harmonics,),
+            method="bounded",
+            options={"xatol": TORUS_TEST.angle_share * reach},
         )
         best = float(found.x)
     return best

@@ -41,11 +41,17 @@ class TransientSettings:
 
     returns_per_run: int = 5
     """Returns per run, before the motion is classified."""
+    first_steps: int = 1000
+    """Period of the leading mode in units of a motion's first time step."""
+    longest_wait: int = 3
+    """Longest duration of a run in units of the expected duration of its returns."""
     first_returns: int = 3
     """Returns of the first run, after which only closed motions are recognised: a fast-growing motion may
     close early."""
     newton_distance: float = 0.1
-    """Relative distance of two returns at which Newton's method starts; divided by 10 after each failure."""
+    """Relative distance of two returns at which Newton's method starts."""
+    newton_divisor: int = 10
+    """Divisor of this distance for each failure of Newton's method."""
     stored_path_distance: float = 1e-3
     """`newton_distance` for a stored path in the first half of the allowed periods: smaller, to show the
     settling."""
@@ -115,7 +121,7 @@ class Transient:
         self.first_scheme, self.scheme, noise, steps = schemes_of(rate * period, request.transient > 0)
         self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
         self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
-        self.step = period / 1000
+        self.step = period / TRANSIENT.first_steps
         """First time step of the next run, tau2."""
         self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_returns)
         """Times and bending moments of the last returns since the last jump."""
@@ -229,7 +235,7 @@ class Transient:
             else (TRANSIENT.returns_per_run, self.scheme)
         )
         limit = until_returns(self.row, z, returns)
-        duration = 3 * returns * self.mode.period
+        duration = TRANSIENT.longest_wait * returns * self.mode.period
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
@@ -248,7 +254,7 @@ class Transient:
 
     def _near_enough(self) -> float:
         """Relative distance of two returns below which Newton's method is tried."""
-        distance = TRANSIENT.newton_distance / 10**self.failures
+        distance = TRANSIENT.newton_distance / TRANSIENT.newton_divisor**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
         return min(distance, TRANSIENT.stored_path_distance) if settles else distance
 
