@@ -471,3 +471,17 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     with pytest.raises(Unsolvable):
         refinement.refine(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes
+
+
+def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
+    """It went on to the last return, and then "none periodic" was said of it."""
+
+    def fails(*_):
+        raise Unsolvable("no orbit")
+
+    monkeypatch.setattr(transient, "refined_cycle", fails)
+    c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
+    assert c.status == CycleStatus.not_settled
+    assert c.periods < REQUEST.most_periods
+    assert "periodic to" in c.message
+    assert "but on finer meshes no cycle is found near the motion" in c.message

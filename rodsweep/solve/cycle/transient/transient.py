@@ -66,6 +66,11 @@ class TransientSettings:
     amplitude."""
     max_returns: int = 400
     """Number of last returns that are kept to recognise a torus."""
+    closed_distance: float = 1e-5
+    """Relative distance of two returns, the integrator's tolerance, at which a motion is closed."""
+    max_unsolved: int = 3
+    """Number of times that Newton's method has no cycle near a motion, after which a closed motion ends: the
+    next start would be the same."""
     min_returns: int = 100
     """Smallest number of returns for which time steps are allowed: a few returns may need many."""
 
@@ -127,6 +132,10 @@ class Transient:
         """Times and bending moments of the last returns since the last jump."""
         self.clock = 0.0
         self.waited = self.steps = self.jumps = self.failures = self.next_newton = 0
+        self.failed_starts = 0
+        """Successive starts of Newton's method without a cycle near."""
+        self.unsolved = ""
+        """The reason why a closed motion has no cycle; empty while it is sought."""
 
     def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
         """The part of the motion that the request stores."""
@@ -138,7 +147,7 @@ class Transient:
         """Outcome of the motion from z, shape (unknowns,)."""
         z = self._relaxed(z)
         first = True
-        while self.waited < self.most_periods and self.steps < self.max_steps:
+        while self.waited < self.most_periods and self.steps < self.max_steps and not self.unsolved:
             report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             run = self._run_of_returns(z, first)
             if end := early_end(self.beam, run, self.waited):
@@ -195,6 +204,8 @@ class Transient:
 
     def _not_settled(self, z: Array) -> str:
         """The reason why the motion, now at the state z, has no outcome."""
+        if self.unsolved:
+            return f"{counted(self.waited, 'return')} of the tip, {self.unsolved}"
         if self._bends_visibly(z):
             work = f" in {self.steps} time steps, the most allowed" if self.steps >= self.max_steps else ""
             return f"{counted(self.waited, 'return')} of the tip{work}, none periodic"
@@ -250,7 +261,12 @@ class Transient:
             return None
         self.next_newton = self.waited + TRANSIENT.returns_per_run * 2**self.failures
         self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
-        return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
+        found = self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
+        if self.failed_starts >= TRANSIENT.max_unsolved and distance < TRANSIENT.closed_distance:
+            self.unsolved = (
+                f"periodic to {distance:.0e}, but on finer meshes no cycle is found near the motion"
+            )
+        return found
 
     def _near_enough(self) -> float:
         """Relative distance of two returns below which Newton's method is tried."""
@@ -269,7 +285,9 @@ class Transient:
         try:
             found = refined_cycle(orbit, self.accuracy, self.workspace, self.along)
         except Unsolvable:
+            self.failed_starts += 1
             return None
+        self.failed_starts = 0
         if found.stable is False:
             self.unstable = found
         # A multiplier of 1 to rounding is a closed motion of any amplitude, not a limit cycle.
