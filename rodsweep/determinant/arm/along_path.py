@@ -24,6 +24,10 @@ FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
 NOISE_OF_DOUBLES = 5.0
 """Rounding error of D at a double eigenvalue, in units of its noise: 4.7 at most at 44 double eigenvalues of
 stepped arms, against 19 digits."""
+OTHER_LEVELS = (1, 4, 16)
+"""Elements for these multiples of |w| are compared to estimate rounding errors at a double eigenvalue."""
+SAFE_SPREAD = 3.0
+"""Safety factor on the spread of four values."""
 MAX_SHORTENINGS = 20
 """Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
 
@@ -96,9 +100,21 @@ class ArmAlongPath:
                 return FAILED
             small = abs(in_p) <= LAST_NEWTON_STEP * e_p
             if small and (abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2):
-                return Zero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
+                more = max(self._spread(x, p, S) / blur, 1.0)
+                return Zero(x, p, max(more * e_x, abs(in_x)), max(more * e_p, abs(in_p)))
             last = abs(in_x)
         return FAILED
+
+    def _spread(self, x: float, p: float, S: float) -> float:
+        """Rounding error of D exp(-S) at real w = x: the spread between different elements, times a safety
+        factor.
+
+        Minors that are large in the middle of an arm have rounding errors that the noise of D does not show.
+        """
+        arm = self.determinant(p)
+        values = [self._value(x, p), *(arm.value_at_level(x, factor) for factor in OTHER_LEVELS)]
+        D = [value.D.real * math.exp(value.S - S) for value in values]
+        return SAFE_SPREAD * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> Value:
         """D and D_w at real w = x."""
