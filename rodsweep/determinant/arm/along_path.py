@@ -24,9 +24,10 @@ FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
 NOISE_OF_DOUBLES = 5.0
 """Rounding error of D at a double eigenvalue, in units of its noise: 4.7 at most at 44 double eigenvalues of
 stepped arms, against 19 digits."""
-PROPAGATOR_ERROR = 2.0
-"""Error of D at a double eigenvalue, in units of the difference of D between two sets of elements. Rounding
-errors of the propagators, of which the noise of D knows nothing, reach 300 times the noise."""
+OTHER_LEVELS = (1, 4, 16)
+"""Elements for these multiples of |w| are compared to estimate rounding errors at a double eigenvalue."""
+SAFE_SPREAD = 3.0
+"""Safety factor on the spread of four values."""
 MAX_SHORTENINGS = 20
 """Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
 
@@ -99,17 +100,22 @@ class ArmAlongPath:
                 return FAILED
             small = abs(in_p) <= LAST_NEWTON_STEP * e_p
             if small and (abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2):
-                rounding = PROPAGATOR_ERROR * self._difference(x, p) / max(abs(D_p), 1e-300)
-                e_p += rounding + ROUNDING * abs(p)
-                return Zero(x, p, max(e_x, abs(in_x)), e_p + abs(in_p))
+                more = max(self._spread(x, p, S) / blur, 1.0)
+                e_p = max(more * e_p, abs(in_p)) + ROUNDING * abs(p)
+                return Zero(x, p, max(more * e_x, abs(in_x)), e_p)
             last = abs(in_x)
         return FAILED
 
-    def _difference(self, x: float, p: float) -> float:
-        """Difference of D at real w = x between the family's elements and those of the arm alone."""
-        family = self._value(x, p)
-        alone = self.determinant(p).value(complex(x, 0.0))
-        return abs(family.D.real - alone.D.real * math.exp(alone.S - family.S))
+    def _spread(self, x: float, p: float, S: float) -> float:
+        """Rounding error of D exp(-S) at real w = x: the spread between different elements, times a safety
+        factor.
+
+        Minors that are large in the middle of an arm have rounding errors that the noise of D does not show.
+        """
+        arm = self.determinant(p)
+        values = [self._value(x, p), *(arm.value_at_level(x, factor) for factor in OTHER_LEVELS)]
+        D = [value.D.real * math.exp(value.S - S) for value in values]
+        return SAFE_SPREAD * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> Value:
         """D and D_w at real w = x."""

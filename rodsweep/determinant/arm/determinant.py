@@ -58,6 +58,11 @@ class ArmDeterminant:
         W, polynomials = self.level(abs(w))
         return chain_value(complex(w), W, polynomials)
 
+    def value_at_level(self, w: complex, factor: float) -> Value:
+        """As `value`, with the elements for |w| times a factor of at least 1."""
+        W, polynomials = self.level(factor * abs(w), 0)
+        return chain_value(complex(w), W, polynomials)
+
     def elements(self, size: float) -> int:
         """The number of elements for D at |w| = size."""
         return len(self.level(size)[1])
