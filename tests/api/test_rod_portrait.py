@@ -81,15 +81,17 @@ def test_the_paragraph_of_an_arm_is_in_si_units(portrait, of_arm):
     assert "F = " not in text.replace("F = 1 stands for", "")
 
 
-def test_the_picture_of_an_arm_has_round_numbers_of_si_units(of_arm):
+def test_the_picture_of_an_arm_is_drawn_in_si_units(portrait, of_arm):
+    of_rod = portrait.figure().axes
     bar, upper, lower, *small = portrait_figure(of_arm).axes
     assert (lower.get_xlabel(), upper.get_ylabel()) == ("pressure (kPa)", "largest $y$ of the tip (cm)")
-    for axis, factor in ((lower.xaxis, 0.155), (upper.yaxis, 10.0), (lower.yaxis, 3.5)):
-        texts = [axis.get_major_formatter()(at) for at in axis.get_majorticklocs()]
-        assert [float(text) for text in texts] == pytest.approx(
-            [factor * at for at in axis.get_majorticklocs()]
-        )
-        assert max(len(text.lstrip("-0.")) for text in texts) <= 3
+    for axes, before, y in ((upper, of_rod[1], 10.0), (lower, of_rod[2], 3.5)):
+        for line, own in zip(axes.lines, before.lines, strict=True):
+            assert line.get_xdata() == pytest.approx(0.155 * np.asarray(own.get_xdata()))
+            assert line.get_ydata() == pytest.approx(y * np.asarray(own.get_ydata()))
+    (band,), (own,) = upper.patches, of_rod[1].patches
+    assert (band.get_x(), band.get_width()) == pytest.approx((0.155 * own.get_x(), 0.155 * own.get_width()))
+    assert lower.get_xlim() == pytest.approx(0.155 * np.array(of_rod[2].get_xlim()))
     assert small[-1].get_xlim()[1] > 10  # cm
 
 

@@ -145,3 +145,10 @@ def test_an_arm_without_load_has_no_force():
     with pytest.raises(rs.InputError, match="^pressure is missing"):
         _ = arm.F
     assert SlenderArm(**WATER, force=0.0).load == "force"
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_tube_without_an_amplitude_has_an_unknown_flattening_of_its_wall():
+    tube = SlenderArm(length="10 cm", radius="5 mm", inner_radius="3 mm", young="1 MPa", viscosity="12 Pa s")
+    effects = named(effects_of(tube, math.nan, math.nan, amplitude=math.nan))
+    assert np.isnan(effects["flattening of the wall"].value)

@@ -115,7 +115,7 @@ def effects_of(
     tubes = [each.section for each in arm.shape.stations if isinstance(each.section, Tube)]
     if tubes:
         walls = [wall_effect(arm.si.length, t.radius, t.inner_radius, arm.poisson, wide) for t in tubes]
-        effects.append(max(walls, key=lambda effect: float(np.nanmax(effect.value))))
+        effects.append(max(walls, key=lambda effect: np.fmax.reduce(np.ravel(effect.value))))
     return tuple(effects)
 
 

@@ -20,7 +20,7 @@ from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_t
 from ..summary.branch import coexistence, two_cycles
 from .paragraph import paragraph, status_meaning
 from .results import RodResults
-from .units import label_in
+from .units import draw_in
 
 SIZE = (10.0, 10.4)
 """Width and height of the picture, in inches."""
@@ -57,6 +57,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         lower = figure.add_subplot(grid[2, :], sharex=bar)
         handles = _draw_thresholds(bar, results)
         handles += _draw_branches(upper, lower, results)
+        _show_units((bar, upper, lower), results)
         for place, kind in enumerate(modes):
             _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
         panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLES)]
@@ -66,6 +67,16 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
             text = textwrap.fill(paragraph(results), LINE_WIDTH)
             figure.suptitle(style.plain(text), x=0.01, ha="left", fontsize=8)
         return figure
+
+
+def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
+    """Draws the panels of the thresholds, the largest y and the period, which share their loads, in units."""
+    units = results.units
+    end = panels[0].get_xlim()[1]
+    for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
+        if units.load and axes.axison:
+            draw_in(axes, units.force.factor, y)
+    panels[0].set_xlim(0, units.force.factor * end)
 
 
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
@@ -112,8 +123,6 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
     force, y, period = units.labels
     upper.set_ylabel(y)
     lower.set(ylabel=period, xlabel=force, yscale="log")
-    for axis, unit in ((lower.xaxis, units.force), (lower.yaxis, units.time), (upper.yaxis, units.length)):
-        label_in(axis, unit)
     return handles
 
 

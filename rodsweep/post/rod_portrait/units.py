@@ -4,8 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import tau
 
-from matplotlib.axis import Axis
-from matplotlib.ticker import FuncFormatter, Locator, LogLocator, MaxNLocator, NullFormatter
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...model.arm.quantities import SCALE_OF
 from ...results.file.view import View
@@ -16,8 +18,8 @@ from ..summary.ranges import listed, rounded
 
 THRESHOLDS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """Index of the symbol of a threshold, and its word, by kind."""
-TICK_SPACES = 8
-"""Largest number of spaces between labels of a linear axis."""
+LABELLED = (1.0, 2.0, 5.0)
+"""Labelled numbers of each decade of a logarithmic axis in SI units."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,30 +110,16 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
     return PortraitUnits(force=units[0], length=units[1], time=units[2], frequency=hertz, load=load)
 
 
-def label_in(axis: Axis, unit: Unit) -> None:
-    """Labels an axis of dimensionless values with values in a unit, at round numbers of the unit."""
-    if unit.factor == 1:
-        return
-    inner: Locator = MaxNLocator(TICK_SPACES, steps=[1, 2, 5, 10])
-    if axis.get_scale() == "log":
-        inner = LogLocator(subs=(1.0, 2.0, 5.0))
-    axis.set_major_locator(ScaledLocator(inner, unit.factor))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * unit.factor:.6g}"))
-    axis.set_minor_formatter(NullFormatter())
-
-
-class ScaledLocator(Locator):
-    """Ticks at the places of an inner locator for values that are multiplied by a factor."""
-
-    def __init__(self, inner: Locator, factor: float):
-        self.inner = inner
-        self.factor = factor
-
-    def __call__(self) -> Sequence[float]:
-        """Ticks in the range in view."""
-        assert self.axis is not None
-        return self.tick_values(*self.axis.get_view_interval())
-
-    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
-        """Ticks between two values."""
-        return [at / self.factor for at in self.inner.tick_values(vmin * self.factor, vmax * self.factor)]
+def draw_in(axes: Axes, x: float, y: float) -> None:
+    """Multiplies all that a panel has drawn, curves, marks and upright areas, by factors of x and y."""
+    for line in axes.lines:
+        line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))
+    for area in axes.patches:
+        assert isinstance(area, Rectangle)  # a bar or a span along x
+        area.set(x=x * area.get_x(), width=x * area.get_width())
+    axes.relim()
+    axes.autoscale_view()
+    if y != 1 and axes.get_yscale() == "log":
+        axes.yaxis.set_major_locator(LogLocator(subs=LABELLED))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_minor_formatter(NullFormatter())

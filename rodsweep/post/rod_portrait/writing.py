@@ -48,12 +48,14 @@ def portrait_page(results: RodResults) -> str:
     """The portrait as a page of HTML that needs no network."""
     picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
     views = [*results.views.items()]
-    views += [(f"modes at F = {F:.6g}", view) for F, view in results.modes.values()]
-    views += [(f"limit cycle at F = {F:.6g}", view) for F, view in results.cycles]
+    at = results.units.force_at
+    views += [(f"modes at {at(F)}", view) for F, view in results.modes.values()]
+    views += [(f"limit cycle at {at(F)}", view) for F, view in results.cycles]
     return rendered(
         "portrait.html",
         [picture],
-        title=f"Rod with {results.rod.words}",
+        kind=results.rod.kind,
+        title=f"{results.rod.kind.capitalize()} with {results.rod.words}",
         paragraph=paragraph(results),
         pictures=Pictures((Captioned(CAPTION, picture),)),
         tables=[(name, [t for t in page_tables(view) if t.name not in HIDDEN]) for name, view in views],
