@@ -63,7 +63,10 @@ def count_lines(found: np.ndarray) -> list[str]:
 
 
 def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """Line on the cost of the rows compared with a uniform grid, if it is counted; done: mask of the rows."""
+    """Line on the cost of the rows compared with a uniform grid, if it is counted.
+
+    done: a mask of the rows' shape.
+    """
     if not has_covering(view.config):
         return []
     v = view.variables
