@@ -22,8 +22,7 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
-from .asking import job_from, known_load, tree_of
-from .axes import plain
+from .asking import job_from, known_load, plain, tree_of
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
@@ -32,8 +31,6 @@ if TYPE_CHECKING:
 
 REQUIRED = tuple(name for name, p in PARAMETERS.items() if p.default is None and name != "F")
 """Parameters that every rod needs."""
-
-
 ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
 
 

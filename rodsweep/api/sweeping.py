@@ -17,10 +17,9 @@ from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import described, log_file
-from .answers.showing import Display, display
 from .asking import Tree, job_from, refuse_unfit, tree_of
 from .dataset import open_result
-from .solving import solve_here
+from .solving import Display, display, solve_here
 
 COMPUTED = (0, 1)
 """Exit statuses of a complete run: all points succeeded, or some did not."""

@@ -32,7 +32,6 @@ LEFT_OUT = {
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
 """Names of the peers by study, for users without the folder of peers."""
-
 Section = Callable[[int], tuple[list[str], list[Measurement]]]
 """A comparison with its own tables: from the number of rounds to (blocks of text, measurements)."""
 

@@ -16,7 +16,6 @@ from ..post.work_precision import draw_work_precision
 from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")
-
 SHORT = 0.02
 """Duration in seconds below which the time of a run depends on the caches left by the previous run."""
 

@@ -24,9 +24,8 @@ import click  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
-from .explore_command import explore  # noqa: E402 - after the environment is set
 from .launchers import speaks  # noqa: E402 - after the environment is set
-from .page_commands import portrait, report  # noqa: E402 - after the environment is set
+from .page_commands import explore, portrait, report  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
 

@@ -1,4 +1,4 @@
-"""Options of the commands `arm` and `portrait`: quantities with units, segments, and the law."""
+"""Options of the commands `arm` and `portrait`: quantities with units, segments, the law, parameters."""
 
 from collections.abc import Callable, Collection
 from typing import Any
@@ -7,6 +7,7 @@ import click
 
 from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE
+from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
 REMARKS = {
     "length": ", by default the sum of the segments",
@@ -17,8 +18,6 @@ REMARKS = {
     "density_difference": ", for its weight",
 }
 """Remarks that follow a quantity's meaning in `--help`."""
-
-
 OF_MATERIAL: dict[str, dict[str, Any]] = {
     "--segment": {
         "multiple": True,
@@ -32,8 +31,6 @@ OF_MATERIAL: dict[str, dict[str, Any]] = {
     },
 }
 """Options of shape and material that are no quantities."""
-
-
 Command = Callable[..., Any]
 
 
@@ -59,3 +56,17 @@ def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
     help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")
     return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)
+
+
+def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Adds an option for every parameter of a rod but the force, which is found. None is required, because
+    an arm may give them.
+    """
+    for name in reversed([name for name in (*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name != "F"]):
+        parameter = PARAMETERS[name]
+        meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
+        unit = "" if parameter.unit == "1" else f", in {parameter.unit}"
+        default = "" if parameter.default is None else f"; by default {parameter.default:g}"
+        help_text = f"{meaning}{unit}{default}."
+        command = click.option(f"--{name}", name, type=float, help=help_text)(command)
+    return command

@@ -53,7 +53,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 
     stop = StopRequest(acknowledges=not rank_variables())
     stop.listen()  # first: a launcher's warning signal may come before slow imports are done
-    from ..sweep.points.shards import shard_of
+    from ..sweep.points.ranges import shard_of
     from .run.options import RunOptions
     from .run.running import run_config
 
@@ -220,7 +220,7 @@ def schema() -> None:
     """Print the JSON schema of a config, from which editors complete keys and mark mistakes."""
     import json
 
-    from ..config.json.schema import json_schema
+    from ..config.json_schema import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False))
 

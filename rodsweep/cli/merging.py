@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from ..results.file.combination.merge import MergeResult, merge
-from ..tasks.running.plan import plan_without_solver
+from ..tasks.running.job import plan_without_solver
 from ..wording import counted
 
 

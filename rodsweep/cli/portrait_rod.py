@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
-from ..sweep.listener import NoClaims, RankListener
-from ..sweep.stop import StopRequest
+from ..sweep.stop import NoClaims, RankListener, StopRequest
 from ..watch import SolvePosition, reporting_to
 
 if TYPE_CHECKING:

@@ -80,8 +80,6 @@ Number = Annotated[
     PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
 ]
 """A number. JSON stores infinite numbers as text."""
-
-
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
 """JSON schema of a number on an axis."""
 AXIS_SCHEMA: dict[str, Any] = {
@@ -103,8 +101,6 @@ AXIS_SCHEMA: dict[str, Any] = {
     ],
 }
 """JSON schema of the values taken by `as_axis`."""
-
-
 DIGITS_OF_QUANTITY = 15
 """Significant digits of a quantity in SI units; unit conversion changes the 16th digit."""
 

@@ -24,7 +24,6 @@ STOPPED = ("no_cycle_found", "list_full")
 """Reasons for an end beyond which a branch goes on."""
 JOINED_RANGES = 1e-9
 """Largest relative distance between two ranges that are joined."""
-
 Range = tuple[float, float]
 """(smallest, largest) value of the parameter."""
 

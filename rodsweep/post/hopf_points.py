@@ -15,7 +15,7 @@ from ..model.parameters import OPTIONAL_PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
-from ..sweep.points.lines import ParameterLine
+from ..sweep.points.points import ParameterLine
 
 ON_A_HOPF_POINT = 1e-9
 """Relative distance below which a point of a file lies on a Hopf point; the growth rate is then rounding

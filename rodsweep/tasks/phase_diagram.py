@@ -12,7 +12,7 @@ from ..results.layouts.phase_diagram import (
 )
 from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram_of_arms, estimate_lines
 from .diagram.curves import DiagramCurves
-from .diagram.cycles import cycles_record
+from .diagram.records import cycles_record
 from .parts import ProvedTask
 from .protocol import Part, Solver
 from .thresholds import search_record

@@ -28,7 +28,6 @@ MODE_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
 """Default of the largest force, as of the task thresholds."""
-
 Solve = Callable[[Job], View]
 
 

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from ...post.headline.digits import Digits
-from ...post.headline.one_rod import OneRod
+from ...post.headline.one_rod import Digits, OneRod
 from ...post.headline.sentences import HEADLINES, Headline
 from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
 from ...post.tables.columns import Column

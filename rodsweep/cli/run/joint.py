@@ -11,12 +11,10 @@ from ...results.layouts.variables import Filled
 from ...results.run.checkpoints import UnitResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.kept import forget_all
-from ...sweep.handout import Handout
-from ...sweep.listener import NoClaims, RankListener
+from ...sweep.handout import Handout, Pool
 from ...sweep.loop import Indices, Loop, Share, sweep
-from ...sweep.pool import Pool
 from ...sweep.progress import ProgressReporter, Silent
-from ...sweep.stop import StopRequest
+from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import AllPoints, Arrays
 from ...tasks.running.unforeseen import PASSING, UnitNote

@@ -16,13 +16,11 @@ from ...sweep.loop import Share
 from ...sweep.points.ranges import IndexRange, total
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
-from ...tasks.running.job import Job, job_of
-from ...tasks.running.plan import plan_of
+from ...tasks.running.job import Job, job_of, plan_of
 from ...tasks.running.unforeseen import Log, guarded
 from ...wording import counted
 from ..beforehand import flutter_beforehand, planned_beforehand, say_stopped
-from .closing import RunEnd
-from .contribution import MAX_FAILURES_PRINTED, Contribution, history_of, of_the_last_run
+from .contribution import MAX_FAILURES_PRINTED, Contribution, RunEnd, history_of, of_the_last_run
 from .joint import JointDue, JointWork
 from .options import RunOptions
 from .point_work import PointWork

@@ -9,7 +9,10 @@ values of drag are an axis of gamma3.
 
 from collections.abc import Mapping
 
+from ...errors import InputError
 from ...model.arm.quantities import LOADS, RELATIVE
+from ...model.arm.refusals import NotSlender
+from ...model.arm.section import NoWall
 from ...model.parameters import PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
@@ -62,3 +65,15 @@ def moved_by(axis: str) -> str:
     """The only parameter that an axis of an arm's grid changes; "" if the axis changes several parameters or
     no parameter."""
     return axis if axis in PARAMETERS else MOVES.get(axis, "")
+
+
+UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+"""Status of a point by the error of its arm."""
+
+
+class UncoveredArm(ValueError):
+    """The rod model does not apply to this arm; `status` is the status of the arm's points."""
+
+    def __init__(self, error: InputError):
+        super().__init__(f"parameters.arm.{error}")
+        self.status = UNCOVERED[type(error)]

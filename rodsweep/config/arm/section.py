@@ -16,17 +16,14 @@ from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..material import LawName, SectionName
 from ..values import Axis, Strict, Values
-from .axes import AXIS_OF, LOAD_AXES, SECTION
+from .axes import AXIS_OF, LOAD_AXES, SECTION, UNCOVERED, UncoveredArm
 from .quantities import Drags, Quantities, drags_written, with_shares
 from .shape import SEGMENTS_ALLOWED, Segments, build_of, is_standard, material_of, with_length
-from .uncovered import UNCOVERED, UncoveredArm
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
 DragAllowed = Field(description="range, the name of a drag, or a list of names")
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
-
-
 NO_LOAD = {"pressure": 0.0}
 
 

@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...model.arm.segments import EXAMPLE, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import STANDARD, Build
 from ...model.units import unit_of, written_in
-from .uncovered import UncoveredArm
+from .axes import UncoveredArm
 
 if TYPE_CHECKING:
     from .section import ArmSection

@@ -36,8 +36,6 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "branch": draw_branch,
 }
 """Function of each task that writes the figure and returns a description."""
-
-
 DEFAULT_LOOK = Look()
 """Default appearance of figures."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}

@@ -19,10 +19,9 @@ from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.variables import has_covering
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_between_crossings
+from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXELS, ClassifiedPoints, DrawnPlane, coloured
-from .stability.row_classes import class_along_row
 from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
 from .style import number as number_text
 

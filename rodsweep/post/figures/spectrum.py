@@ -1,12 +1,16 @@
 """Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from string import ascii_lowercase
 
 import matplotlib.cm
 import matplotlib.colors
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ...errors import InputError
 from ...results.file.view import View
@@ -15,10 +19,30 @@ from .lists import as_grid
 from .request import FigureRequest
 from .sections import section
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
-from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
-from .spectra.panels import MAX_PANELS, draw_panels
-from .style import LABELS, fixed_text, heading, long_axes, require, scale
+from .spectra.line import (
+    FOLLOWED_ROOTS,
+    THRESHOLD_LINE,
+    THRESHOLD_LOOKS,
+    draw_line,
+    draw_roots,
+    mark_thresholds,
+    roots_to_follow,
+    threshold_text,
+)
+from .style import LABELS, fixed_text, heading, legend_below, long_axes, require, scale
 
+MAX_PANELS = 12
+"""Largest number of panels on a page."""
+PANEL_HEIGHT = {1: 2.1, 2: 2.6}
+"""Height of a panel, in inches, by the number of columns."""
+FIGURE_WIDTH = {1: 3.375, 2: 7.0}
+"""Width of the figure, in inches, by the number of columns."""
+THRESHOLD_WORDS = {
+    "onset": "onset of oscillation",
+    "hopf": "change of stability",
+    "restabilization": "change of stability",
+}
+"""Entries of the common legend for lines at thresholds; the panel titles have names and forces."""
 MAP_COLOURS = "PuOr_r"
 SHADES_PER_SIGN = 40
 """Number of colours of a map on each side of zero growth."""
@@ -26,7 +50,6 @@ MAX_LINE_PANELS = 6
 """Largest number of values of a parameter that get a panel each; for more values a map interpolates."""
 SMALLEST_SHADE = 1e-4
 """Growth rate, in units of the largest, below which the colour scale is linear."""
-
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 
@@ -145,3 +168,31 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
     across, up = np.meshgrid(x, y, indexing="ij")
     axes.scatter(across.ravel(), up.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
     axes.axis(limits)
+
+
+def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
+    """Figure of the followed roots of each file, in one column if narrow, with a common legend."""
+    columns = 1 if narrow else 2
+    rows = -(-len(views) // columns)
+    size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    handles: dict[str, Artist] = {}
+    for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
+        (name,) = long_axes(view)
+        draw_roots(panel, view, name, roots)
+        thresholds = mark_thresholds(panel, view, name)
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+        for threshold in thresholds:
+            handles.pop(threshold_text(threshold), None)
+            word = THRESHOLD_WORDS[threshold.kind]
+            _, style = THRESHOLD_LOOKS[threshold.kind]
+            handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
+        text = heading(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
+        panel.set_title(f"({letter})  {text}", loc="left")
+    for panel in panels[len(views) :]:
+        panel.remove()
+    legend_below(figure, list(handles.values()), 2 if narrow else 3)
+    figure.suptitle(FOLLOWED_ROOTS[roots])
+    return figure

@@ -52,8 +52,6 @@ STYLE = {
     "ps.fonttype": 42,
 }
 """Settings of matplotlib for all figures."""
-
-
 FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
 """Settings of font sizes."""

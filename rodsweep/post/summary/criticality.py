@@ -14,7 +14,6 @@ from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, r
 from .thresholds import ended_early, not_known, not_known_beyond, not_stored
 
 Number = Callable[[Mapping[str, np.ndarray], int], tuple[float, float]]
-
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
 NAMED_RODS = 8

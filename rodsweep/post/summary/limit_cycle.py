@@ -18,7 +18,6 @@ from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, r
 
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 """Words for outcomes; unlisted statuses are words already."""
-
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR),

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ...results.file.view import View
-from ...sweep.points.lines import ParameterLine, lines_over
+from ...sweep.points.points import ParameterLine, lines_over
 from ...wording import counted, some_of
 from ..hopf_points import BracketedChange, LocatedChange
 from .arm.arm import thresholds_of_arm
@@ -24,7 +24,6 @@ OVER_OTHERS = {
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
 """Words for a change of stability along another parameter, by kind."""
-
 Threshold = LocatedChange | BracketedChange
 """A threshold: located, or bracketed by two points."""
 

@@ -19,7 +19,6 @@ EVENTS = {
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
-
 ENDED_EARLY = "ended_early"
 """Status of a search that ended before the requested force."""
 FIRSTS = {

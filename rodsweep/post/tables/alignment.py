@@ -14,7 +14,6 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
 NO_BREAK = "\xa0"
 GLUED = re.compile(r" = \S+| \(\+- [^)]*\)")
 """Parts of a sentence that stay on one line: a value beside its name, an error beside its number."""
-
 Line = tuple[str, ...]
 
 

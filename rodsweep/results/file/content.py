@@ -34,10 +34,8 @@ NUMBERS = "iuf"
 """Kinds of NumPy types that variables of a result have."""
 BYTES_A_READ = 1 << 18
 """Bytes read at once, to bound the memory."""
-
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
 """Attribute added by xarray on writing, without effect."""
-
 Digests = dict[str, dict[str, str]]
 """Digests by name, under the keys `attributes` and `variables`."""
 

@@ -25,7 +25,6 @@ MAX_REREADS = 20
 point to a fault."""
 SNAPSHOT = "snapshot"
 """Attribute with the time of a snapshot, which marks a file as a snapshot."""
-
 Found = TypeVar("Found")
 
 

@@ -32,7 +32,6 @@ BYTES_A_READ = 1 << 20
 LARGEST_INCLUDED = 1 << 16
 """Largest size, in bytes, of a variable whose numbers the checksum includes: axes, and numbers read on every
 opening."""
-
 Piece = tuple[int, int]
 """(offset, size) in bytes."""
 

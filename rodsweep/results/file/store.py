@@ -41,7 +41,6 @@ from .validation import Header, is_ours, reading
 
 BACKUPS = "before-*.h5"
 """Copies, beside the journals, of the file before an extension that is not complete yet."""
-
 Additions = Callable[[h5py.File], Sequence[Filled]]
 """Function from the open file to complete variables added to it."""
 

@@ -25,7 +25,6 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
 INCREASES: dict[str, dict[str, Increase]] = {task: module.INCREASES for task, module in MODULES.items()}
 """Options of each task that ask for more of a point. A change of any further option makes a different
 file."""
-
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,

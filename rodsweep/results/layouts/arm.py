@@ -73,7 +73,6 @@ BRANCH_FORCES = ("special_at", "special_error")
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Variables with these extra dimensions are stored in SI units as well; longer tables are not stored
 twice."""
-
 EFFECTS = (
     "inertia_of_the_arm",
     "inertia_of_the_fluid",

@@ -21,7 +21,6 @@ ALONG = "branch_point"
 """Dimension of the cycles of all branches."""
 SPECIAL = "special"
 """Dimension of the special points of all branches."""
-
 SPECIAL_MEANINGS = {
     "none": "no special point: the list has more room than points",
     "hopf": "Hopf point: a branch of cycles begins or ends at the straight rod",
@@ -37,7 +36,6 @@ SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
 """Kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
 """Reasons for the end of a branch at a special point of the kind `end`."""
-
 ERRORS = (
     ("period_error", "the relative error of period"),
     ("amplitude_error", "the relative error of tip_y_max"),

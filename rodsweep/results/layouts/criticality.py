@@ -63,7 +63,6 @@ NORMAL_FORM = (
     Variable("elements", "<i2", 0, "1", "spectral elements used", (ALONG,)),
     Variable("order", "<i2", 0, "1", "polynomial order used", (ALONG,)),
 )
-
 INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 

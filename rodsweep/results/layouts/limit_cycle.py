@@ -95,7 +95,6 @@ TRANSIENT = (
         for name, units in TIP_UNITS.items()
     ),
 )
-
 HOPF = "hopf"
 """Dimension of the Hopf points on the lines between the points of a file."""
 HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
@@ -152,7 +151,6 @@ HOPF_NUMBERS = (
     integer("hopf_lines_proved", "number of searched lines whose list of Hopf points is proved complete"),
 )
 """Errors and frequency of a Hopf point, and how many lines were searched."""
-
 NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
 """Increase of the data of a cycle; a point without a cycle is complete already."""
 INCREASES = {

@@ -31,7 +31,6 @@ GROWTH = (
     real("transient_time", "tau2", "time at which transient_growth is reached"),
     real("growth_error", "1", "relative error of transient_growth"),
 )
-
 INCREASES = {
     "modes": NEEDS_NEW_SOLVE,
     "nodes": NEEDS_NEW_SOLVE,

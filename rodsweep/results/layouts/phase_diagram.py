@@ -41,7 +41,6 @@ CURVE_ENDS = {
 """Reasons for the end of a boundary curve; the file stores the index in this list."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """Kinds of boundary curves: double real eigenvalues, where oscillations set in or end, or Hopf points."""
-
 STABLE_STATES = (
     (-1, "missing"),
     (0, "neither_known"),
@@ -56,7 +55,6 @@ CYCLE_SPECIAL = "cycle_special"
 """Dimension of the special points of the branches of a row."""
 MAX_CYCLE_SPECIAL = 64
 """Largest number of special points stored for a row; cycle_special_count counts all of them."""
-
 CYCLE_CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",
@@ -70,7 +68,6 @@ CYCLE_CURVE_ENDS = {
 }
 """Reasons for the end of a curve of folds of cycles or of torus points; the file stores the index in this
 list."""
-
 INCREASES = {
     "crossings": CROSSINGS,
     "certify": NEEDS_NEW_SOLVE,

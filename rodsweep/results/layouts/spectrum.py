@@ -113,7 +113,6 @@ FORCE_CHANGES = (
     real("change_frequency", ANGULAR, "angular frequency of the modes that change", CHANGE),
 )
 """Forces at which rods start to oscillate, become unstable or stable again; located after the last point."""
-
 INCREASES = {
     "modes": NEEDS_NEW_SOLVE,
     "method": NEEDS_NEW_SOLVE,

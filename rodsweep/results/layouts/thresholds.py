@@ -29,7 +29,6 @@ THRESHOLDS = (
     real("F_end", FORCE, "largest F of the search"),
     integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
-
 CROSSING_MEANINGS = {
     "none": "no crossing: the list has more room than crossings",
     "onset": "two real leading eigenvalues merge into a complex pair: oscillations set in",

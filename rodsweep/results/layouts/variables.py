@@ -20,11 +20,9 @@ TYPED = "typed_unit"
 """Attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
 """Status of a point that has not been computed."""
-
 ANGULAR = "rad/tau2"
 """Unit of every dimensionless frequency. Frequencies are angular: the imaginary part of an eigenvalue, or 2
 pi/period. For an arm a second variable, with a name ending in `_hz`, has cycles per second."""
-
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "point": ("1", "row of the point list, from 1"),
     "mode": ("1", "order by descending growth rate; in a pair the positive frequency comes first"),
@@ -162,7 +160,6 @@ NEEDS_NEW_SOLVE = Increase(lambda records, before: np.zeros(len(records), bool))
 """Increase for which every point must be solved again."""
 NEEDS_NO_SOLVE = Increase(lambda records, before: np.ones(len(records), bool))
 """Increase for which no point must be solved again, because the addition is computed besides the points."""
-
 Filled = tuple[Variable, NDArray[Any]]
 """A complete variable with values; `extra` names all dimensions."""
 

@@ -12,8 +12,15 @@ from ...model.rod import Rod
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ...results.layouts.variables import Filled
-from .cycles import row_specials, unstored_specials, with_hopf_ends
-from .records import bautin_curve_record, criticality_record, curve_record, cycle_curve_record
+from .records import (
+    bautin_curve_record,
+    criticality_record,
+    curve_record,
+    cycle_curve_record,
+    row_specials,
+    unstored_specials,
+    with_hopf_ends,
+)
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane

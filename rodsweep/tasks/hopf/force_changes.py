@@ -19,8 +19,7 @@ from ...model.rod import Rod
 from ...results.layouts.spectrum import FORCE_CHANGES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import Filled
-from ...sweep.points.lines import lines_over
-from ...sweep.points.points import Points
+from ...sweep.points.points import Points, lines_over
 
 MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points per read of eigenvalues; limits memory for large files."""

@@ -14,9 +14,8 @@ from ...results.file.provenance import now
 from ...results.file.view import View
 from ...solve.backend.availability import require_solvers
 from ...solve.exclusive import solving
-from ...sweep.points.shards import Shard
-from .job import Job
-from .plan import plan_of
+from ...sweep.points.ranges import Shard
+from .job import Job, plan_of
 
 
 @solving

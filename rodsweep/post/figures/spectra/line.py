@@ -10,7 +10,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ....sweep.points.lines import lines_over
+from ....sweep.points.points import lines_over
 from ...hopf_points import BracketedChange, LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale

@@ -28,7 +28,6 @@ from .identity import config_difference
 
 SAME_VALUE = 4 * np.finfo(float).eps
 """Largest relative difference of two values on an axis that counts as rounding."""
-
 Indices = NDArray[np.int64]
 """Flat indices of points, or places on an axis, (n,); -1 for no place."""
 

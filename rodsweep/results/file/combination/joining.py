@@ -33,7 +33,6 @@ OF_ONE_FILE = (
 """Attributes that a joined file does not inherit."""
 ROUNDING_FACTOR = 1e3
 """Largest difference that counts as rounding, in units of the accuracy asked for."""
-
 Planner = Callable[[Config, Points], Plan]
 """Function that makes the plan of a config for given points, without attributes and flags."""
 
