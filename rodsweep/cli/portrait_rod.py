@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 LEFT_OUT = (*LOADS, "fluid_density", "density_difference")
 """Quantities of an arm without an option: the load is found, and densities do not enter the model."""
-REQUIRED = tuple(name for name, each in PARAMETERS.items() if each.default is None and name != "F")
-"""Parameters that a rod without an arm needs."""
 
 
 def rod_from(
@@ -35,7 +33,7 @@ def rod_from(
     quantities: of an arm, with poisson and segments. An arm gives all parameters and keys of `material` that
     are not given.
     """
-    from ..config.axes import DEFAULTS
+    from ..config.axes import DEFAULTS, REQUIRED
     from ..config.material import with_profile_read
     from ..model.arm.arm import SlenderArm
     from ..model.arm.as_rod import material_of, parameters_of

@@ -11,6 +11,8 @@ from .arm.section import ArmSection
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
+REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
+"""Parameters that every rod needs."""
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
 
 

@@ -41,6 +41,13 @@ def overflows(text: str) -> bool:
         return False
 
 
+def cell_number(cell: str) -> float:
+    """Number in a cell of a CSV file; ValueError for any other text."""
+    if "_" in cell or not cell.isascii() or overflows(cell):
+        raise ValueError
+    return as_number(float(cell))
+
+
 def short(value: Any) -> str:
     """`repr` of a value, cut to 60 characters."""
     try:

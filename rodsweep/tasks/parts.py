@@ -178,7 +178,8 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     """Quantities that vary along the arms, in words; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
-    shapes = [] if (tapers == 1).all() else [f"{ratios} {_span(tapers)}"]
+    ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
+    shapes = [] if (tapers == 1).all() else [f"{ratios} {ends}"]
     profile = config.build.profile
     if profile is not None:
         shapes.append(_profile(config, profile))
@@ -198,13 +199,6 @@ def _law(config: Config) -> str:
     """The constitutive law in words."""
     law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
-
-
-def _span(values: np.ndarray) -> str:
-    """The range of several numbers in words."""
-    low = float(values.min())
-    high = float(values.max())
-    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def _deformation(parameter: Parameter, values: np.ndarray) -> Part:

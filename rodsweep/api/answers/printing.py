@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from ...post.headline.one_rod import Digits, OneRod
+from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
 from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
 from ...post.tables.columns import Column
@@ -93,8 +93,10 @@ def whole_text(printed: Printed) -> str:
     for name, columns in printed.lists.items():
         lines = [folded(_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
+            digits = printed.rod.lists[name]
             kept = [column for column in columns if not column.absent.all()]
-            for number, block in enumerate(blocks(_cells(printed.rod.lists[name], kept))):
+            cells = [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in kept]
+            for number, block in enumerate(blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
     return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.ends))]))
@@ -173,11 +175,6 @@ def _brief_cells(printed: Printed, room: int) -> tuple[list[list[str]], int]:
             break
         found += added
     return found, count
-
-
-def _cells(digits: Digits, columns: Sequence[Column]) -> list[list[str]]:
-    """Cells of the columns of a list under their names and units."""
-    return [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in columns]
 
 
 def _brief_list(printed: Printed, room: int) -> list[str]:

@@ -133,12 +133,13 @@ def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
     """Measurements of all methods at all sizes on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(_judge, exact_spectrum(rod, WANTED_MODES))
+        judge = partial(judged_spectrum, exact_spectrum(rod, WANTED_MODES))
         measurements += contest(case, rod, every, rounds, judge)
     return measurements
 
 
-def _judge(exact: list[Any], w: Complex) -> dict[str, float]:
+def judged_spectrum(exact: list[Any], w: Complex) -> dict[str, float]:
+    """Error of eigenvalues, shape (modes,)."""
     return {"error": relative_error(w, exact)}
 
 

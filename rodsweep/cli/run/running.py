@@ -1,7 +1,7 @@
 """`rodsweep run`: read the config, open the file, solve missing points, write them into the file."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -84,7 +84,8 @@ class _Run:
 
     def run(self) -> int:
         """Solves missing points and writes them into the file; returns the exit status."""
-        if self.team.on_first(self._creates):
+        replaces = self.options.fresh or self.options.extend
+        if self.team.on_first(lambda: replaces or not self.output.exists()):
             plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 say_stopped(self.team, self.stop)
@@ -110,10 +111,6 @@ class _Run:
             shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
-
-    def _creates(self) -> bool:
-        """Whether a file will be created, as far as can be decided before opening it."""
-        return self.options.fresh or self.options.extend or not self.output.exists()
 
     def _lacks_curves(self, missing: int) -> bool:
         """Whether only the variables that all points together determine are missing; on the first rank."""
@@ -142,13 +139,15 @@ class _Run:
     def _note(self, indices: Sequence[int], error: Exception) -> None:
         """Writes an unforeseen exception into the log; raises it in strict mode."""
         self.log(indices, error)
-        if self.options.strict:
-            error.add_note(f"at {self._where(indices[0])}")
-            raise error
+        self._raise_if_strict(self._where(indices[0]), error)
 
     def _note_unit(self, place: str, error: Exception) -> None:
         """Writes an unforeseen exception of a unit of joint work into the log; raises it in strict mode."""
         self.log.note(place, error)
+        self._raise_if_strict(place, error)
+
+    def _raise_if_strict(self, place: str, error: Exception) -> None:
+        """Raises the exception with its place in strict mode."""
         if self.options.strict:
             error.add_note(f"at {place}")
             raise error
@@ -202,11 +201,6 @@ class _Run:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
-    def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
-        """Number of points per status in words; left: points of this run not done."""
-        words = {"missing": "of other shards"} if self.shard and not left else {}
-        return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
-
     def _finish(
         self,
         count: int,
@@ -238,7 +232,9 @@ class _Run:
             self._say(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._say(f"{self.output}: {self._outcomes(counts, left)}", amiss)
+        words = {"missing": "of other shards"} if self.shard and not left else {}
+        outcomes = ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
+        self._say(f"{self.output}: {outcomes}", amiss)
         self._say_failures(contributions, exceptions)
         if left or lacks_curves:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

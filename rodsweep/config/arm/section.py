@@ -18,7 +18,7 @@ from ..material import LawName, SectionName
 from ..values import Axis, Strict, Values
 from .axes import AXIS_OF, LOAD_AXES, SECTION, UNCOVERED, UncoveredArm
 from .quantities import Drags, Quantities, drags_written, with_shares
-from .shape import SEGMENTS_ALLOWED, Segments, build_of, is_standard, material_of, with_length
+from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
@@ -93,7 +93,7 @@ class ArmSection(Strict):
     @property
     def material(self) -> dict[str, Any]:
         """The keys among segments, law and section that are given."""
-        return material_of(self)
+        return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property
     def varies(self) -> bool:
@@ -103,7 +103,9 @@ class ArmSection(Strict):
     @property
     def standard(self) -> bool:
         """Whether all arms are uniform and of linear material."""
-        return is_standard(self)
+        if self.segments is None:
+            return self.build.standard and tapers_of(self) == {1.0}
+        return all(build.standard for build in builds_of(self))
 
     @property
     def load_axis(self) -> str | None:

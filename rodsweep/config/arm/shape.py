@@ -45,11 +45,6 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
     return given | {"length": f"{written_in(total, unit, 'm'):.15g} {unit}"}
 
 
-def material_of(arm: "ArmSection") -> dict[str, Any]:
-    """The given keys among segments, law and section of an arm."""
-    return {name: getattr(arm, name) for name in OF_MATERIAL if getattr(arm, name) is not None}
-
-
 def build_of(arm: "ArmSection") -> Build:
     """Law of all arms, and profile of the first that a rod covers.
 
@@ -58,22 +53,15 @@ def build_of(arm: "ArmSection") -> Build:
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
     if all(getattr(arm, name) is None for name in SHAPES):
         return alike
-    if arm.is_grid and len(set(_builds_of(arm))) > 1:
+    if arm.is_grid and len(set(builds_of(arm))) > 1:
         raise ValueError(
             f"parameters.arm.{arm.several[0]} has several values, and the ratios between the segments "
             "would differ from value to value; give one value"
         )
-    return next(_builds_of(arm), alike)
+    return next(builds_of(arm), alike)
 
 
-def is_standard(arm: "ArmSection") -> bool:
-    """Whether all arms are uniform and of linear material."""
-    if arm.segments is None:
-        return arm.build.standard and tapers_of(arm) == {1.0}
-    return all(build.standard for build in _builds_of(arm))
-
-
-def _builds_of(arm: "ArmSection") -> Iterator[Build]:
+def builds_of(arm: "ArmSection") -> Iterator[Build]:
     """Law and profile of every arm that a rod covers."""
     for values in arm.sections():
         with suppress(UncoveredArm):

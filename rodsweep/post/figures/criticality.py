@@ -134,10 +134,13 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
     shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
+    distance = FARTHEST_DRAWN * np.linspace(0, 1, PREDICTION_POINTS) ** 2
     for rod, colour in zip(drawn, COLOURS, strict=False):
         for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
-                axes.plot(*_law(at, size), LINES[int(kind)][0], color=colour, lw=1.4)
+                # The cycles are above the Hopf point for a > 0, below it for a < 0.
+                beside = at * (1 + np.sign(size) * distance)
+                axes.plot(beside, abs(size) * np.sqrt(distance), LINES[int(kind)][0], color=colour, lw=1.4)
                 axes.plot(at, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
@@ -151,18 +154,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
     style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading(view, shared))
-    left_out = (
-        f", of the first {len(drawn)} of {having.size} rods with Hopf points"
-        if len(drawn) < having.size
-        else ""
-    )
-    return (
-        figure,
-        f"the cycles that normal forms predict within {FARTHEST_DRAWN:.0%} of every Hopf point{left_out}",
-    )
-
-
-def _law(at: float, a: float) -> tuple[Array, Array]:
-    """(F, largest y) on the side of a Hopf point with cycles: above it for a > 0, below it for a < 0."""
-    distance = FARTHEST_DRAWN * np.linspace(0, 1, PREDICTION_POINTS) ** 2
-    return at * (1 + np.sign(a) * distance), abs(a) * np.sqrt(distance)
+    shown = f"the cycles that normal forms predict within {FARTHEST_DRAWN:.0%} of every Hopf point"
+    if len(drawn) < having.size:
+        shown += f", of the first {len(drawn)} of {having.size} rods with Hopf points"
+    return figure, shown

@@ -1,7 +1,6 @@
 """Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from string import ascii_lowercase
 
 import matplotlib.cm
@@ -17,7 +16,7 @@ from ...results.file.view import View
 from .layout.fitting import MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
-from .sections import section
+from .sections import section, without_infinite
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
     FOLLOWED_ROOTS,
@@ -115,20 +114,6 @@ def _line_of(given: View, request: FigureRequest) -> View:
             "a figure"
         )
     return view
-
-
-def without_infinite(view: View) -> View:
-    """The view without infinite values of axes, which have no place in a figure."""
-    variables = dict(view.variables)
-    for place, (name, values) in enumerate(view.axes.items()):
-        finite = np.isfinite(values)
-        if len(values) > 1 and not finite.all():
-            shape = variables["status"].shape
-            of_points = [key for key, data in variables.items() if data.shape[: len(shape)] == shape]
-            for key in of_points:
-                variables[key] = np.compress(finite, variables[key], axis=place)
-            variables[name] = values[finite]
-    return replace(view, variables=variables)
 
 
 def _map(view: View, names: list[str]) -> Figure:

@@ -169,6 +169,15 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
+def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
+    """Labels the axes of a panel in a grid of panels that share axes; inner panels get no labels."""
+    place = axes.get_subplotspec()
+    if place is None or place.is_last_row():
+        axes.set_xlabel(xlabel)
+    if place is None or place.is_first_col():
+        axes.set_ylabel(ylabel)
+
+
 def colour_cells(
     axes: Axes,
     edges: tuple[np.ndarray, np.ndarray],

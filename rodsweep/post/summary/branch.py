@@ -1,6 +1,5 @@
 """Branches of cycles in `rodsweep show`: their ends and special points, and ranges with two stable states."""
 
-import json
 from collections.abc import Callable, Iterable, Iterator
 from itertools import combinations
 
@@ -156,7 +155,7 @@ def errors_of(curves: Iterable[StoredBranch]) -> dict[float, float]:
 
 def ends_of(view: View) -> Range:
     """(start, stop) of the followed parameter."""
-    options = json.loads(view.attributes["config_resolved"])["branch"]
+    options = view.config["branch"]
     return float(options["start"]), float(options["stop"])
 
 

@@ -130,15 +130,11 @@ def merged_columns(
         values = column.rows(of_cycle)
         counterpart = named.get(_special_of(column.name, along))
         if counterpart is not None:
-            values = _filled(values, counterpart.rows(of_special))
+            others = counterpart.rows(of_special)
+            both = np.where(values.absent, others.values, values.values)
+            values = replace(values, values=both, absent=values.absent & others.absent)
         merged.append(values)
     return [*merged, named["special_kind"].rows(of_special)]
-
-
-def _filled(values: Column, others: Column) -> Column:
-    """Column `values`, with missing values taken from `others`."""
-    both = np.where(values.absent, others.values, values.values)
-    return replace(values, values=both, absent=values.absent & others.absent)
 
 
 def _special_of(name: str, along: str) -> str:

@@ -41,13 +41,6 @@ from .validation import Header, is_ours, reading
 
 BACKUPS = "before-*.h5"
 """Copies, beside the journals, of the file before an extension that is not complete yet."""
-Additions = Callable[[h5py.File], Sequence[Filled]]
-"""Function from the open file to complete variables added to it."""
-
-
-def no_additions(file: h5py.File) -> Sequence[Filled]:
-    """No variables."""
-    return ()
 
 
 class Store:
@@ -161,8 +154,13 @@ class Store:
         """Folds journals in, and adds variables, also those computed from all points of the complete file."""
         self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
 
-    def fold(self, attributes: dict[str, Any], additions: Additions = no_additions) -> None:
-        """Adds journalled points, attributes and variables by one replacement; deletes the journals."""
+    def fold(
+        self, attributes: dict[str, Any], additions: Callable[[h5py.File], Sequence[Filled]] | None = None
+    ) -> None:
+        """Adds journalled points, attributes and variables by one replacement; deletes the journals.
+
+        additions: function from the open file to complete variables.
+        """
         plan = self.plan
         with disk_refusals(self.path, self._kept):
             self._restore_if_gone()
@@ -194,7 +192,7 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Additions = no_additions,
+        additions: Callable[[h5py.File], Sequence[Filled]] | None = None,
     ) -> None:
         """Writes blocks of points of the given fingerprint into the file, and deletes the journals."""
         with disk_refusals(self.path, self._kept):
@@ -206,7 +204,7 @@ class Store:
                         write_points(copy, chain([first], blocks), layout)
                     if attributes:
                         with h5py.File(copy, "r+") as file:
-                            add_variables(file, additions(file))
+                            add_variables(file, additions(file) if additions else ())
                             file.attrs.update(attributes)
             for journal in journals:
                 journal.unlink(missing_ok=True)

@@ -169,13 +169,9 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Axes of the grid over an arm's quantities of a resolved config; empty for other points."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
-    sizes = {name: _size(axis) for name, axis in axes.items() if isinstance(axis, Mapping)}
+    ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
+    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
     return names_over(sizes, makes_diagram(config["task"]))
-
-
-def _size(axis: Mapping[str, Any]) -> int:
-    """Number of values of a resolved axis."""
-    return len(axis["values"]) if axis.get("values") is not None else int(axis["num"])
 
 
 def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:

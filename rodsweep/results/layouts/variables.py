@@ -70,6 +70,24 @@ class Variable:
         """Whether the variable is 1 for yes and 0 for no."""
         return self.dtype == "|i1" and not self.flags and self.name != STATUS.name
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of the variable in a file."""
+        typed = {TYPED: self.typed} if self.typed else {}
+        flags = flag_attributes(self.flags) if self.flags else {}
+        return {"units": self.units, "long_name": self.long_name} | typed | flags
+
+
+def dimension_attributes(name: str) -> dict[str, Any]:
+    """Attributes of the coordinate of a dimension."""
+    return dict(zip(("units", "long_name"), DIMENSIONS[name], strict=True))
+
+
+def flag_attributes(flags: Iterable[tuple[int, str]]) -> dict[str, Any]:
+    """Attributes with the values and meanings of a word variable."""
+    values, meanings = zip(*flags, strict=True)
+    return {"flag_values": np.array(values, dtype="i1"), "flag_meanings": " ".join(meanings)}
+
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
     """Variable of floating-point numbers; NaN stands for a missing number."""
@@ -93,6 +111,11 @@ def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *ext
     flags = tuple(each if isinstance(each, tuple) else (place, each) for place, each in enumerate(words))
     fill = -1 if any(value == -1 for value, _ in flags) else 0
     return Variable(name, "|i1", fill, "1", long_name, extra, flags)
+
+
+def number_of(word: str, words: Iterable[tuple[int, str]]) -> int:
+    """Number that stands for a word."""
+    return next(number for number, known in words if known == word)
 
 
 def boolean(name: str, long_name: str) -> Variable:

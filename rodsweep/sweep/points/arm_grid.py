@@ -49,7 +49,8 @@ def grid_of_arms(
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along(0, statuses), shape).copy()
     if section.load_axis in RELATIVE:
-        coverage = _with_flutter(coverage, scale)
+        found = np.where(np.isinf(scale), NO_FLUTTER, np.where(np.isnan(scale), FLUTTER_UNKNOWN, SLENDER))
+        coverage = np.where(coverage == SLENDER, found, coverage)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
         if section.load_axis in RELATIVE:
@@ -57,7 +58,9 @@ def grid_of_arms(
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        shares = _crushing_shares(arms) if builds else build.crushing_shares(table.get("taper", np.ones(1)))
+        shares = build.crushing_shares(table.get("taper", np.ones(1)))
+        if builds:
+            shares = _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
         coverage[(coverage == SLENDER) & crushed] = CRUSHED
     if (coverage != SLENDER).all():
@@ -67,18 +70,14 @@ def grid_of_arms(
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes = coverage.astype(np.int8).ravel()
-    failures = _failures(coverage, forces)
+    each = np.broadcast_to(forces, shape).ravel()
+    failures = {int(index): each[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
     return Points(names, columns, False, over, at_points, builds=builds, coverage=codes, failures=failures)
 
 
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
     """A quantity of arms along the dimension of arms; NaN for arms without a valid rod."""
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
-
-
-def _crushing_shares(arms: Sequence[SlenderArm | None]) -> Array:
-    """Forces that crush arms, in units of k1, along the dimension of arms."""
-    return _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
@@ -110,22 +109,6 @@ def _force_of(
     if section.load_axis in RELATIVE:
         return flutter(arm, taper)
     return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load]))
-
-
-def _with_flutter(coverage: Array, flutter: Array) -> Array:
-    """Codes of points with those of a load relative to flutter, (arms, loads, replaced parameters) each.
-
-    flutter: F of flutter, which is the same for all loads.
-    """
-    found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    codes: Array = np.where(coverage == SLENDER, found, coverage)
-    return codes
-
-
-def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
-    """Why no flutter is found, by flat index; coverage: codes over (arms, loads, replaced parameters)."""
-    each = np.broadcast_to(forces, coverage.shape).ravel()
-    return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:

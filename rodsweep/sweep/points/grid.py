@@ -16,7 +16,7 @@ from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
 from ...model.rod import Rod
-from .arm_grid import FlutterOf, grid_of_arms
+from .arm_grid import grid_of_arms
 from .flutter_forces import FlutterForces, flutter_of_arm, flutter_of_rod, rods_of_flutter
 from .lists import read_points
 from .points import Points
@@ -45,7 +45,8 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:
-            of_arm = _flutter_in(config, flutter)
+            known = flutter or {rod: flutter_of_rod(rod) for rod in flutter_rods(config)}
+            of_arm = partial(flutter_of_arm, known=known, build=config.stated_build)
             return grid_of_arms(parameters.arm, axes, config.names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
@@ -82,13 +83,6 @@ def flutter_rods(config: Config) -> list[Rod]:
         return rods_of_flutter(config.parameters.arm, config.stated_build)
     refuse_outside(PARAMETERS["taper"].allowed, "taper", given.array())
     return rods_of_flutter(config.parameters.arm, config.stated_build, given.array().tolist())
-
-
-def _flutter_in(config: Config, known: FlutterForces | None) -> FlutterOf:
-    """Function from (arm, taper beside it) to first flutter, which is searched for where it is not known."""
-    if known is None:
-        known = {rod: flutter_of_rod(rod) for rod in flutter_rods(config)}
-    return partial(flutter_of_arm, known=known, build=config.stated_build)
 
 
 def refuse_outside(

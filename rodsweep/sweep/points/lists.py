@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...config.axes import words
-from ...config.values import as_number, overflows, short
+from ...config.values import cell_number, short
 from ...errors import InputError
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
@@ -76,9 +76,7 @@ def _row(row: list[str], header: list[str], where: str, build: Build) -> list[fl
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:
-            if "_" in cell or not cell.isascii() or overflows(cell):
-                raise ValueError
-            numbers.append(as_number(float(cell)))
+            numbers.append(cell_number(cell))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
     parameters: dict[str, Any] = {**NEUTRAL, **dict(zip(header, numbers, strict=True))}

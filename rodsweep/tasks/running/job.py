@@ -22,7 +22,7 @@ from ...sweep.points.points import Points
 from ...sweep.points.ranges import Shard
 from ...sweep.points.stretches import StretchResult
 from .. import TASKS
-from ..arm.points import sharing_equal_rods, skipping_points_without_rod
+from ..arm.points import SkippingSolver, sharing_equal_rods
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
@@ -65,7 +65,10 @@ class Job:
         if self.config.parameters.arm is None:
             return solver
         once = sharing_equal_rods(self._in_si(solver), self.points, self.layout)
-        return skipping_points_without_rod(once, self.points, self.layout)
+        coverage = self.points.coverage
+        if coverage is None or not coverage.any():
+            return once
+        return SkippingSolver(once, coverage, self.points.failures, self.layout).solver()
 
     def _in_si(self, solver: Solver) -> Solver:
         """The solver, with results in SI units and the validity of the model added to every record."""

@@ -4,7 +4,7 @@ The points of the file are the centres of the cells. Only the line of Hopf point
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import cycle
+from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from ..style import (
     colour_cells,
     heading,
     is_logarithmic,
+    label_outer,
     legend_below,
     parameter_text,
     require,
@@ -104,9 +105,7 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
     """Figure with panels that share axes: side by side, or if narrow stacked."""
-    apart = ConstrainedLayoutEngine(
-        wspace=0.0 if narrow else 0.06
-    )  # room for the label of the first colour bar
+    apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # room for the first colour bar's label
     figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
     shape = (count, 1) if narrow else (1, count)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
@@ -117,11 +116,7 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
     for axes in panels:
         scale(axes, "x", points.x)
         scale(axes, "y", points.y)
-        place = axes.get_subplotspec()
-        if place is None or place.is_last_row():
-            axes.set_xlabel(LABELS[points.names[0]])
-        if place is None or place.is_first_col():
-            axes.set_ylabel(LABELS[points.names[1]])
+        label_outer(axes, *(LABELS[name] for name in points.names))
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
@@ -134,7 +129,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
             continue
         colour, hatch = STATUS_LOOKS.get(word) or next(further)
         look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
-        for row, (bottom, top) in zip(cells, _pairs(cell_edges(points.y)), strict=True):
+        for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
             axes.broken_barh(_runs(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
     return handles
@@ -149,11 +144,6 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
     size = float(np.clip(PANEL_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
     axes.plot(points.x[column], points.y[row], ms=size, **look)
     return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
-
-
-def _pairs(values: Array) -> list[tuple[float, float]]:
-    """Each value, shape (n,), with the next."""
-    return list(zip(values[:-1].tolist(), values[1:].tolist(), strict=True))
 
 
 def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:

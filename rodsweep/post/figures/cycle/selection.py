@@ -161,7 +161,8 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     shared, own = shared_and_own_of_points(view, numbers)
     cycles = []
     for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
-        values = drawn_in.drawn(_values(view, number))
+        of_point = view.of_point(number - 1).items()
+        values = drawn_in.drawn({n: v for n, v in of_point if n not in (*view.parameters, "point")})
         period = float(values["period"])
         word = str(words[number - 1])
         cycles.append(StoredCycle(number, label, at, period, values, word, drawn_in))
@@ -181,12 +182,6 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
     for number in points:
         if not 1 <= number <= count:
             raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
-
-
-def _values(view: View, number: int) -> dict[str, Array]:
-    """Variables of a point, in the shape at a point."""
-    of_point = view.of_point(number - 1).items()
-    return {name: values for name, values in of_point if name not in (*view.parameters, "point")}
 
 
 def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:

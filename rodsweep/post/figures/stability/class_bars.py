@@ -15,16 +15,13 @@ from ....model.parameters import CRUSHING
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....results.layouts.variables import has_covering
+from ....results.layouts.variables import has_covering, number_of
 from ....wording import plural
 from ..lists import number_points, shared_parameters
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, parameter_text, require
 
-UNDECIDED = {
-    "class": next(number for number, word in CLASSES if word == "undecided"),
-    "stable_states": next(number for number, word in STABLE_STATES if word == "undecided"),
-}
-"""Number of the word `undecided` in each variable."""
+WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
+"""Words of each variable of a row, by number."""
 STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
 """Kinds of crossings at which the stability of the straight rod may change."""
 ON_A_CHANGE = 1e-9
@@ -196,7 +193,7 @@ def class_along_row(
     pixels = (edges[1:] + edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
-    found = np.full(len(pixels), UNDECIDED[variable], dtype=np.intp)
+    found = np.full(len(pixels), number_of("undecided", WORDS[variable]), dtype=np.intp)
     for piece in np.unique(piece_of_pixels):
         own_pixels = piece_of_pixels == piece
         own_points = decided & (piece_of_points == piece)
@@ -208,10 +205,8 @@ def class_along_row(
 
 def _changes(view: View, variable: str, line: str, place: int) -> Array:
     """Positions of the changes of a row, increasing, (m,)."""
-    v = {
-        name: view.variables[name].reshape(view.variables["status"].size, -1)[place]
-        for name in _names(view, line)
-    }
+    names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
+    v = {name: view.by_point(name)[place] for name in names if name in view.variables}
     at = v["crossing_at"]
     kinds = v["crossing_kind"]
     if variable == "class":
@@ -223,9 +218,3 @@ def _changes(view: View, variable: str, line: str, place: int) -> Array:
         found.append(view.point_columns[other][[place]])
     changes = np.concatenate(found)
     return np.unique(changes[np.isfinite(changes)])
-
-
-def _names(view: View, line: str) -> list[str]:
-    """Variables with the changes of a row."""
-    names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
-    return [name for name in names if name in view.variables]

@@ -103,17 +103,12 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         F = float(v["partial_beam_F"])
         k = float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
-        if not (_holds(v[line], x) and _holds(view.axes[row], y)):
+        if not (v[line][0] <= x <= v[line][-1] and view.axes[row][0] <= y <= view.axes[row][-1]):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
         handles.append(cross)
     return handles
-
-
-def _holds(values: Array, at: float) -> bool:
-    """Whether a value lies within an axis, (n,)."""
-    return bool(values[0] <= at <= values[-1])
 
 
 def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:

@@ -4,7 +4,6 @@ Loads and lengths are in the units typed by the user, frequencies in Hz, and all
 single unit.
 """
 
-import json
 import textwrap
 from collections.abc import Mapping, Sequence
 
@@ -117,8 +116,7 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     """Ranges of the variables stored in SI units, over the points in `done`, a mask of the points' shape."""
     if not view.quantities:
         return []
-    config = json.loads(view.attributes["config_resolved"])
-    si_variables = si_variables_of(LAYOUTS[view.task](config), config)
+    si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)
     shown = {
         own: v
         for own, v in si_variables.items()

@@ -15,7 +15,6 @@ import numpy as np
 from ....arrays import Array
 from ....config.axes import Axes
 from ....config.document.reading import config_of
-from ....config.values import Axis
 
 LONGEST_VALUE = 80
 """Largest number of characters of a value in a sentence."""
@@ -45,7 +44,8 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
         return config_difference(theirs["task"], ours["task"], "task")
     configs = config_of(theirs), config_of(ours)
     axes = [config.parameters.axes for config in configs]
-    same = {name for name in axes[0].keys() & axes[1].keys() if _same_axis(axes[0][name], axes[1][name])}
+    shared = axes[0].keys() & axes[1].keys()
+    same = {name for name in shared if np.array_equal(axes[0][name].array(), axes[1][name].array())}
     written = [
         {name: value for name, value in config["parameters"].items() if name not in same and name != "points"}
         for config in (theirs, ours)
@@ -64,10 +64,6 @@ def _kind(parameters: Axes) -> str:
     if parameters.over:
         return f"a grid over {' and '.join(parameters.over)}"
     return "a list of points" if parameters.is_list else "a grid"
-
-
-def _same_axis(first: Axis, second: Axis) -> bool:
-    return np.array_equal(first.array(), second.array())
 
 
 def config_difference(

@@ -1,6 +1,5 @@
 """Cycles over a parameter: amplitudes of the tip as in the paper's Fig. 6, period and power."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -104,9 +103,7 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
     """
     if len(views) == 1:
         return {views[0].path: ("", None)}
-    options = [
-        json.loads(view.attributes.get("config_resolved", "{}")).get("limit_cycle", {}) for view in views
-    ]
+    options = [view.config.get("limit_cycle", {}) for view in views]
     followed = all(
         chosen.get("start") == "neighbour" and chosen.get("along", LONGEST) in (name, LONGEST)
         for chosen in options
