@@ -93,10 +93,7 @@ def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dat
 
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
-    """A whole file as read by xarray.
-
-    Raises InputError if xarray reads values or dimensions different from the file's checksums.
-    """
+    """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
     sealed = json.loads(header.attributes[SEAL])["variables"]
     with reading(path):
         try:

@@ -144,9 +144,7 @@ def display(progress: bool | None, total: int | None, title: str) -> Display:
 
 
 def listener(shown: Display, name: str) -> RankListener:
-    """Listener that displays the position of the solve `name`. No solve is stopped: Ctrl-C raises
-    KeyboardInterrupt.
-    """
+    """Listener that displays the position of the solve `name`; Ctrl-C raises KeyboardInterrupt."""
     return RankListener(
         NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name
     )

@@ -26,8 +26,7 @@ COMPUTED = (0, 1)
 REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Exception for each exit status of a refused run."""
 MOST_QUOTED = 2000
-"""Maximum length, in characters, of a quoted standard error: enough for its last exception or a launcher's
-reason."""
+"""Maximum length, in characters, of a quoted standard error: enough for its last exception."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -131,10 +130,7 @@ def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
 
 
 def _mpiexec() -> str:
-    """Path of the launcher beside this Python, or else on the search path.
-
-    Raises EnvironmentIncomplete if no launcher is found.
-    """
+    """The launcher beside this Python, or on the search path; EnvironmentIncomplete if there is none."""
     beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     found = beside or shutil.which("mpiexec")
     if found is None:

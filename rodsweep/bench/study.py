@@ -133,9 +133,7 @@ def _timed(run: Callable[[], Outcome]) -> Timed[Outcome]:
 
 
 def processor_seconds() -> float:
-    """Processor seconds of this process and of the programs started by it, without the rest of the
-    machine.
-    """
+    """Processor seconds of this process and of the programs started by it."""
     programs = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + programs.ru_utime + programs.ru_stime
 

@@ -85,9 +85,7 @@ def main() -> None:
 
 
 def _drop_what_cannot_be_written() -> None:
-    """Redirects streams that cannot be flushed to /dev/null: otherwise Python's own flush at exit returns
-    status 120.
-    """
+    """Redirects streams that cannot be flushed to /dev/null: Python's flush at exit would end with 120."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

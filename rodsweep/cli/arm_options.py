@@ -59,9 +59,7 @@ def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
 
 
 def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds an option for every parameter of a rod but the force, which is found. None is required, because
-    an arm may give them.
-    """
+    """Adds an option, not required, for every parameter of a rod but the force, which is found."""
     for name in reversed([name for name in (*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name != "F"]):
         parameter = PARAMETERS[name]
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"

@@ -13,10 +13,7 @@ STYLES = {"headline": "bold", "warning": "yellow"}
 
 
 def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
-    """Prints the report on an arm; InputError, naming the option, for an invalid quantity.
-
-    given: quantities, law and section.
-    """
+    """Prints the report on an arm of these quantities and law; InputError names the option."""
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import report_on
 

@@ -1,5 +1,4 @@
-"""Work of all ranks before the result file is created: variables that need no points, and data that all
-points need."""
+"""Work of all ranks before the result file is created: variables without points, data of all points."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

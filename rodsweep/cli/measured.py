@@ -23,8 +23,7 @@ from . import main
 from .launchers import speaks
 
 OUTCOMES = 4096
-"""Number of random outcomes, taken by the points in turn. Compression algorithms do not look back this
-far."""
+"""Number of random outcomes, taken by the points in turn. Compression does not look back this far."""
 
 
 @dataclass(frozen=True, slots=True)

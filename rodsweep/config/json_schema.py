@@ -121,9 +121,7 @@ def all_of(names: Iterable[str], *more: Schema) -> Schema:
 
 
 def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
-    """Copy of a schema of numbers with bounds on every number, and with only `words` allowed as names of
-    numbers.
-    """
+    """Copy of a schema of numbers with bounds on every number, and only `words` as names of numbers."""
     copy = deepcopy(schema)
     for node in nodes_of(copy):
         kinds = node.get("anyOf", [])

@@ -58,9 +58,7 @@ def short(value: Any) -> str:
 
 
 def named(name: object, most: int = 200) -> str:
-    """A name for a message: `repr` if it is not printable, shortened in the middle beyond `most`
-    characters.
-    """
+    """A name for a message: `repr` if not printable, shortened in the middle beyond `most` characters."""
     text = str(name)
     if not text.isprintable():
         text = repr(text)

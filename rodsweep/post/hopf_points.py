@@ -18,8 +18,7 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
 ON_A_HOPF_POINT = 1e-9
-"""Relative distance below which a point of a file lies on a Hopf point; the growth rate is then rounding
-error."""
+"""Relative distance of a point of a file from a Hopf point below which its growth rate is rounding error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
 """(kind, number of growing modes beyond) of Hopf points at which the stability of the straight rod changes.
 At other Hopf points further modes become unstable or stable."""

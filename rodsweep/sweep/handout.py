@@ -91,9 +91,7 @@ class Handout:
             return None if self.held.total() and not self.stopped else OVER
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """A further chunk for a rank that has not finished its present chunk yet; None if too few units are
-        left.
-        """
+        """A further chunk for a rank before its present chunk is finished; None if few units are left."""
         with self.change:
             return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 

@@ -18,10 +18,7 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether the user sees standard error live.
-
-    Under a launcher the ranks write to a pipe, and the launcher's own standard error decides.
-    """
+    """Whether the user sees standard error live; under a launcher, its own standard error decides."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -65,10 +62,7 @@ class ProgressReporter:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, done: int) -> None:
-        """Takes the total number of finished points and shows it if an update is due.
-
-        The clock starts with the call for 0 points.
-        """
+        """Takes the number of finished points, 0 to start the clock, and shows it if an update is due."""
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS
@@ -78,10 +72,7 @@ class ProgressReporter:
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Takes the progress of a long point, in words, and shows it if an update is due.
-
-        begun: work done of all unfinished points, in points.
-        """
+        """Shows, if due, the progress of a long point in words; begun: work done of unfinished points."""
         self.begun = begun
         self.where = words
         self._show()

@@ -57,8 +57,7 @@ class ProvedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Values, (n,), of the searched parameter, by name of the parameter; empty for tasks that search no
-        parameter."""
+        """Values, (n,), of the searched parameter, by name; empty for tasks that search no parameter."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:

@@ -114,9 +114,7 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def rod(self, index: int) -> Rod:
-        """A rod of a row. The parameter that varies along the row is at a neutral value: F = 0, or k1 =
-        inf.
-        """
+        """A rod of a row. The parameter that varies along the row is neutral: F = 0, or k1 = inf."""
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":

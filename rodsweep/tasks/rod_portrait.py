@@ -33,10 +33,7 @@ Solve = Callable[[Job], View]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitRequest:
-    """A rod and the choices of its portrait.
-
-    F_max: largest force. accuracy: relative error, or None for the default of each task.
-    """
+    """A rod, the largest force, and the accuracy, or None for the default of each task."""
 
     rod: DescribedRod
     F_max: float = F_MAX
@@ -97,8 +94,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
 
 
 def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at a force, started from the Hopf point; if no cycle is found, from a large
-    deflection."""
+    """The limit cycle at a force, started from the Hopf point, or else from a large deflection."""
     found = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_START}):
         view = solved("limit_cycle", {**start, "shapes": SHAPES}, F)

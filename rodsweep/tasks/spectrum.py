@@ -177,10 +177,7 @@ class SpectrumTask(ProvedTask):
 
 
 def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
-    """(rates, relative errors) of an arm, (2, modes); NaN for an arm that is crushed.
-
-    values: those of its parameters on which the rates depend.
-    """
+    """(rates, relative errors) of an arm with these parameters, (2, modes); NaN for a crushed arm."""
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
     except Crushed:

@@ -213,10 +213,7 @@ def totals(m: Measurement) -> dict[str, float]:
 
 
 def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
-    """Exponent of the growth of the time, beyond the smallest sweep's time, with the number of points.
-
-    nan if the time does not grow.
-    """
+    """Exponent of the growth of the time beyond the smallest sweep's; nan if the time does not grow."""
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan
     times = (more.seconds - start.seconds) / (less.seconds - start.seconds)

@@ -23,10 +23,7 @@ ANOTHER = 0.3
 
 @dataclass(frozen=True)
 class ThresholdCase:
-    """A rod without force, its first onset and Hopf point (nan for none), rounded from 30 digits.
-
-    top: force at which the peers end their search.
-    """
+    """A rod, its first onset and Hopf point or nan, from 30 digits; top: force where the peers end."""
 
     name: str
     k1: float

@@ -21,14 +21,12 @@ from ...tasks.running.unforeseen import PASSING, UnitNote
 from ...watch import Stopped, reporting_to
 
 NOUN = "halves of curves"
-"""Name of the units of work: half a curve each, because a curve is followed in both directions from a
-start."""
+"""Name of the units of work: half a curve each, as a curve is followed in both directions from a start."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """Joint work of a run. due: whether the file lacks variables that need all points. units: units of work,
-    or None."""
+    """Joint work. due: whether the file lacks variables that need all points. units: of work, or None."""
 
     due: bool
     units: Any = None

@@ -1,7 +1,7 @@
 """`rodsweep run`: read the config, open the file, solve missing points, write them into the file."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -26,8 +26,7 @@ from .options import RunOptions
 from .point_work import PointWork
 
 CONTINUE = 75
-"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
-run."""
+"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -201,6 +200,11 @@ class _Run:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
+    def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
+        """Number of points per status in words; left: points of this run not done."""
+        words = {"missing": "of other shards"} if self.shard and not left else {}
+        return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
+
     def _finish(
         self,
         count: int,
@@ -232,9 +236,7 @@ class _Run:
             self._say(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        words = {"missing": "of other shards"} if self.shard and not left else {}
-        outcomes = ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
-        self._say(f"{self.output}: {outcomes}", amiss)
+        self._say(f"{self.output}: {self._outcomes(counts, left)}", amiss)
         self._say_failures(contributions, exceptions)
         if left or lacks_curves:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

@@ -22,8 +22,7 @@ AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 MOVES = AXIS_OF | dict.fromkeys(RELATIVE, "F")
 """The parameter changed by an axis, in a grid over an arm's quantities."""
 ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
-"""The parameter along whose axis a quantity or unit with several values is stored, in a grid of
-parameters."""
+"""The parameter along whose axis a quantity or unit with several values is stored."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
 whether the model applies."""
@@ -62,8 +61,7 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def moved_by(axis: str) -> str:
-    """The only parameter that an axis of an arm's grid changes; "" if the axis changes several parameters or
-    no parameter."""
+    """The only parameter that an axis of an arm's grid changes; "" for several parameters or none."""
     return axis if axis in PARAMETERS else MOVES.get(axis, "")
 
 

@@ -114,9 +114,7 @@ class ArmSection(Strict):
 
     @property
     def load(self) -> str | None:
-        """Kind of the load, pressure or force, given absolutely or relative to flutter; None without a
-        load.
-        """
+        """Kind of the load, pressure or force, absolute or relative to flutter; None without a load."""
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
@@ -126,8 +124,7 @@ class ArmSection(Strict):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """Given quantities in SI units, by name: the value if equal at all points, else None; and the
-        material."""
+        """Given quantities in SI units, by name: a value equal at all points, else None; and the material."""
         varied = AXIS_OF if self.is_grid else self.several
         numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
@@ -193,9 +190,7 @@ class ArmSection(Strict):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Quantities and units in a grid of parameters: numbers of shape (), or arrays along their
-        parameter.
-        """
+        """Quantities and units in a grid of parameters, of shape (), or along their parameter, (n,)."""
         values = {name: axis.array() for name, axis in self.given.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]

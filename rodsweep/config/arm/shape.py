@@ -1,5 +1,4 @@
-"""Shape and material of an arm in a config: segments, taper, law, and the build, which is equal at all
-points."""
+"""Shape and material of an arm in a config: segments, taper, law, and the build, equal at all points."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -46,10 +45,7 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Law of all arms, and profile of the first that a rod covers.
-
-    ValueError where a grid of parameters has arms with several profiles.
-    """
+    """Law of all arms, profile of the first with a rod; ValueError for several profiles in a grid."""
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
     if all(getattr(arm, name) is None for name in SHAPES):
         return alike

@@ -24,8 +24,7 @@ from .parsing import DEEPEST, parse, read_text
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 
 LONGEST_HEADER = 10_000
-"""Largest number of characters of a header. A longer first line is no header; the reader of points refuses
-the file."""
+"""Largest number of characters of a header. The reader of points refuses a file with a longer first line."""
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
@@ -69,8 +68,7 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from which `canonical` made `resolved`; ValueError if this version does not accept the
-    config."""
+    """The config from which `canonical` made `resolved`; ValueError if this version does not accept it."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -131,9 +129,7 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """A resolved axis in the user's form: a number, a list or a range. Also converts the section of an
-    arm.
-    """
+    """A resolved axis, or the section of an arm, in the user's form: a number, a list or a range."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -206,8 +202,7 @@ def _with_columns(tree: Any, directory: Path) -> Any:
 
 
 def _header(path: Path) -> list[str]:
-    """Names in the first line of a CSV file; empty without a header. The reader of points refuses a file
-    without a header."""
+    """Names in the first line of a CSV file; empty without a header, which the reader of points refuses."""
     try:
         if not path.is_file():
             return []

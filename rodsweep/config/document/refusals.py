@@ -1,6 +1,4 @@
-"""Error messages of a config, a sentence each: the key, the value, the allowed values, and the likely
-meaning.
-"""
+"""Error messages of a config, a sentence each: the key, the value, what is allowed, the likely meaning."""
 
 from collections.abc import Sequence
 from math import isinf

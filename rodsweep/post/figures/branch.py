@@ -41,8 +41,7 @@ MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""Marker and legend entry of a special point, by kind or, for an end, by reason; further ends have no
-marker."""
+"""Marker and legend entry of a special point, by kind or, for an end, by reason; other ends have none."""
 PREDICTED = (0, (4, 1, 1, 1))
 """Line style of the amplitude that the normal form predicts near a Hopf point."""
 PREDICTED_WORD = "by the normal form"

@@ -92,10 +92,7 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Maps of the criticality of the first Hopf points and of the amplitude coefficients.
-
-    narrow: whether the two maps are stacked.
-    """
+    """Maps of the criticality of first Hopf points and of |a|; narrow: whether the maps are stacked."""
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
     style.require(view, np.isfinite(a).any(), "first Hopf point with a normal form")

@@ -146,9 +146,7 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row, used if there are too few rows for a plane, or if a row lies at
-    infinity.
-    """
+    """Figure with a bar for each row, for too few rows for a plane, or a row at infinity."""
     x = view.variables[line]
     y = view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")

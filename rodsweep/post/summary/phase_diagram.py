@@ -67,10 +67,7 @@ def saving_line(view: View, done: np.ndarray, line: str) -> str:
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the share of the grid in which each state is stable, and about changes of cycles.
-
-    done: a mask of the rows' shape.
-    """
+    """Lines about the share of each stable state, and changes of cycles; done: a mask of the rows' shape."""
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     states = v["stable_states"]

@@ -59,10 +59,7 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
-    """(lines about changes along F, line on their computation, lines in an arm's units).
-
-    All are empty if F is no axis.
-    """
+    """(lines about changes along F, line on their computation, lines on an arm); empty if F is no axis."""
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
     how = HOW_FOUND if has_covering(view.config) else NOT_LOCATED
     return lines, [f"thresholds: {how}"] if lines else [], of_arm

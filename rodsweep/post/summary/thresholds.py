@@ -138,10 +138,7 @@ def not_stored(hidden: int) -> str:
 
 
 def monotony_lines(view: View) -> list[str]:
-    """Lines on whether the first onset and Hopf point rise with a parameter.
-
-    The paper states that they rise with k2 and 1/gamma3.
-    """
+    """Lines on whether the first thresholds rise with a parameter, as the paper has it for k2, 1/gamma3."""
     lines = []
     long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
     for name, force in product(long, ("F_onset", "F_hopf")):
@@ -173,10 +170,7 @@ def monotony_lines(view: View) -> list[str]:
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness and errors of the searches; done: a mask of the points' shape.
-
-    noun: name of a point.
-    """
+    """Lines about completeness and errors; done: a mask of the points' shape. noun: name of a point."""
     v = view.variables
     searches = int(done.sum())
     is_crossing = v["crossing_kind"][done] > 0

@@ -116,6 +116,5 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
 
 
 def tells_of_items(variable: Variable) -> bool:
-    """Whether a value of the variable reveals a missing item, because no valid value equals the fill
-    value."""
+    """Whether a value of the variable reveals a missing item: no valid value equals the fill value."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

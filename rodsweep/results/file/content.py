@@ -28,8 +28,7 @@ BOOKKEEPING = frozenset(
         "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL,
     }
 )  # fmt: skip
-"""Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions
-themselves."""
+"""Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions."""
 NUMBERS = "iuf"
 """Kinds of NumPy types that variables of a result have."""
 BYTES_A_READ = 1 << 18

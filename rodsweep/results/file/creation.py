@@ -36,8 +36,7 @@ class Plan:
     flags: tuple[tuple[int, str], ...]
     """Values and meanings of `status`, without MISSING."""
     quantities: tuple[Filled, ...] = ()
-    """Quantities of an arm. They are coordinates of the points besides the parameters, or dimensions of the
-    points."""
+    """Quantities of an arm: coordinates of the points besides the parameters, or dimensions of the points."""
     chains: Chains | None = None
     """Chains of points; None if every point starts cold."""
     stretches: Stretches | None = None

@@ -62,8 +62,7 @@ SI_UNITS = {
 }
 """SI units of the dimensionless units of time, length, energy and power."""
 FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS}
-"""SI unit of a follower force, by the kind of the arm's load; without a load the force is given as a
-pressure."""
+"""SI unit of a follower force, by the kind of the arm's load; without a load that of a pressure."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Kind of load by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
@@ -71,8 +70,7 @@ EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in 
 BRANCH_FORCES = ("special_at", "special_error")
 """Forces along the branches of an arm; its branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Variables with these extra dimensions are stored in SI units as well; longer tables are not stored
-twice."""
+"""Variables with these extra dimensions are stored in SI units too; longer tables are not stored twice."""
 EFFECTS = (
     "inertia_of_the_arm",
     "inertia_of_the_fluid",
@@ -156,10 +154,7 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
 
 
 def converted(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
-    """A variable and its values, (n,), in the unit of `si_unit_of`.
-
-    quantities: the arm's quantities, each of shape () or (n,).
-    """
+    """A variable and its values, (n,), in SI units; quantities: the arm's, each of shape () or (n,)."""
     si = si_unit_of(variable, "force" in quantities)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
     return si_variable, values * si.scale(quantities)
@@ -211,9 +206,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Quantities by name. If the file is a grid over quantities, each is expanded to its value at every
-    point, (points,).
-    """
+    """Quantities by name; in a grid over quantities each has its value at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

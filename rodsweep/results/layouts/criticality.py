@@ -14,8 +14,7 @@ LANDAU = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
 ALONG = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
-"""Variables of a search for crossings that a search for Hopf points lacks: the growth rate is 0, no solve is
-needed."""
+"""Variables of a search for crossings that a search for Hopf points lacks: its growth rate is 0."""
 SIDES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
 """Stored numbers and words of the criticality: the sign of Re c; NaN if c is not known."""
 

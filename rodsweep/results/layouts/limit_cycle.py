@@ -104,10 +104,7 @@ PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 
 def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
-    """Hopf points of the straight rods between the points of a file with these parameters.
-
-    They are known before any point is solved.
-    """
+    """Hopf points of straight rods between the points of a file with these parameters, known beforehand."""
     places = (
         real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF)
         for name in HOPF_ALONG

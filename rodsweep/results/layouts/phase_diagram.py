@@ -66,8 +66,7 @@ CYCLE_CURVE_ENDS = {
     "closed": "the curve returns to its first point",
     "not_followed": "no further point was found",
 }
-"""Reasons for the end of a curve of folds of cycles or of torus points; the file stores the index in this
-list."""
+"""Reasons for the end of a curve of folds of cycles or torus points; the file stores the index."""
 INCREASES = {
     "crossings": CROSSINGS,
     "certify": NEEDS_NEW_SOLVE,

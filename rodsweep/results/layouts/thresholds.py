@@ -60,10 +60,7 @@ def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
 
 
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of a search along `line`: crossings, completeness and cost.
-
-    at: name of the variable for the position of a crossing.
-    """
+    """Variables of a search along `line`; at: name of the variable for the position of a crossing."""
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to decide"
     return (

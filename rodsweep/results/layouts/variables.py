@@ -167,8 +167,7 @@ class Increase:
     """Option whose larger value asks for more of every point, without further effect."""
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
-    """Function from stored records, (n,), and the stored value of the option to whether each is complete,
-    (n,)."""
+    """Function from stored records, (n,), and the option's stored value to whether each is complete, (n,)."""
     values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 

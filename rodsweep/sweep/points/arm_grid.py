@@ -49,8 +49,7 @@ def grid_of_arms(
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along(0, statuses), shape).copy()
     if section.load_axis in RELATIVE:
-        found = np.where(np.isinf(scale), NO_FLUTTER, np.where(np.isnan(scale), FLUTTER_UNKNOWN, SLENDER))
-        coverage = np.where(coverage == SLENDER, found, coverage)
+        coverage = _with_flutter(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
         if section.load_axis in RELATIVE:
@@ -70,8 +69,7 @@ def grid_of_arms(
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes = coverage.astype(np.int8).ravel()
-    each = np.broadcast_to(forces, shape).ravel()
-    failures = {int(index): each[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
+    failures = _failures(coverage, forces)
     return Points(names, columns, False, over, at_points, builds=builds, coverage=codes, failures=failures)
 
 
@@ -109,6 +107,19 @@ def _force_of(
     if section.load_axis in RELATIVE:
         return flutter(arm, taper)
     return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load]))
+
+
+def _with_flutter(coverage: Array, flutter: Array) -> Array:
+    """Codes of points with those of a load relative to flutter; flutter: its F, the same for all loads."""
+    found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
+    codes: Array = np.where(coverage == SLENDER, found, coverage)
+    return codes
+
+
+def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
+    """Why no flutter is found, by flat index; coverage: codes over (arms, loads, replaced parameters)."""
+    each = np.broadcast_to(forces, coverage.shape).ravel()
+    return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:

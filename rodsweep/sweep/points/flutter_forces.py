@@ -20,10 +20,7 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """F of first flutter, with the likeliest drag: inf without flutter, NaN if the search fails.
-
-    failure: why the search fails, else empty.
-    """
+    """F of first flutter at the likeliest drag: inf without flutter, NaN if the search fails, and why."""
 
     F: float
     failure: str = ""

@@ -88,10 +88,7 @@ def flutter_rods(config: Config) -> list[Rod]:
 def refuse_outside(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
-    """Raises InputError for the first forbidden value of a parameter.
-
-    where, why: continue the sentence of the error.
-    """
+    """Raises InputError for the first forbidden value; where, why: continue the sentence."""
     bad = allowed.first_outside(values)
     if bad is not None:
         raise InputError(

@@ -18,8 +18,7 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
-"""Values of parameters without a column. A combination impossible with neutral values is impossible with
-any."""
+"""Values of parameters without a column. What is impossible with neutral values is so with any."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +108,7 @@ class Points:
         }
 
     def rod(self, index: int, **beside: float) -> Rod:
-        """Rod at a flat index; parameters without a column are those of `beside`, or NEUTRAL.
-
-        Raises Crushed.
-        """
+        """Rod at a flat index, other parameters from `beside`, or NEUTRAL. Raises Crushed."""
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 

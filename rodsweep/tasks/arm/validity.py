@@ -31,9 +31,7 @@ ARMS_KEPT = 64
 
 @dataclass(frozen=True, slots=True)
 class ArmMotion:
-    """Motion of an arm at n points, each (n, ...): frequency in 1/tau2, force F, amplitude of the tip in
-    L.
-    """
+    """Motion of an arm at n points, (n, ...): frequency in 1/tau2, force F, amplitude of the tip in L."""
 
     frequency: Array
     F: Array | None = None
@@ -106,9 +104,7 @@ class ArmValidity:
         self.arm = lru_cache(ARMS_KEPT)(_arm_of_number(self.section))
 
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        """The variables of VALIDITY for a point, or for n points of one arm; records (n, ...), result
-        (n,).
-        """
+        """The variables of VALIDITY for a point, or n points of one arm; records (n, ...), result (n,)."""
         motion = MOTIONS[self.task](record)
         return self._validity(self._arm_of(int(np.ravel(index)[0])), motion, index)
 
@@ -170,9 +166,7 @@ class ArmValidity:
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
-        """A parameter at a point, shape (), or at n points, (n,); None if the points do not have the
-        parameter.
-        """
+        """A parameter at a point, shape (), or at n points, (n,); None if the points lack the parameter."""
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])

@@ -52,8 +52,7 @@ class DiagramCurves:
     """Special points with cycles, by number of row, for rows solved in this process."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """Returns the row unchanged, and keeps the special points unless MAX_KEPT_ROWS rows are kept
-        already."""
+        """Returns the row unchanged, and keeps its special points, at most those of MAX_KEPT_ROWS rows."""
         if len(self.special) < MAX_KEPT_ROWS:
             self.special[number] = row.special
         return row
@@ -91,9 +90,7 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: results of all wanted units, shapes as in
-        `TracedHalf`.
-        """
+        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
         plane = self.plane
         if plane is None:
             return []

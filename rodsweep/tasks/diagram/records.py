@@ -113,18 +113,14 @@ def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list
 
 
 def _ends(ends: Sequence[int], count: int) -> list[int]:
-    """Reason for the end of a curve at each of its points, 0 between its ends; a single point has the last
-    reason.
-    """
+    """Reason for the end of a curve at each point, 0 between its ends; a single point has the last."""
     why = [0] * count
     why[0], why[-1] = ends
     return why
 
 
 def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
-    """Cycles of a row as variables of the file, including time and status of the row; line: the row's
-    parameter.
-    """
+    """Cycles of a row as variables of the file, with time and status; line: the row's parameter."""
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
     rows = [recorded(variables, point, prefix="cycle_special_", names=own) for point in result.special]
@@ -155,9 +151,7 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
 
 
 def unstored_specials(view: View, finite: np.ndarray) -> int:
-    """Number of special points missing from the full lists of finite rows; no curve starts there. finite:
-    (rows,).
-    """
+    """Number of special points missing from full lists of finite rows, (rows,); no curve starts there."""
     stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored
     return int(lacking[finite].clip(min=0).sum())

@@ -29,8 +29,7 @@ from ..protocol import Solver, Task
 LARGEST_FILE = 2**63 - 1
 """Maximum size of a file in bytes, and the largest number of a point."""
 BYTES_A_VALUE = 40
-"""Memory per value of an axis, in bytes, while a run is set up: four arrays of numbers; 33 to 36 were
-measured."""
+"""Memory per value of an axis, in bytes, while a run is set up: four arrays; 33 to 36 were measured."""
 LARGEST_RECORD = 100_000_000
 """Maximum size of a point's results in bytes; the results are held in memory and written at once."""
 

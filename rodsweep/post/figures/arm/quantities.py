@@ -18,8 +18,7 @@ from ...summary.arm.arm import word
 NO_BREAK = "\N{NO-BREAK SPACE}"
 """Space between a number and a unit, at which no line of a figure breaks."""
 SAME_NUMBER = 1e-9
-"""Largest relative difference between a stored parameter and the same parameter computed from the arm
-again."""
+"""Largest relative difference between a stored parameter and the parameter computed from the arm again."""
 
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:

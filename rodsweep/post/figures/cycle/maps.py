@@ -52,8 +52,7 @@ OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
 PANEL_POINTS = 250
 """Width of a panel, in points of print."""
 MARKER_SIZES = 1.0, 4.0
-"""Smallest and largest size, in points, of the open marker of an unstable cycle; it takes half a cell if it
-can."""
+"""Smallest and largest size, in points, of the open marker of an unstable cycle, otherwise half a cell."""
 CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
 ROW_ENTRIES = 6
@@ -66,10 +65,7 @@ QUANTITIES = (
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
-    """Draws the period and the largest y of the tip, each with the line of Hopf points.
-
-    narrow: whether the panels are stacked.
-    """
+    """Draws the period and the largest y of the tip, with Hopf points; narrow: whether panels are stacked."""
     points = point_map(view)
     words = outcomes(view)[points.at]
     cycles = np.isin(words, CYCLE_WORDS)

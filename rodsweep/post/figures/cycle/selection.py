@@ -192,10 +192,7 @@ def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[st
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(common parameters of points, numbered from 1, parameters that distinguish each), as text.
-
-    For an arm the text has the arm's quantities.
-    """
+    """(common parameters, or an arm's quantities, of points from 1, those that distinguish each), as text."""
     if all(name in view.quantities for name in REQUIRED):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns

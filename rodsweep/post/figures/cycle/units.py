@@ -122,10 +122,7 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """Units of the points of each file, by index: factors (n,), with the same names in all files.
-
-    Dimensionless if any file has no arm.
-    """
+    """Units of the points of each file, by index: factors (n,), equal names. Plain if a file has no arm."""
     if not all(name in view.quantities for view in views for name in REQUIRED):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (

@@ -16,8 +16,7 @@ from matplotlib.text import Text
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
-"""Smallest height of a panel, in units of the width; a flatter panel makes the figure grow, to keep curves
-legible."""
+"""Smallest height of a panel, in units of the width; for a flatter panel the figure grows."""
 MAP_ASPECT = 0.7
 """Smallest aspect ratio of a map, for which slopes matter along both axes."""
 STRIP_ASPECT = 0.25

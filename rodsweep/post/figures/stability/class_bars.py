@@ -34,8 +34,7 @@ CLASS_COLOURS = {
     "undecided": "#666666",
     "crushed": "#BBBBBB",
 }
-"""Colours of classes: light to dark blue for stable rods, orange for unstable ones, distinct in grey as
-well."""
+"""Colours of classes: light to dark blue for stable rods, orange for unstable ones, distinct in grey."""
 STABLE_CLASS = {
     "onset": "oscillatory",
     "restabilization": "oscillatory",

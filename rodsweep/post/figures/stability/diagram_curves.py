@@ -31,8 +31,7 @@ CYCLE_MARKS = {
 }
 """Legend entry and marker, by kind, of special points of cycles on rows that lie on no curve."""
 ON_CURVE = 1e-3
-"""Largest distance of a point of a row from its curve, in units of the axis; chords of the curve are as far
-off."""
+"""Largest distance of a point of a row from its curve, in units of the axis, as chords of the curve have."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
 """Legend entry and colour of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6

@@ -204,10 +204,7 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
-    """Line about thresholds of a kind in the arm's units; empty without an arm.
-
-    found: each threshold with the points of its line, (points,).
-    """
+    """Line about thresholds, each with the points of its line, (points,), in an arm's units, or empty."""
     if not view.quantities or not found:
         return []
     points = np.concatenate([points for _, points in found])

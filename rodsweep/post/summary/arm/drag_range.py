@@ -27,10 +27,7 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
-    """Number of the arm at each point, (points,), equal where only the drag differs; or None.
-
-    None if the drag is not varied.
-    """
+    """Number of the arm at each point, (points,), equal where only the drag differs; None if none varies."""
     columns = given_columns(view)
     if columns.pop("drag", None) is None:
         return None

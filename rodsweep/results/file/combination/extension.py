@@ -177,10 +177,7 @@ def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
 
 
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old point of a line, (n,), has the same points on the new axis.
-
-    count: number of values on the new axis.
-    """
+    """Whether the stretch of each old point, (n,), has the same points on an axis of `count` values."""
     at = np.arange(len(places))
     first = at // STRETCH_POINTS * STRETCH_POINTS
     same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
