@@ -123,6 +123,11 @@ def boolean(name: str, long_name: str) -> Variable:
     return Variable(name, "|i1", 0, "1", long_name)
 
 
+def along(dimension: str, *variables: Variable) -> tuple[Variable, ...]:
+    """The variables, each with a value for every entry of a dimension."""
+    return tuple(replace(v, extra=(dimension,)) for v in variables)
+
+
 SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
 STATUS = Variable("status", "|i1", MISSING, "1", "outcome of the point")
 MESH = (
