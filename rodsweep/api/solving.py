@@ -72,8 +72,7 @@ def solve_here(
 def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[str, np.ndarray], list[str]]:
     """(variables of the layout, shape (points, own dimensions); messages of points solved on their own)."""
     count = job.points.count
-    layout = plan.layout
-    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
+    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
     if solver.stretched is not None:
         stretches, solve_stretch = solver.stretched

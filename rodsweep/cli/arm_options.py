@@ -65,6 +65,5 @@ def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
         meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
         unit = "" if parameter.unit == "1" else f", in {parameter.unit}"
         default = "" if parameter.default is None else f"; by default {parameter.default:g}"
-        help_text = f"{meaning}{unit}{default}."
-        command = click.option(f"--{name}", name, type=float, help=help_text)(command)
+        command = click.option(f"--{name}", name, type=float, help=f"{meaning}{unit}{default}.")(command)
     return command

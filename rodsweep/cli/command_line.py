@@ -62,8 +62,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
     output = result_file(output or Path(config.stem + suffix))
-    asked = RunOptions(overrides=overrides, shard=part, **options)
-    code = run_config(config, output, asked, stop)
+    code = run_config(config, output, RunOptions(overrides=overrides, shard=part, **options), stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
 

@@ -41,8 +41,7 @@ class InstantSpectra(SpectrumTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        modes = self.config.spectrum.modes
-        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
+        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, self.config.spectrum.modes))
         outcomes = [
             Spectrum(
                 status=SpectrumStatus.ok,

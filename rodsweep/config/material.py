@@ -45,8 +45,7 @@ class ProfileTable(Strict):
     def profile(self) -> Profile:
         """The profile; ValueError for a table that describes no profile."""
         given = {name: getattr(self, name) for name in FACTORS}
-        ones = [1.0] * len(self.u)
-        columns = {name: ones if column is None else column for name, column in given.items()}
+        columns = {name: [1.0] * len(self.u) if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
                 raise ValueError(f"{name} has {len(column)} values and u has {len(self.u)}")

@@ -93,8 +93,7 @@ class StoredBranch:
 
 def followed_parameter(view: View) -> str:
     """Parameter along which the branches of a file are followed."""
-    names = {str(name) for name in view.variables}
-    return next(name for name in PARAMETERS if f"branch_{name}" in names)
+    return next(name for name in PARAMETERS if f"branch_{name}" in view.variables)
 
 
 def count_incomplete_branches(view: View, rod: int) -> int:

@@ -108,8 +108,7 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
     """Branches that meet at symmetry breakings: {(branch, index of special point): second branch}."""
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        ends = ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1))
-        for breaking, place in ends:
+        for breaking, place in ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
             if breaking is not None:
                 numbers[number, place] = breaking.branch
                 numbers[breaking.branch, breaking.place] = number

@@ -66,8 +66,7 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
 
 def brief_text(printed: Printed) -> str:
     """An answer in about ten lines: the sentence, the main numbers and the main list."""
-    heads = _heads(printed)
-    lines = [*heads, *_number_lines(printed)]
+    lines = [*_heads(printed), *_number_lines(printed)]
     more = _more(printed)
     lines += _brief_list(printed, BRIEF_LINES - len(lines) - more.count("\n") - 1)
     return "\n".join([*lines, more])
@@ -87,8 +86,7 @@ def brief_html(printed: Printed) -> str:
 
 def whole_text(printed: Printed) -> str:
     """An answer as text: every number with its unit and meaning, then the lists."""
-    points = printed.rod.points
-    rows = [(c.name, points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
     for name, columns in printed.lists.items():
         lines = [folded(_title(name, columns, printed.totals.get(name, 0)))]
@@ -104,8 +102,7 @@ def whole_text(printed: Printed) -> str:
 
 def whole_html(printed: Printed) -> str:
     """An answer as HTML, with the content of `whole_text`."""
-    points = printed.rod.points
-    rows = [(c.name, points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
         parts.append(f"<p>{escape(_title(name, columns, printed.totals.get(name, 0)))}</p>")

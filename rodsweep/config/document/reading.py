@@ -62,8 +62,7 @@ def canonical(config: Config) -> dict[str, Any]:
     """
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
-        axes = config.parameters.axes
-        tree["parameters"] |= {name: axis.resolved for name, axis in axes.items()}
+        tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}
     return tree
 
 

@@ -101,8 +101,7 @@ def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
-        known = _section(config, section).model_fields
-        if location[-1] in known and section != tuple(location[:-1]):
+        if location[-1] in _section(config, section).model_fields and section != tuple(location[:-1]):
             found.append(dotted((*section, location[-1])))
     return found
 

@@ -31,8 +31,7 @@ def as_grid(view: View) -> View:
     sizes = tuple(len(unique) for unique, _ in values.values())
     places = np.ravel_multi_index([place.ravel() for _, place in values.values()], sizes)
     is_complete = np.prod(sizes) == count and len(np.unique(places)) == count
-    varied = sum(size > 1 for size in sizes)
-    if not is_complete or varied > 2:
+    if not is_complete or sum(size > 1 for size in sizes) > 2:
         return view
     order = np.argsort(places)
     variables = {name: data for name, data in view.variables.items() if name != "point"}

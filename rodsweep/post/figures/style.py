@@ -74,8 +74,7 @@ def material_text(view: View) -> str:
     """Law and profile of the arms of a file; empty for arms of linear material without a profile."""
     material = view.config.get("material", {})
     law = material.get("law", "linear")
-    section = material.get("section", "fixed")
-    words = [] if law == "linear" else [f"neo-Hookean, {section} section"]
+    words = [] if law == "linear" else [f"neo-Hookean, {material.get('section', 'fixed')} section"]
     return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
 
 
@@ -198,8 +197,7 @@ def colour_cells(
         norm = Normalize(
             low, high if high != low or low else 1.0
         )  # equal zeros would give a scale below zero
-    drawn = np.ma.masked_invalid(values)
-    mesh = axes.pcolormesh(*edges, drawn, norm=norm, cmap=colours, rasterized=True)
+    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, cmap=colours, rasterized=True)
     bar = axes.figure.colorbar(mesh, ax=axes, label=label)
     if isinstance(norm, LogNorm):
         label_few_decades(bar.ax.yaxis, low, high)

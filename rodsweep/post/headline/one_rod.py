@@ -45,8 +45,7 @@ class Digits:
         base = self._base.get(name)
         if base in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
-                scale = np.abs(self._values[name] / self._values[base])
-                return self.error(base) * scale
+                return self.error(base) * np.abs(self._values[name] / self._values[base])
         if name in EXACT:
             return np.zeros_like(self._values[name])
         if name in self._beside:
@@ -125,8 +124,7 @@ class OneRod:
         for event in EVENTS:
             force = self.view.variables.get(f"F_{event}")
             if at is not None and force is not None:
-                same = at.values == force.ravel()[0]
-                error = columns["crossing_error"].values[same]
+                error = columns["crossing_error"].values[at.values == force.ravel()[0]]
                 found[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
         return found
 

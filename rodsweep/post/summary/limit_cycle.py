@@ -43,8 +43,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     numbers = None
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
-        multipliers = span_of(v, "multiplier", on_torus)
-        details.append(f"tori: the cycles inside have multipliers {multipliers}")
+        details.append(f"tori: the cycles inside have multipliers {span_of(v, 'multiplier', on_torus)}")
     if done.size == 1 and orbit.any():
         answer.insert(1, orbit_line(v, stable=bool(beats.any())))
         numbers = orbit_table(v)

@@ -73,8 +73,7 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     states = v["stable_states"]
     kinds = v["cycle_special_kind"]
     at = v[f"cycle_special_{line}"]
-    found = states[done]
-    shares = ((100 * float((found == value).mean()), word) for value, word in STABLE_STATES)
+    shares = ((100 * float((states[done] == value).mean()), word) for value, word in STABLE_STATES)
     parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
     lines = [f"stable states, of the grid: {parts}"]
     found_on = {}

@@ -67,8 +67,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
 
 def eigenvalue_table(view: View) -> TextTable | None:
     """Table of the eigenvalues of the single point of a file, with errors; None without an eigenvalue."""
-    v = view.variables
-    columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
+    columns = (view.variables[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     rows = [
         (str(number), *number_and_error(growth, error), *number_and_error(frequency, error))
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)

@@ -47,10 +47,8 @@ class Column:
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
         # An appended row makes index -1 a missing value.
-        nothing = np.zeros(1, self.values.dtype)
-        values = np.append(self.values, nothing)[which]
-        absent = np.append(self.absent, True)[which]
-        return replace(self, values=values, absent=absent)
+        values = np.append(self.values, np.zeros(1, self.values.dtype))[which]
+        return replace(self, values=values, absent=np.append(self.absent, True)[which])
 
     def text(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number that reads back equal."""
@@ -110,8 +108,7 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
-        none = [value for value, word in variable.flags if word in NO_WORD]
-        return np.isin(values, none)
+        return np.isin(values, [value for value, word in variable.flags if word in NO_WORD])
     return values == variable.fill if variable.fill == -1 else np.zeros(values.shape, bool)
 
 

@@ -58,8 +58,7 @@ def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
 
 def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
     """Writes records, (n,), of a variable into the values, of the shape of points and variable."""
-    inner = records[name].shape[1:]
-    values.reshape(-1, *inner)[records["index"]] = records[name]
+    values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 
 def take_snapshot(path: Path, output: Path) -> tuple[int, int]:

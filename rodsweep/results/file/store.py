@@ -99,8 +99,7 @@ class Store:
 
     def _extend(self, header: Header) -> None:
         """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
-        points = parameters_of(self.path, header.layout)
-        extension = extension_of(header, points, self.plan)
+        extension = extension_of(header, parameters_of(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
         self._fold_blocks(blocks, header.layout, header.fingerprint, {})

@@ -39,8 +39,7 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
     layout = LAYOUTS[task](config)
-    parameters = (*layout.parameters, *optional_in(config))
-    return with_si(replace(layout, parameters=parameters), config)
+    return with_si(replace(layout, parameters=(*layout.parameters, *optional_in(config))), config)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:

@@ -62,12 +62,10 @@ INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
     search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
-    names = [v.name for v in search]
-    after = names.index("unstable_after") + 1
+    after = [v.name for v in search].index("unstable_after") + 1
     ends = (
         real("F_end", FORCE, "largest F of the search"),
         integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
     variables = confirmed((*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points")
-    parameters = all_but("F", NONLINEAR_PARAMETERS)
-    return Layout(variables, {ALONG: config["criticality"]["crossings"]}, parameters)
+    return Layout(variables, {ALONG: config["criticality"]["crossings"]}, all_but("F", NONLINEAR_PARAMETERS))

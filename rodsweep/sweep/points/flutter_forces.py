@@ -45,8 +45,7 @@ def rods_of_flutter(
     from ...verdict.relative import plane_rods
 
     shapes = ((arm, taper) for arm in _arms(section) for taper in tapers)
-    rods = (rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper))
-    return list(dict.fromkeys(rods))
+    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper)))
 
 
 def _arms(section: ArmSection) -> Iterable[SlenderArm]:

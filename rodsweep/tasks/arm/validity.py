@@ -105,8 +105,7 @@ class ArmValidity:
 
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
         """The variables of VALIDITY for a point, or n points of one arm; records (n, ...), result (n,)."""
-        motion = MOTIONS[self.task](record)
-        return self._validity(self._arm_of(int(np.ravel(index)[0])), motion, index)
+        return self._validity(self._arm_of(int(np.ravel(index)[0])), MOTIONS[self.task](record), index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at all points with a rod, (n,), for an arm at rest."""

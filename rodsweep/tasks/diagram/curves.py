@@ -197,8 +197,7 @@ class DiagramCurves:
         all_values = np.append(values, value_in_plane)
         space = BautinSpace(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
         curves: list[BautinCurve] = []
-        starts = [on_curve(found, value_in_plane) for curve in criticalities for found in curve.points]
-        for start in starts:
+        for start in [on_curve(found, value_in_plane) for curve in criticalities for found in curve.points]:
             # A curve may return to the plane: its further points need no curve of their own.
             if not any(lies_on(space, start, curve) for curve in curves):
                 curves.append(bautin_curve(space, start))

@@ -76,8 +76,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """The lines over F among the points of a list, yielded separately."""
-    count = points.count
-    w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(count, -1)
+    w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_over(points.by_name, "F"):
         if len(line.x) > 1:

@@ -36,8 +36,7 @@ def solved_view(job: Job) -> View:
             record = solver.record(index, solver.solve(index))
             for name, array in flat.items():
                 array[index] = record[name]
-    shape = job.points.shape
-    values = {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}
+    values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in flat.items()}
     return view_in_memory(job, plan, values, {"started": started, "finished": now()})
 
 

@@ -60,8 +60,7 @@ def replaced(view: View, number: int) -> dict[str, float]:
         given["drag"] = DRAGS[int(given["drag"])]
     arm = view.config.get("parameters", {}).get("arm") or {}
     own = SlenderArm(**given, **{name: arm[name] for name in OF_MATERIAL if arm.get(name) is not None})
-    columns = view.point_columns
-    at = {name: float(columns[name][number - 1]) for name in view.parameters}
+    at = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
     if own.load:
         at.pop("F", None)
     return {

@@ -32,8 +32,7 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
     hatched = bool(along) and _hatch(figure, views[0], along, outside[0])
     where = "" if number == count else f" at {number} of {count} points"
     note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
-    before = figure.get_suptitle()
-    figure.suptitle(f"{before}\n{note}".strip())
+    figure.suptitle(f"{figure.get_suptitle()}\n{note}".strip())
 
 
 def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:

@@ -110,8 +110,7 @@ PLAIN_UNITS = CycleUnits()
 
 def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at points numbered from 1, with the same names at all points; dimensionless without an arm."""
-    at = np.array(numbers, int) - 1
-    (units,) = units_over([view], [at])
+    (units,) = units_over([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
     drawn = zip(units.length, units.time, units.energy, units.power, strict=True)

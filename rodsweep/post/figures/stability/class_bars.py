@@ -120,8 +120,7 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
     values = view.point_columns[row]
     found: list[tuple[float, float, int]] = []
     for place in np.flatnonzero(np.isfinite(values)):
-        known = np.flatnonzero(kinds[place] > 0)
-        for this, following in pairwise(known):
+        for this, following in pairwise(np.flatnonzero(kinds[place] > 0)):
             word = _class_beyond(int(kinds[place, this]), int(after[place, this]))
             middle = (at[place, this] + at[place, following]) / 2
             found.append((float(middle), float(values[place]), numbers[word]))

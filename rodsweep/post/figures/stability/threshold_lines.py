@@ -99,8 +99,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
     drawn = []
     for panel, along, other in zip(panels, long, reversed(long), strict=True):
-        count = _some_lines(panel, view, along, other)
-        drawn.append(f"{count} of {len(view.axes[other])} values of {other}")
+        drawn.append(f"{_some_lines(panel, view, along, other)} of {len(view.axes[other])} values of {other}")
         if narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE)
     handles = [

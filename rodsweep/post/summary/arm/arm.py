@@ -73,8 +73,7 @@ def _largest(values: np.ndarray) -> float:
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
     """Quantities of an arm that vary among the points of a file, at every point, each (points,)."""
-    columns = quantities_at_points(view)
-    given = {name: column for name, column in columns.items() if name not in ARM_UNITS}
+    given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_UNITS}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
@@ -97,8 +96,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     unit = _unit(view, name)
-    si = ALL_QUANTITIES[name].unit
-    factor = written_in(1.0, unit, si) if unit else 1.0
+    factor = written_in(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:

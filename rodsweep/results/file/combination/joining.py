@@ -187,8 +187,7 @@ def _axis(own: Axis, values: Array) -> Axis:
         spacings: tuple[Literal["linear", "log"], ...] = ("linear", "log") if values[0] > 0 else ("linear",)
         for spacing in spacings:
             start = float(values[0])
-            stop = float(values[-1])
-            axis = Axis(start=start, stop=stop, num=len(values), spacing=spacing)
+            axis = Axis(start=start, stop=float(values[-1]), num=len(values), spacing=spacing)
             if np.array_equal(axis.array(), values):
                 return axis
     return Axis(values=tuple(values.tolist()))

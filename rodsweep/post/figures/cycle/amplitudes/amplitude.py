@@ -36,8 +36,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     """
     first = views[0]
     name = abscissa(first)
-    every = [np.arange(view.variables["status"].size) for view in views]
-    units = units_over(views, every)
+    units = units_over(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
     branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
     if len(branches) > len(BRANCH_LOOKS):
