@@ -59,10 +59,7 @@ NO_PEERS = Peers()
 
 
 def peer_package(directory: Path | None) -> ModuleType | None:
-    """The package in a folder of peers, by default the checkout's own; None without a checkout.
-
-    Raises InputError if the named directory has no peers.
-    """
+    """The package in a folder of peers, by default the checkout's, or None; InputError if it has no peers."""
     if directory is not None:
         return _loaded(directory)
     own = CHECKOUT / PACKAGE

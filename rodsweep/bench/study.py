@@ -22,10 +22,7 @@ SHORT = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting; `run` takes a case. Slow contenders are timed once.
-
-    group: methods with the same group have one colour in the figure.
-    """
+    """A method at one setting: `run` takes a case, once if it is slow. group: methods that share a colour."""
 
     method: str
     setting: str

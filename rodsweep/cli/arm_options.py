@@ -35,10 +35,7 @@ Command = Callable[..., Any]
 
 
 def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Callable[[Command], Command]:
-    """A decorator that adds the options of all quantities but those left out to a command.
-
-    is_needed: whether the command refuses to run without an arm.
-    """
+    """A decorator that adds options of all quantities but some; is_needed: whether a command needs an arm."""
 
     def add_options(command: Command) -> Command:
         for name in reversed([name for name in UNITS if name not in left_out]):

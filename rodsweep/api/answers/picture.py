@@ -77,10 +77,7 @@ class Looks(TypedDict, total=False):
 
 
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument with a value that is not allowed.
-
-    choices: (given value or None, allowed values) of each argument, by name.
-    """
+    """Raises InputError for the first argument, by name with its choices, whose value is not among them."""
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
@@ -108,10 +105,7 @@ class Picture:
 
     @one_at_a_time
     def figure(self) -> Drawing:
-        """The figure as a new `matplotlib.figure.Figure`, whose `axes` are the panels row by row.
-
-        Raises InputError for an animation.
-        """
+        """A new `matplotlib.figure.Figure` with the panels row by row; InputError for an animation."""
         drawn: list[Drawing] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
         draw(self.views, name, keep=drawn.append, **self.choices)

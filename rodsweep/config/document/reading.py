@@ -56,10 +56,7 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """The config with all defaults, as JSON-compatible values; inf becomes "inf".
-
-    For an arm with a grid of parameters, the axes of all parameters are included.
-    """
+    """The config with all defaults and axes of parameters, as JSON-compatible values; inf becomes "inf"."""
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}

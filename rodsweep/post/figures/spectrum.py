@@ -53,10 +53,7 @@ GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 
 def draw_spectrum(request: FigureRequest) -> str:
-    """Draws a line or a map, depending on the number of long axes; otherwise the eigenvalues of each point.
-
-    The lines of several files are drawn side by side.
-    """
+    """Draws lines, of several files side by side, a map, or the eigenvalues of points without a long axis."""
     if len(request.views) > 1:
         return _several(request)
     view = as_grid(request.only_view())

@@ -78,10 +78,7 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of the single rod of a file, a column for each; None without a Hopf point.
-
-    v: the variables of the file, flat.
-    """
+    """Table of the Hopf points of a single rod, a column for each; None without any. v: flat variables."""
     at = np.flatnonzero(v["crossing_kind"] > 0)
     columns = [
         [cell for i in at for cell in number_and_error(*number(v, int(i)))] for number in NUMBERS.values()

@@ -74,10 +74,7 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
 
 
 def _stability(view: View) -> tuple[list[str], list[str]]:
-    """(lines about changes of the straight rod along F, the same in an arm's own units).
-
-    If F is no axis the lines are about the remaining parameters.
-    """
+    """(changes of the straight rod along F, the same in an arm's units), or along another axis without F."""
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()
     of_arm = list[str]()

@@ -106,10 +106,7 @@ def name_of(dimensions: tuple[str, ...]) -> str:
 
 
 def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
-    """Name of the table asked for: by name, by its columns, or the first of the task.
-
-    Raises InputError for an unknown name, and for columns of two tables.
-    """
+    """Name of the table asked for by name or columns, or the first of the task; InputError without one."""
     if table is not None:
         if table not in contents.tables:
             raise InputError(

@@ -74,10 +74,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
 
 
 def flutter_rods(config: Config) -> list[Rod]:
-    """The different rods whose flutter the points of a config need; none unless a load is relative to it.
-
-    Raises InputError for an arm or a taper that is refused.
-    """
+    """The different rods whose flutter the points of a config need; InputError for a refused arm or taper."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
         return rods_of_flutter(config.parameters.arm, config.stated_build)

@@ -53,10 +53,7 @@ class Shard:
         return f"{self.number}/{self.of}"
 
     def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
-        """Ranges of this shard within the ranges `todo`.
-
-        Blocks of all `units` are dealt out to the shards in turn.
-        """
+        """Ranges of this shard within the ranges `todo`: all `units` are dealt to the shards in turn."""
         if self.of == 1:
             return list(todo)
         block = max(1, units // (self.of * BLOCKS_A_SHARD))

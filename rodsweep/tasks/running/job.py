@@ -110,10 +110,7 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
 
 
 def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None = None) -> Job:
-    """The job of a config, with the YAML text. A file of points is searched relative to the folder of `path`.
-
-    flutter: as in `points_of`.
-    """
+    """The job of a config and its YAML text; a file of points is relative to the folder of `path`."""
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_A_VALUE > memory():
         raise InputError(

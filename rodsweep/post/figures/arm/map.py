@@ -144,10 +144,7 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """Draws the range of a number over the drags of the file as a band; returns the legend entry.
-
-    values: on the grid of points. Drags without a number are left out.
-    """
+    """Draws the range of a number on a grid over the drags of a file as a band; returns the legend entry."""
     if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
     drag = view.over.index(DRAG)

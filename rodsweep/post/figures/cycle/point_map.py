@@ -36,10 +36,7 @@ def varied_parameters(view: View) -> list[str]:
 
 
 def point_map(view: View) -> PointMap:
-    """Points of a file as a map; raises InputError unless they form a full grid over two parameters.
-
-    The value inf has no place on an axis and is left out.
-    """
+    """Points of a file as a map, without values inf; raises InputError without a grid over two parameters."""
     varied = varied_parameters(view)
     if len(varied) != 2:
         raise InputError(f"{view.path}: a map is drawn over two parameters, and {_varying(varied)}")

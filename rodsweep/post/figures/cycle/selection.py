@@ -111,10 +111,7 @@ def outcomes(view: View) -> NDArray[np.str_]:
 
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
-    """Cycles at the points chosen by the user, else the first cycles.
-
-    Raises InputError if the file lacks a needed variable, or a chosen point has no cycle.
-    """
+    """Cycles at the points chosen by the user, else the first cycles; InputError where the file has none."""
     _refuse_missing(view, needs)
     words = outcomes(view)
     _refuse_bad_points(view, points)
@@ -126,10 +123,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Se
 
 
 def chosen_traces(view: View, points: Sequence[int]) -> Selection:
-    """Motions of the points chosen by the user, else the first stored motions.
-
-    Raises InputError if the file has no motion, or a chosen point has none.
-    """
+    """Motions of the points chosen by the user, else the first stored ones; InputError without a motion."""
     _refuse_missing(view, TRACE)
     _refuse_bad_points(view, points)
     is_stored = np.isfinite(view.variables[TRACE[0]][..., -1].ravel())

@@ -43,10 +43,7 @@ BESIDE_SIDES = "double eigenvalue", 1.0, ":"
 
 
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
-    """Draws the boundary curves and their folds; returns legend entries.
-
-    states: whether the diagram shows stable states, bounded by Hopf points only.
-    """
+    """Draws boundary curves and folds, or for `states` only Hopf points; returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
     handles = _sides(axes, view, line, row) if sides else []

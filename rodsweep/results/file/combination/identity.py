@@ -69,10 +69,7 @@ def _kind(parameters: Axes) -> str:
 def config_difference(
     theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
 ) -> str:
-    """First key in which two resolved configs differ, with both values; empty for equal configs.
-
-    places: names of the two sources in the sentence.
-    """
+    """First key in which configs of two named places differ, with both values; empty for equal configs."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:
             inner = f"{key}.{name}" if key else name

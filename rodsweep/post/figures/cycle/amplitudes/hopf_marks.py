@@ -60,10 +60,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
 
 
 def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
-    """Draws the square-root laws as dashed curves; returns legend entries with formula and coefficients.
-
-    unit: unit of the coefficients; empty if it is L.
-    """
+    """Draws dashed square-root laws; returns legend entries with formula and coefficients in `unit`, or L."""
     handles = []
     for above in (True, False):
         on_side = [law for law in laws if law.above == above]
