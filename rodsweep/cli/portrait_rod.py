@@ -24,9 +24,7 @@ LEFT_OUT = (*LOADS, "fluid_density", "density_difference")
 
 
 def rod_from(
-    parameters: Mapping[str, float | None],
-    quantities: Mapping[str, Any],
-    material: Mapping[str, str | None],
+    parameters: Mapping[str, float | None], quantities: Mapping[str, Any], material: Mapping[str, str | None]
 ) -> "DescribedRod":
     """The rod of the options, each None where it is not given; InputError for options that describe no rod.
 

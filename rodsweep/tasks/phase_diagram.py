@@ -7,9 +7,7 @@ import numpy as np
 
 from ..config.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
-from ..results.layouts.phase_diagram import (
-    MAX_CYCLE_SPECIAL,
-)
+from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram_of_arms, estimate_lines
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record

@@ -17,12 +17,7 @@ from ..model.longitudinal import longitudinal_rates
 from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
-from ..results.layouts.spectrum import (
-    EACH_FOLLOWED_POINT,
-    EACH_MODE,
-    longitudinal,
-    longitudinal_parameters,
-)
+from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal, longitudinal_parameters
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh

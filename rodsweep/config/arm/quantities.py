@@ -142,11 +142,7 @@ def _schema() -> dict[str, Any]:
     *_, values, span = AXIS_SCHEMA["anyOf"]
     ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
     return {
-        "anyOf": [
-            *each["anyOf"],
-            values | {"items": each},
-            span | {"properties": span["properties"] | ends},
-        ]
+        "anyOf": [*each["anyOf"], values | {"items": each}, span | {"properties": span["properties"] | ends}]
     }
 
 

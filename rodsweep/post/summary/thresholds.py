@@ -21,11 +21,7 @@ EVENTS = {
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
 ENDED_EARLY = "ended_early"
 """Status of a search that ended before the requested force."""
-FIRSTS = {
-    "onset": "oscillates from",
-    "hopf": "beats from",
-    "restabilization": "stable again from",
-}
+FIRSTS = {"onset": "oscillates from", "hopf": "beats from", "restabilization": "stable again from"}
 """Words before the force of the first crossing of a kind, for a single rod."""
 
 

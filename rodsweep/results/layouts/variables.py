@@ -33,10 +33,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "branch_point": ("1", "order along all branches of a rod, branch by branch"),
     "special": ("1", "order along all branches of a rod, branch by branch"),
     "cycle_special": ("1", "order along the branches of a row, branch by branch"),
-    "cycle_curve_point": (
-        "1",
-        "number of the point on all curves of folds and torus points, curve by curve",
-    ),
+    "cycle_curve_point": ("1", "number of the point on all curves of folds and torus points, curve by curve"),
     "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),
     "change": ("1", "number of the change on the lines over F between the points, line by line"),

@@ -57,10 +57,7 @@ CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
 ROW_ENTRIES = 6
 """Largest number of legend entries in a single row."""
-QUANTITIES = (
-    ("period", "viridis", True),
-    ("tip_y_max", "plasma", False),
-)
+QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 """(variable, colour map, whether colours are logarithmic for values over more than a decade) by panel."""
 
 
