@@ -83,9 +83,7 @@ def _selectable(data: xr.Dataset) -> xr.Dataset:
 def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
-    places = {
-        name: place for place, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])
-    }
+    places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
     variables = {name: data.variables[name] for name in names}
     coords = {name: variables.pop(name) for name in names if name in data.coords}
@@ -180,19 +178,13 @@ def _coordinates(plan: Plan) -> dict[str, Any]:
     points = plan.points
     found: dict[str, Any] = {}
     if not points.axes:
-        found["point"] = (
-            ("point",),
-            np.arange(1, points.count + 1, dtype="<i4"),
-            dimension_attributes("point"),
-        )
+        rows = np.arange(1, points.count + 1, dtype="<i4")
+        found["point"] = (("point",), rows, dimension_attributes("point"))
     for name, column in () if points.over else points.by_name.items():
         found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantities:
         found[variable.name] = (variable.extra, values, variable.attributes)
     for name, extent in plan.layout.extents.items():
-        found[name] = (
-            (name,),
-            plan.coordinates.get(name, np.arange(1, extent + 1)),
-            dimension_attributes(name),
-        )
+        coordinate = plan.coordinates.get(name, np.arange(1, extent + 1))
+        found[name] = ((name,), coordinate, dimension_attributes(name))
     return found

@@ -34,7 +34,6 @@ NAMED = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
 
 def as_options(sentence: str) -> str:
     """A sentence with the names of options in place of those of quantities."""
-    named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence).replace(
-        "--segments", "--segment"
-    )
+    named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    named = named.replace("--segments", "--segment")
     return named if named.startswith("--") else f"--{named}"

@@ -155,9 +155,8 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
             key["anyOf"] = [bounded(kind, bound) for kind in kinds]
         if name not in QUANTITIES:
             continue
-        pattern = QUANTITY_TEXT.format(
-            sign="[+]?" if bound else "[+-]?", percent="%" if name in LOADS else ""
-        )
+        sign = "[+]?" if bound else "[+-]?"
+        pattern = QUANTITY_TEXT.format(sign=sign, percent="%" if name in LOADS else "")
         for node in nodes_of(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern

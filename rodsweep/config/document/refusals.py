@@ -31,10 +31,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     value = problem["input"]
     if kind == "extra_forbidden":
         fields = _section(config, location[:-1]).model_fields
-        known = [
-            *(name for name in PARAMETERS if name in fields),
-            *(n for n in fields if n not in PARAMETERS),
-        ]
+        known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
         elsewhere = places_of(config, location)
         hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
         return f"unknown key {key}; {hint}"

@@ -143,9 +143,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
     seen = {int(kind) for kind in kinds[drawn].ravel() if np.isfinite(kind)}
-    handles = [
-        Line2D([], [], color="0.3", ls=line, label=word) for k, (line, word) in LINES.items() if k in seen
-    ]
+    handles = [Line2D([], [], color="0.3", ls=ls, label=word) for k, (ls, word) in LINES.items() if k in seen]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(COLOURS, own, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]

@@ -96,18 +96,16 @@ def _several(request: FigureRequest) -> str:
     return request.write(figure, shown)
 
 
-def _line_of(given: View, request: FigureRequest) -> View:
+def _line_of(view: View, request: FigureRequest) -> View:
     """A file of several to draw; raises InputError unless the file is a line of spectra."""
-    if given.task != request.views[0].task:
-        raise InputError(
-            f"{given.path} is of the task {given.task}; only lines of spectra can share a figure"
-        )
-    view = as_grid(given)
+    if view.task != request.views[0].task:
+        raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
+    view = as_grid(view)
     require(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(
-            f"{given.path} is not a line of spectra, along which one parameter varies; only such files share "
+            f"{view.path} is not a line of spectra, along which one parameter varies; only such files share "
             "a figure"
         )
     return view

@@ -80,9 +80,7 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
     """Table of the Hopf points of a single rod, a column for each; None without any. v: flat variables."""
     at = np.flatnonzero(v["crossing_kind"] > 0)
-    columns = [
-        [cell for i in at for cell in number_and_error(*number(v, int(i)))] for number in NUMBERS.values()
-    ]
+    columns = [[cell for i in at for cell in number_and_error(*each(v, int(i)))] for each in NUMBERS.values()]
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
     rows = zip(NUMBERS, columns, strict=True)
@@ -132,9 +130,7 @@ def _words(v: Mapping[str, np.ndarray], i: int) -> str:
         return f"unstable cycles at {above}"
     if after < 0:
         return f"cycles at {above}"
-    return (
-        f"stable cycles at {above}" if others == 0 else f"cycles at {above}, unstable by {others} other modes"
-    )
+    return f"cycles at {above}, unstable by {others} other modes" if others else f"stable cycles at {above}"
 
 
 def _subcritical_lines(view: View) -> Iterator[str]:

@@ -112,9 +112,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """SI variables for a rod's layout and a resolved config, by the name of the dimensionless variable."""
     as_force = any(RELATIVE.get(name, name) == "force" for name in config["parameters"]["arm"])
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
-    return {
-        v.name: real(si_name_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit
-    }
+    return {v.name: real(si_name_of(v.name, si), si, _meaning(v, si), *v.extra) for v, si in units if si}
 
 
 def si_name_of(name: str, unit: str) -> str:

@@ -256,17 +256,12 @@ def is_linear(config: Mapping[str, Any]) -> bool:
     return all(each.get("law", "linear") == "linear" for each in stated)
 
 
-def confirmed(
-    variables: tuple[Variable, ...], config: Mapping[str, Any], listed: str
-) -> tuple[Variable, ...]:
-    """The variables, with the meaning of `certified` changed if no covering proves lists complete.
-
-    listed: noun for the entries of the list, such as "crossings".
-    """
+def confirmed(variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str) -> tuple[Variable, ...]:
+    """The variables; without a covering, `certified` says that counts confirm the list of the noun."""
     if has_covering(config):
         return variables
     meaning = (
-        f"whether counts of unstable modes confirm the list of {listed}; between the counts it rests on "
+        f"whether counts of unstable modes confirm the list of {noun}; between the counts it rests on "
         "slopes of the eigenvalues"
     )
     return with_meaning(variables, "certified", meaning)

@@ -103,9 +103,8 @@ class Points:
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
         """Parameters at flat indices, (n,), by name, each (n,)."""
         places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
-        return {
-            name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)
-        }
+        each = zip(self.names, self.columns, places, strict=True)
+        return {name: column[place] for name, column, place in each}
 
     def rod(self, index: int, **beside: float) -> Rod:
         """Rod at a flat index, other parameters from `beside`, or NEUTRAL. Raises Crushed."""

@@ -71,16 +71,13 @@ def draw_arm_map(request: FigureRequest) -> str:
             handles = [*handles, *_map(subplot, panel, view, (x, y), place)]
         else:
             handles = [*handles, *_lines(subplot, panel, view, x, place)]
-    covers = [
-        _cover(subplot, view, panel, (x, y), place) for subplot, panel in zip(drawn, panels, strict=True)
-    ]
+    covers = [_cover(plot, view, panel, (x, y), place) for plot, panel in zip(drawn, panels, strict=True)]
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # the first of equal ones
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     banded = [DRAG] if not y and DRAG in first else []
     figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
-    return request.write(
-        figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(map(word, axes))}"
-    )
+    labels = " and ".join(panel.label for panel in panels)
+    return request.write(figure, f"{labels} over {' and '.join(map(word, axes))}")
 
 
 def can_draw(request: FigureRequest) -> bool:

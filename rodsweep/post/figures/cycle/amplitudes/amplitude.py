@@ -51,9 +51,8 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     shared, own = _names(branches, name)
     handles = _draw_branches(panels, branches, own, _file_words(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
-    marks = [
-        (point, colour) for branch, colour in zip(branches, colours, strict=False) for point in branch.hopf
-    ]
+    coloured = zip(branches, colours, strict=False)
+    marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
     handles += draw_laws(
         panels[1], [law for branch in branches for law in branch.laws], units[0].names[0] * units[0].in_si
