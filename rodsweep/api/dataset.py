@@ -138,11 +138,12 @@ def dataset_of(
         for name, extent in zip(variable.extra, data.shape, strict=True):
             coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), dimension_attributes(name)))
     variables["status"][2].update(flag_attributes(((MISSING, "missing"), *plan.flags)))
+    resolved = json.dumps(plan.config)
     header = {
         "program": PROGRAM,
         "format": FORMAT,
         "fingerprint": plan.fingerprint,
-        "config_resolved": json.dumps(plan.config),
+        "config_resolved": resolved,
     }
     whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
     return _selectable(_sealed(_ordered(whole, plan.layout, plan.config)))

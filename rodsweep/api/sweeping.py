@@ -64,14 +64,10 @@ def sweep(
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
     """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
-    points = (
-        f"point {indices[0] + 1}" if len(indices) == 1 else f"points {indices[0] + 1} to {indices[-1] + 1}"
-    )
-    warnings.warn(
-        f"{points}: {described(error)}\n{''.join(traceback.format_exception(error))}",
-        RuntimeWarning,
-        stacklevel=2,
-    )
+    first, last = indices[0] + 1, indices[-1] + 1
+    points = f"point {first}" if first == last else f"points {first} to {last}"
+    trace = "".join(traceback.format_exception(error))
+    warnings.warn(f"{points}: {described(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
 def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:

@@ -3,6 +3,7 @@
 import os
 import sys
 import time
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
@@ -90,14 +91,8 @@ class ProgressReporter:
         if self.bar is not None:
             self.bar.start()
             self.next = now + BAR_SECONDS
-            self.bar.update(
-                self.task,
-                completed=self.done + self.begun,
-                count=count,
-                rate=rate,
-                left=left,
-                where=self.where,
-            )
+            fields: dict[str, Any] = {"count": count, "rate": rate, "left": left, "where": self.where}
+            self.bar.update(self.task, completed=self.done + self.begun, **fields)
             self.bar.refresh()
             return
         self.next = now + LINE_SECONDS
@@ -112,12 +107,6 @@ class ProgressReporter:
 def _bar(title: str) -> Progress:
     """Progress bar on standard error, or in a notebook."""
     console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
-    columns = (
-        TextColumn(title, markup=False),
-        BarColumn(),
-        *(
-            TextColumn(f"{{task.fields[{name}]}}", markup=False)
-            for name in ("count", "rate", "left", "where")
-        ),
-    )
-    return Progress(*columns, console=console, transient=True, auto_refresh=False)
+    fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))
+    head, *columns = (TextColumn(text, markup=False) for text in (title, *fields))
+    return Progress(head, BarColumn(), *columns, console=console, transient=True, auto_refresh=False)

@@ -87,13 +87,8 @@ class ProvedTask(Task):
 
     def parts(self) -> list[Part]:
         what, why = self.left_out
-        return [
-            *rod_parts(self.moved),
-            *material_parts(self.config, self.moved),
-            *self.asked(),
-            ("certificate", *self.certificate()),
-            (what, False, why),
-        ]
+        parts = [*rod_parts(self.moved), *material_parts(self.config, self.moved), *self.asked()]
+        return [*parts, ("certificate", *self.certificate()), (what, False, why)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,11 +49,9 @@ class SpectrumTask(ProvedTask):
     @property
     def stretches(self) -> Stretches | None:
         """Stretches of neighbouring points, along which eigenvalues are followed; None without stretches."""
-        return (
-            stretches_along_longest_axis(self.points.shape, self.points.moved)
-            if self.config.follows
-            else None
-        )
+        if not self.config.follows:
+            return None
+        return stretches_along_longest_axis(self.points.shape, self.points.moved)
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates of the vectors' nodes, shape (nodes,); empty without vectors."""

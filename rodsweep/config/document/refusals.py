@@ -128,12 +128,8 @@ def model_of(field: FieldInfo) -> Any:
 def what_is_allowed(field: FieldInfo) -> str:
     """Allowed values of a key as a phrase, from its type and bounds."""
     kind = field.annotation
-    bound = {
-        name: getattr(part, name)
-        for part in field.metadata
-        for name in ("ge", "gt", "le", "lt", "max_length")
-        if hasattr(part, name)
-    }
+    bounds = ("ge", "gt", "le", "lt", "max_length")
+    bound = {name: getattr(part, name) for part in field.metadata for name in bounds if hasattr(part, name)}
     if field.description:
         return field.description
     if get_origin(kind) is Literal:

@@ -67,11 +67,8 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
     """(name with unit, value at each point) of an arm's quantities with several values."""
-    return [
-        _described(name, values)
-        for name, values in view.quantities.items()
-        if name not in ARM_UNITS and np.ndim(values) and len(np.unique(values)) > 1
-    ]
+    own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
+    return [_described(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
 def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:

@@ -25,16 +25,11 @@ PROOFS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
-        return SummaryLines(
-            [count_line(view)], details=unknowns_lines(view, done), numbers=eigenvalue_table(view)
-        )
+        return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
     lines, how, of_arm = threshold_lines(view)
-    return SummaryLines(
-        [stable_line(view, done), *lines],
-        [*error_lines(view, done), stability_line(view, done), *how],
-        [leading_line(view, done), *unknowns_lines(view, done)],
-        of_arm,
-    )
+    trust = [*error_lines(view, done), stability_line(view, done), *how]
+    details = [leading_line(view, done), *unknowns_lines(view, done)]
+    return SummaryLines([stable_line(view, done), *lines], trust, details, of_arm)
 
 
 def stable_line(view: View, done: np.ndarray) -> str:

@@ -68,25 +68,17 @@ class Column:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
         texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
-        return (
-            [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]
-            if self.given
-            else texts
-        )
+        if not self.given:
+            return texts
+        return [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]
 
 
 def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
     """Column of a variable with values of shape (rows,); words: by value, if not those of the variable."""
     known = dict(variable.flags) if words is None else words
-    return Column(
-        variable.name,
-        variable.units,
-        variable.long_name.removesuffix(NOT_KNOWN),
-        values,
-        absent_in(variable, values),
-        known,
-        is_boolean=variable.is_boolean,
-    )
+    meaning = variable.long_name.removesuffix(NOT_KNOWN)
+    absent, boolean = absent_in(variable, values), variable.is_boolean
+    return Column(variable.name, variable.units, meaning, values, absent, known, is_boolean=boolean)
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:

@@ -19,11 +19,8 @@ HATCHED: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
 
 def add_validity(figure: Figure, views: Sequence[View]) -> None:
     """Hatches a figure of arms if its axes allow, and adds a note where the model does not apply."""
-    outside = [
-        np.asarray(view.variables["model_applies"] == Validity.does_not_apply)
-        for view in views
-        if "model_applies" in view.variables
-    ]
+    judged = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
+    outside = [np.asarray(values == Validity.does_not_apply) for values in judged]
     number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
     if not number:
         return

@@ -114,10 +114,7 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     if not units.in_si:
         return [units] * len(numbers)
     drawn = zip(units.length, units.time, units.energy, units.power, strict=True)
-    return [
-        CycleUnits(float(a), float(t), float(e), float(p), in_si=True, names=units.names)
-        for a, t, e, p in drawn
-    ]
+    return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in drawn]
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:

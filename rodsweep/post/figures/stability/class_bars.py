@@ -86,11 +86,8 @@ def draw_class_bars(view: View) -> Figure:
 
 def class_entries(seen: set[str]) -> list[Patch]:
     """Legend entries of the drawn classes."""
-    return [
-        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word)
-        for word, colour in CLASS_COLOURS.items()
-        if word in seen
-    ]
+    shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
+    return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:

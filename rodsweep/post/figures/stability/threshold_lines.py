@@ -73,12 +73,8 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     handles = _kinds(tables)
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
         for forces, (_, _, _, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
-            _plot(
-                axes,
-                _abscissa(view, along),
-                forces,
-                {"marker": marker, "ms": 3, "lw": 1.2, "color": shade, "ls": line},
-            )
+            look = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade, "ls": line}
+            _plot(axes, _abscissa(view, along), forces, look)
         handles.append(Line2D([], [], color=shade, lw=2, label=style.name_in(view, views)))
     longest = max(views, key=lambda view: len(view.axes[along]))
     _label(axes, longest, along, tables)

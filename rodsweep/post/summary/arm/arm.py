@@ -133,11 +133,9 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
         errors = errors_in_si(view.variables, own, variable.name)[done]
         numbers = _numbers(factor * column, factor * errors)
         items.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
-    return (
-        ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in items))]
-        if items
-        else []
-    )
+    if not items:
+        return []
+    return ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in items))]
 
 
 def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
@@ -155,15 +153,8 @@ def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
 
 def wrapped(text: str) -> list[str]:
     """A text in indented lines of at most WIDTH characters, which do not break at no-break spaces."""
-    lines = textwrap.wrap(
-        text,
-        WIDTH,
-        initial_indent="  ",
-        subsequent_indent="  ",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-    return [line.replace("\xa0", " ") for line in lines]
+    lines = textwrap.wrap(text, WIDTH - 2, break_long_words=False, break_on_hyphens=False)
+    return ["  " + line.replace("\xa0", " ") for line in lines]
 
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:

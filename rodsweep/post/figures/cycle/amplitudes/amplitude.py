@@ -118,19 +118,15 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
     """Draws an arrow on each line in the direction of continuation."""
+    arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
         known = np.flatnonzero(np.isfinite(values))
         if len(known) < MIN_ARROW_POINTS:
             continue
         ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
         start, end = ends if upward else ends[::-1]
-        axes.annotate(
-            "",
-            (branch.x[end], values[end]),
-            (branch.x[start], values[start]),
-            arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14},
-            zorder=4,
-        )
+        tip, tail = (branch.x[end], values[end]), (branch.x[start], values[start])
+        axes.annotate("", tip, tail, arrowprops=arrow, zorder=4)
 
 
 def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:

@@ -49,11 +49,8 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
                 axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
         if len(places) == 1:
             equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
-            handles.append(
-                Line2D(
-                    [], [], color=colour, label=f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}", **DOTTED
-                )
-            )
+            label = f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}"
+            handles.append(Line2D([], [], color=colour, label=label, **DOTTED))
         elif places:
             handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
     return handles
