@@ -86,9 +86,8 @@ class StoredChanges:
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
         """Reads the changes selected by `along` from variables with a prefix."""
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
-        at, error, frequency, kind = (
-            v[f"{prefix}_{field}"] for field in (name, "error", "frequency", "kind")
-        )
+        fields = (name, "error", "frequency", "kind")
+        at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
         for i in np.flatnonzero(along):
             place = float(at[i])

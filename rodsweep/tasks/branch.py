@@ -78,11 +78,8 @@ class BranchTask(NonlinearTask):
 
 def record(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
     """All branches of a rod as variables of the file; points, special: lengths of the two lists."""
-    cycles = [
-        _cycle(point, along) | {"branch": number}
-        for number, curve in enumerate(result.curves, 1)
-        for point in curve.points
-    ]
+    every = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
+    cycles = [_cycle(point, along) | {"branch": number} for number, point in every]
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))

@@ -120,12 +120,8 @@ def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> d
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
     digits = -log10(min(max(error, 10**-MOST_DIGITS), 1.0))
-    extra = {
-        "eigenproblems": first.solves,
-        "determinants": first.determinants,
-        "products": first.products,
-        "digits": nan if isnan(getattr(case, kind)) else digits / first.solves,
-    }
+    work = {"eigenproblems": first.solves, "determinants": first.determinants, "products": first.products}
+    extra = work | {"digits": nan if isnan(getattr(case, kind)) else digits / first.solves}
     return {"error": error, "failure": missed if isinf(error) else "", "extra": extra}
 
 

@@ -58,9 +58,8 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
     line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
-    return SummaryLines(
-        [line, *_special_lines(view, rods), *_coexistence(view, rods)], [_searched(view, done)]
-    )
+    answer = [line, *_special_lines(view, rods), *_coexistence(view, rods)]
+    return SummaryLines(answer, [_searched(view, done)])
 
 
 def _one_rod(view: View, rod: int) -> Iterator[str]:

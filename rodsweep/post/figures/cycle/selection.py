@@ -190,9 +190,7 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
     if all(name in view.quantities for name in REQUIRED):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
-    return shared_and_own(
-        [{name: float(columns[name][number - 1]) for name in columns} for number in numbers]
-    )
+    return shared_and_own([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
 
 
 def shared_and_own_of_arms(
