@@ -175,7 +175,8 @@ class _Run:
             click.echo(f"{self.output}: {sentence}")
 
     def _where(self, index: int) -> str:
-        return ", ".join(f"{name}={value!r}" for name, value in self.job.points.values(index).items())
+        values = self.job.points.values(index)
+        return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
     def _finish_file(self, joint: JointDue) -> bool:
         """Writes the joint variables into the file; returns whether they are still missing."""

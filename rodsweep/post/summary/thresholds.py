@@ -182,7 +182,8 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
     """Line on the cost of the searches; done: a mask of the points' shape."""
-    boxes, solves = (view.variables[name][done] for name in ("boxes", "solves"))
+    v = view.variables
+    boxes, solves = (v[name][done] for name in ("boxes", "solves"))
     evaluations = f"{spans(boxes, 'evaluation')} of D over a box, " if _is_covered(view) else ""
     return [f"cost of a search: {evaluations}{spans(solves, 'eigenproblem')}"]
 

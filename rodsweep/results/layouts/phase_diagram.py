@@ -119,22 +119,20 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables that `phase_diagram.cycles` adds from all rows, by name: curves of folds and torus points."""
+    at = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
     end = "reason for the end of the curve at the point"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
-        *along(
-            "cycle_curve_point",
-            integer("cycle_curve_number", "number of the curve of special points of cycles, from 1"),
-            word("cycle_curve_kind", kind, SPECIAL_KINDS),
-            real(f"cycle_curve_{line}", force, f"{line} on the curve"),
-            real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve"),
-            real("cycle_curve_error", force, error),
-            real("cycle_curve_period", "tau2", "period of the cycle on the curve"),
-            real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes"),
-            word("cycle_curve_end", end, CYCLE_CURVE_ENDS),
-        ),
+        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", at),
+        word("cycle_curve_kind", kind, SPECIAL_KINDS, at),
+        real(f"cycle_curve_{line}", force, f"{line} on the curve", at),
+        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", at),
+        real("cycle_curve_error", force, error, at),
+        real("cycle_curve_period", "tau2", "period of the cycle on the curve", at),
+        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", at),
+        word("cycle_curve_end", end, CYCLE_CURVE_ENDS, at),
         real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
              f"curve, in units of the axis of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),

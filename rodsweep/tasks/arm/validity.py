@@ -104,8 +104,11 @@ class ArmValidity:
         self.arm = lru_cache(ARMS_KEPT)(_arm_of_number(self.section))
 
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        """The variables of VALIDITY for a point, or n points of one arm; records (n, ...), result (n,)."""
-        return self._validity(self._arm_of(int(np.ravel(index)[0])), MOTIONS[self.task](record), index)
+        """The variables of VALIDITY for a point, or for n points of one arm; records (n, ...), result
+        (n,).
+        """
+        motion = MOTIONS[self.task](record)
+        return self._validity(self._arm_of(int(np.ravel(index)[0])), motion, index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at all points with a rod, (n,), for an arm at rest."""
