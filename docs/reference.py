@@ -18,7 +18,7 @@ from pydantic.fields import FieldInfo
 
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.config.document.refusals import what_is_allowed
-from rodsweep.config.json.schema import meanings_of
+from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.material import MaterialSection, ProfileTable
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS

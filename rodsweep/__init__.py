@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from .api.answers.picture import Picture, plot
     from .api.answers.tabling import table
     from .api.arm import Arm
-    from .api.axes import linspace, logspace
+    from .api.asking import linspace, logspace
     from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
@@ -41,8 +41,8 @@ _PLACES = {
     "InputError": "errors.InputError",
     "Picture": "api.answers.picture.Picture",
     "Rod": "api.rod.SoftRod",
-    "linspace": "api.axes.linspace",
-    "logspace": "api.axes.logspace",
+    "linspace": "api.asking.linspace",
+    "logspace": "api.asking.logspace",
     "open": "api.dataset.open_result",
     "plot": "api.answers.picture.plot",
     "sweep": "sweep",

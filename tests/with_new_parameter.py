@@ -35,7 +35,7 @@ import numpy as np
 
 import rodsweep as rs
 from rodsweep.cli import commands
-from rodsweep.config.json.schema import json_schema
+from rodsweep.config.json_schema import json_schema
 from rodsweep.model.rod import Rod
 
 ROD = {"k1": 1e3, "k2": 1e2}

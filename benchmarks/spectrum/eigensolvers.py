@@ -13,7 +13,7 @@ import scipy.linalg
 import scipy.sparse.linalg
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum.own_solvers import ORDERS, PENCIL, WANTED_MODES, leading, mesh_of, shift_of
+from rodsweep.bench.spectrum.study import ORDERS, PENCIL, WANTED_MODES, leading, mesh_of, shift_of
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.newton import refined
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rodsweep.bench.peers import Peers
-from rodsweep.bench.thresholds.cases import HOPF, ONSET
+from rodsweep.bench.thresholds.study import HOPF, ONSET
 
 from ..auto import AUTO
 from .continuation import BEYOND_HOPF, PYCONT, continuation_codes

@@ -15,7 +15,7 @@ import numpy as np
 
 from rodsweep.arrays import Array
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds.cases import FirstThreshold, ThresholdCase
+from rodsweep.bench.thresholds.study import FirstThreshold, ThresholdCase
 
 from ..auto import AUTO, SKIPPED, auto_program, run_auto, table_lines
 from ..installed import installed

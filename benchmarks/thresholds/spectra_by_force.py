@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from scipy.optimize import bisect, brentq
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum.own_solvers import leading
+from rodsweep.bench.spectrum.study import leading
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds.cases import HOPF, ONSET, FirstThreshold, ThresholdCase
+from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 

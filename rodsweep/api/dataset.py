@@ -20,7 +20,15 @@ from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
-from ..results.layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
+from ..results.layouts.variables import (
+    DIMENSIONS,
+    MISSING,
+    TYPED,
+    Filled,
+    Layout,
+    dimension_attributes,
+    flag_attributes,
+)
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -75,9 +83,7 @@ def _selectable(data: xr.Dataset) -> xr.Dataset:
 def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
-    places = {
-        name: place for place, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])
-    }
+    places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
     variables = {name: data.variables[name] for name in names}
     coords = {name: variables.pop(name) for name in names if name in data.coords}
@@ -85,10 +91,7 @@ def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dat
 
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
-    """A whole file as read by xarray.
-
-    Raises InputError if xarray reads values or dimensions different from the file's checksums.
-    """
+    """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
     sealed = json.loads(header.attributes[SEAL])["variables"]
     with reading(path):
         try:
@@ -128,19 +131,19 @@ def dataset_of(
     variables = {}
     for variable in plan.layout.variables:
         dimensions = (*plan.dimensions, *variable.extra)
-        variables[variable.name] = (dimensions, values[variable.name], _described(variable))
+        variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
     for variable, array in filled:
         data = array.astype(variable.dtype)
-        variables[variable.name] = (variable.extra, data, _described(variable))
+        variables[variable.name] = (variable.extra, data, variable.attributes)
         for name, extent in zip(variable.extra, data.shape, strict=True):
-            coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), _named(name)))
-    flags = ((MISSING, "missing"), *plan.flags)
-    variables["status"][2].update(_flags(flags))
+            coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), dimension_attributes(name)))
+    variables["status"][2].update(flag_attributes(((MISSING, "missing"), *plan.flags)))
+    resolved = json.dumps(plan.config)
     header = {
         "program": PROGRAM,
         "format": FORMAT,
         "fingerprint": plan.fingerprint,
-        "config_resolved": json.dumps(plan.config),
+        "config_resolved": resolved,
     }
     whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
     return _selectable(_sealed(_ordered(whole, plan.layout, plan.config)))
@@ -176,29 +179,13 @@ def _coordinates(plan: Plan) -> dict[str, Any]:
     points = plan.points
     found: dict[str, Any] = {}
     if not points.axes:
-        found["point"] = (("point",), np.arange(1, points.count + 1, dtype="<i4"), _named("point"))
+        rows = np.arange(1, points.count + 1, dtype="<i4")
+        found["point"] = (("point",), rows, dimension_attributes("point"))
     for name, column in () if points.over else points.by_name.items():
-        found[name] = ((name if points.is_grid else "point",), column, _named(name))
+        found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantities:
-        found[variable.name] = (variable.extra, values, _described(variable))
+        found[variable.name] = (variable.extra, values, variable.attributes)
     for name, extent in plan.layout.extents.items():
-        found[name] = ((name,), plan.coordinates.get(name, np.arange(1, extent + 1)), _named(name))
+        coordinate = plan.coordinates.get(name, np.arange(1, extent + 1))
+        found[name] = ((name,), coordinate, dimension_attributes(name))
     return found
-
-
-def _named(name: str) -> dict[str, Any]:
-    units, long_name = DIMENSIONS[name]
-    return {"units": units, "long_name": long_name}
-
-
-def _described(variable: Variable) -> dict[str, Any]:
-    """Attributes of a variable."""
-    described: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
-    if variable.typed:
-        described[TYPED] = variable.typed
-    return described | (_flags(variable.flags) if variable.flags else {})
-
-
-def _flags(flags: tuple[tuple[int, str], ...]) -> dict[str, Any]:
-    values = np.array([value for value, _ in flags], dtype="i1")
-    return {"flag_values": values, "flag_meanings": " ".join(meaning for _, meaning in flags)}

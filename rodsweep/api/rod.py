@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from pydantic import ValidationError
 
-from ..config.axes import DEFAULTS, words
+from ..config.axes import DEFAULTS, REQUIRED, words
 from ..config.document.call_arguments import in_sentences, unknown
 from ..config.document.refusals import hint_of, nearest, sentence_of
 from ..config.material import MaterialSection, with_profile_read
@@ -22,17 +22,12 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
-from .asking import job_from, known_load, tree_of
-from .axes import plain, plain_keyword
+from .asking import job_from, known_load, plain, plain_keyword, tree_of
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait
-
-REQUIRED = tuple(name for name, p in PARAMETERS.items() if p.default is None and name != "F")
-"""Parameters that every rod needs."""
-
 
 ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
 
@@ -63,7 +58,8 @@ class SoftRod:
         profile: str | Mapping[str, Any] | None = None,
         **parameters: float | None,
     ):
-        given = {name: value for name, value in {**parameters, "arm": arm}.items() if value is not None}
+        everything: dict[str, Any] = {**parameters, "arm": arm}
+        given = {name: value for name, value in everything.items() if value is not None}
         for name in parameters:
             if name not in PARAMETERS:
                 left = [other for other in (*PARAMETERS, "arm") if other not in given]
@@ -71,7 +67,9 @@ class SoftRod:
                 raise InputError(f"unknown key parameters.{name}; {hint}")
         material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
-            given = _of_arm(arm) | given
+            if not isinstance(arm, SlenderArm):
+                raise InputError(f"arm = {short(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
+            given = parameters_of(known_load(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
             material = material_of(arm) | beside
         for name in REQUIRED:
@@ -207,20 +205,9 @@ def _material(given: Mapping[str, Any]) -> MaterialSection | None:
     try:
         return MaterialSection.model_validate(read)
     except ValidationError as error:
-        raise InputError(sentence_of(CONFIGS["spectrum"], _in_material(error))) from None
-
-
-def _in_material(error: ValidationError) -> dict[str, Any]:
-    """The first problem of a material, at its place in a config."""
-    problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
-    return problem | {"loc": ("material", *problem["loc"])}
-
-
-def _of_arm(arm: object) -> dict[str, Any]:
-    """Rod parameters of an arm, without F for an arm without load."""
-    if not isinstance(arm, SlenderArm):
-        raise InputError(f"arm = {short(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
-    return parameters_of(known_load(arm))
+        problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
+        in_config = problem | {"loc": ("material", *problem["loc"])}
+        raise InputError(sentence_of(CONFIGS["spectrum"], in_config)) from None
 
 
 def _number(name: str, value: Any) -> float:

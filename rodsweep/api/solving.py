@@ -1,6 +1,7 @@
 """Solves all points of a job in sequence in this process, without files and without MPI."""
 
 import socket
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..errors import InputError
 from ..results.file.creation import Plan
 from ..results.file.provenance import now, united_reasons
 from ..results.file.view import View
@@ -15,17 +17,18 @@ from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
-from ..sweep.points.shards import Shard
+from ..sweep.points.ranges import Shard
+from ..sweep.progress import ProgressReporter, Silent, in_notebook
+from ..sweep.stop import NoClaims, RankListener, StopRequest
 from ..tasks.protocol import AllPoints, Arrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas, blas_kernels, view_in_memory
-from ..tasks.running.job import Job
-from ..tasks.running.plan import plan_of
+from ..tasks.running.job import Job, plan_of
 from ..tasks.running.unforeseen import Note, guarded
 from ..watch import part, reporting_to
-from .answers.showing import Display, display, listener
 from .dataset import dataset_of
 
+Display = ProgressReporter | Silent
 _warm: set[str] = set()
 """Tasks warmed up in this process: compilation happens once."""
 
@@ -76,8 +79,7 @@ def _solved(
     """
     reasons = FailureReasons(lambda index: parameters_in_words(job.points.values(index)))
     count = job.points.count
-    layout = plan.layout
-    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
+    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
     if solver.stretched is not None:
         stretches, solve_stretch = solver.stretched
@@ -140,3 +142,21 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
                 outcome, state = solve_from(index, state)
             done += 1
             yield index, outcome
+
+
+def display(progress: bool | None, total: int | None, title: str) -> Display:
+    """Progress display for `total` points, which appears after a second.
+
+    progress: True or False; None displays only in a terminal or a notebook. InputError for any other type.
+    """
+    if not (progress is None or isinstance(progress, bool)):
+        raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
+    shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
+    return ProgressReporter(total, title, live=True) if shown else Silent()
+
+
+def listener(shown: Display, name: str) -> RankListener:
+    """Listener that displays the position of the solve `name`; Ctrl-C raises KeyboardInterrupt."""
+    return RankListener(
+        NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name
+    )

@@ -17,18 +17,16 @@ from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import described, log_file
-from .answers.showing import Display, display
 from .asking import Tree, job_from, refuse_unfit, tree_of
 from .dataset import open_result
-from .solving import solve_here
+from .solving import Display, display, solve_here
 
 COMPUTED = (0, 1)
 """Exit statuses of a complete run: all points succeeded, or some did not."""
 REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Exception for each exit status of a refused run."""
 MOST_QUOTED = 2000
-"""Maximum length, in characters, of a quoted standard error: enough for its last exception or a launcher's
-reason."""
+"""Maximum length, in characters, of a quoted standard error: enough for its last exception."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -66,14 +64,10 @@ def sweep(
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
     """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
-    points = (
-        f"point {indices[0] + 1}" if len(indices) == 1 else f"points {indices[0] + 1} to {indices[-1] + 1}"
-    )
-    warnings.warn(
-        f"{points}: {described(error)}\n{''.join(traceback.format_exception(error))}",
-        RuntimeWarning,
-        stacklevel=2,
-    )
+    first, last = indices[0] + 1, indices[-1] + 1
+    points = f"point {first}" if first == last else f"points {first} to {last}"
+    trace = "".join(traceback.format_exception(error))
+    warnings.warn(f"{points}: {described(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
 def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
@@ -132,10 +126,7 @@ def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
 
 
 def _mpiexec() -> str:
-    """Path of the launcher beside this Python, or else on the search path.
-
-    Raises EnvironmentIncomplete if no launcher is found.
-    """
+    """The launcher beside this Python, or on the search path; EnvironmentIncomplete if there is none."""
     beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     found = beside or shutil.which("mpiexec")
     if found is None:

@@ -32,7 +32,6 @@ LEFT_OUT = {
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
 """Names of the peers by study, for users without the folder of peers."""
-
 Section = Callable[[int], tuple[list[str], list[Measurement]]]
 """A comparison with its own tables: from the number of rounds to (blocks of text, measurements)."""
 
@@ -60,10 +59,7 @@ NO_PEERS = Peers()
 
 
 def peer_package(directory: Path | None) -> ModuleType | None:
-    """The package in a folder of peers, by default the checkout's own; None without a checkout.
-
-    Raises InputError if the named directory has no peers.
-    """
+    """The package in a folder of peers, by default the checkout's, or None; InputError if it has no peers."""
     if directory is not None:
         return _loaded(directory)
     own = CHECKOUT / PACKAGE

@@ -16,17 +16,13 @@ from ..post.work_precision import draw_work_precision
 from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")
-
 SHORT = 0.02
 """Duration in seconds below which the time of a run depends on the caches left by the previous run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting; `run` takes a case. Slow contenders are timed once.
-
-    group: methods with the same group have one colour in the figure.
-    """
+    """A method at one setting: `run` takes a case, once if it is slow. group: methods that share a colour."""
 
     method: str
     setting: str
@@ -134,9 +130,7 @@ def _timed(run: Callable[[], Outcome]) -> Timed[Outcome]:
 
 
 def processor_seconds() -> float:
-    """Processor seconds of this process and of the programs started by it, without the rest of the
-    machine.
-    """
+    """Processor seconds of this process and of the programs started by it."""
     programs = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + programs.ru_utime + programs.ru_stime
 

@@ -24,9 +24,8 @@ import click  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
-from .explore_command import explore  # noqa: E402 - after the environment is set
 from .launchers import speaks  # noqa: E402 - after the environment is set
-from .page_commands import portrait, report  # noqa: E402 - after the environment is set
+from .page_commands import explore, portrait, report  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
 
@@ -86,9 +85,7 @@ def main() -> None:
 
 
 def _drop_what_cannot_be_written() -> None:
-    """Redirects streams that cannot be flushed to /dev/null: otherwise Python's own flush at exit returns
-    status 120.
-    """
+    """Redirects streams that cannot be flushed to /dev/null: Python's flush at exit would end with 120."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

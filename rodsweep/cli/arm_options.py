@@ -1,4 +1,4 @@
-"""Options of the commands `arm` and `portrait`: quantities with units, segments, and the law."""
+"""Options of the commands `arm` and `portrait`: quantities with units, segments, the law, parameters."""
 
 from collections.abc import Callable, Collection
 from typing import Any
@@ -7,6 +7,7 @@ import click
 
 from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE
+from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
 REMARKS = {
     "length": ", by default the sum of the segments",
@@ -17,8 +18,6 @@ REMARKS = {
     "density_difference": ", for its weight",
 }
 """Remarks that follow a quantity's meaning in `--help`."""
-
-
 OF_MATERIAL: dict[str, dict[str, Any]] = {
     "--segment": {
         "multiple": True,
@@ -32,16 +31,11 @@ OF_MATERIAL: dict[str, dict[str, Any]] = {
     },
 }
 """Options of shape and material that are no quantities."""
-
-
 Command = Callable[..., Any]
 
 
 def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Callable[[Command], Command]:
-    """A decorator that adds the options of all quantities but those left out to a command.
-
-    is_needed: whether the command refuses to run without an arm.
-    """
+    """A decorator that adds options of all quantities but some; is_needed: whether a command needs an arm."""
 
     def add_options(command: Command) -> Command:
         for name in reversed([name for name in UNITS if name not in left_out]):
@@ -59,3 +53,14 @@ def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
     help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")
     return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)
+
+
+def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Adds an option, not required, for every parameter of a rod but the force, which is found."""
+    for name in reversed([name for name in (*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name != "F"]):
+        parameter = PARAMETERS[name]
+        meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
+        unit = "" if parameter.unit == "1" else f", in {parameter.unit}"
+        default = "" if parameter.default is None else f"; by default {parameter.default:g}"
+        command = click.option(f"--{name}", name, type=float, help=f"{meaning}{unit}{default}.")(command)
+    return command

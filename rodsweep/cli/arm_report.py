@@ -13,10 +13,7 @@ STYLES = {"headline": "bold", "warning": "yellow"}
 
 
 def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
-    """Prints the report on an arm; InputError, naming the option, for an invalid quantity.
-
-    given: quantities, law and section.
-    """
+    """Prints the report on an arm of these quantities and law; InputError names the option."""
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import report_on
 
@@ -37,7 +34,6 @@ NAMED = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
 
 def as_options(sentence: str) -> str:
     """A sentence with the names of options in place of those of quantities."""
-    named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence).replace(
-        "--segments", "--segment"
-    )
+    named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    named = named.replace("--segments", "--segment")
     return named if named.startswith("--") else f"--{named}"

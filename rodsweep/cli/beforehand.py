@@ -1,5 +1,4 @@
-"""Work of all ranks before the result file is created: variables that need no points, and data that all
-points need."""
+"""Work of all ranks before the result file is created: variables without points, data of all points."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -48,10 +47,7 @@ def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) ->
 
 
 def flutter_beforehand(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
-    """Flutter forces of rods with a load relative to flutter, searched by all ranks together.
-
-    Empty if no load is relative to flutter. None if a stop signal came first.
-    """
+    """Flutter forces of rods with a relative load, searched by all ranks together; None after a stop."""
     rods = team.on_first(lambda: flutter_rods(config))
     if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together
         team.require_on_all_ranks(require_solvers)

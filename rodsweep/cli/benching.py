@@ -1,13 +1,16 @@
 """The command `bench`: runs the benchmarks, prints text, writes numbers and figures."""
 
+import platform
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import click
 
 from ..errors import EnvironmentIncomplete
+from ..results.file.provenance import cpu_name, now, provenance
+from ..solve.backend import petsc
 
 MEASURED = (sys.executable, "-m", f"{__package__}.measured")
 """Command line of the runs that the benchmark of the sweep measures."""
@@ -27,12 +30,12 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.machine import machine, where_and_when
         from ..bench.peers import Peers, left_out, peer_package, peers_of
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
         from ..bench.thresholds.study import thresholds_study
+        from .benching import machine, where_and_when
     except ModuleNotFoundError as error:
         raise EnvironmentIncomplete(
             f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
@@ -65,3 +68,16 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         # After each study, so that nothing measured is lost with the next.
         output.write_text("\n\n".join(blocks) + "\n")
         write_measurements(output.with_suffix(".h5"), tables, machine())
+
+
+def machine() -> dict[str, str]:
+    """Processor, date and versions, as attributes of a file."""
+    return {"processor": cpu_name(), "created": now()} | provenance() | petsc.versions()
+
+
+def where_and_when(peers: Mapping[str, str]) -> str:
+    """Machine, date and versions, including the peers' versions, in one line."""
+    versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
+    shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
+    where = ", ".join(f"{name} {its}" for name, its in (shown | dict(peers)).items())
+    return f"One core of {cpu_name()}, {platform.system()}, {now()[:10]}; {where}. Threads: one."

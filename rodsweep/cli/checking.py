@@ -57,8 +57,7 @@ def _arm_lines(job: Job) -> list[str]:
     assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
     made = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
-    at_rest = ArmValidity(job.config, job.points).at_rest()
-    validity = validity_sentence(at_rest, when=" before anything moves")
+    validity = validity_sentence(ArmValidity(job.config, job.points).at_rest(), when=" before anything moves")
     return [
         f"the arm: {given_text(arm.given)}{_material_text(arm)}",
         *_wall_lines(arm),

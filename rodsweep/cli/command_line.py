@@ -53,7 +53,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 
     stop = StopRequest(acknowledges=not rank_variables())
     stop.listen()  # first: a launcher's warning signal may come before slow imports are done
-    from ..sweep.points.shards import shard_of
+    from ..sweep.points.ranges import shard_of
     from .run.options import RunOptions
     from .run.running import run_config
 
@@ -62,8 +62,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
     output = result_file(output or Path(config.stem + suffix))
-    asked = RunOptions(overrides=overrides, shard=part, **options)
-    code = run_config(config, output, asked, stop)
+    code = run_config(config, output, RunOptions(overrides=overrides, shard=part, **options), stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
 
@@ -220,7 +219,7 @@ def schema() -> None:
     """Print the JSON schema of a config, from which editors complete keys and mark mistakes."""
     import json
 
-    from ..config.json.schema import json_schema
+    from ..config.json_schema import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False))
 

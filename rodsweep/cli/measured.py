@@ -23,8 +23,7 @@ from . import main
 from .launchers import speaks
 
 OUTCOMES = 4096
-"""Number of random outcomes, taken by the points in turn. Compression algorithms do not look back this
-far."""
+"""Number of random outcomes, taken by the points in turn. Compression does not look back this far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +41,7 @@ class InstantSpectra(SpectrumTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        modes = self.config.spectrum.modes
-        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
+        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, self.config.spectrum.modes))
         outcomes = [
             Spectrum(
                 status=SpectrumStatus.ok,

@@ -1,4 +1,4 @@
-"""Commands that write a page or a picture to share: `report` and `portrait`."""
+"""Commands that write a page or a picture to share, `report` and `portrait`, and `explore`, a local page."""
 
 from pathlib import Path
 from typing import Any
@@ -7,11 +7,11 @@ import click
 
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
-from .arm_options import arm_options
+from .arm_options import arm_options, parameter_options
 from .file_names import beside, followed
-from .parameter_options import parameter_options
 from .portrait_rod import LEFT_OUT, rod_from, showing
 
+PORTS = click.IntRange(0, 65535)
 FILE = click.Path(path_type=Path)
 
 
@@ -63,3 +63,16 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
         results = rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)
     click.echo(paragraph(results))
     click.echo(write_portrait(results, output))
+
+
+@click.command()
+@click.argument("source", type=click.Path(path_type=Path), required=False, metavar="[FILE | CONFIG]")
+@click.option(
+    "--port", type=PORTS, default=0, show_default=True, help="Port of the page; 0 chooses a free port."
+)
+@click.option("--open", "is_opened", is_flag=True, help="Open the page in the browser.")
+def explore(source: Path | None, port: int, is_opened: bool) -> None:
+    """Explore a rod or an arm live on a local page, from the result FILE, a CONFIG, or an example."""
+    from ..explore.starting import explore as start
+
+    start(None if source is None else followed(source), port, is_opened)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
-from ..sweep.listener import NoClaims, RankListener
-from ..sweep.stop import StopRequest
+from ..sweep.stop import NoClaims, RankListener, StopRequest
 from ..watch import SolvePosition, reporting_to
 
 if TYPE_CHECKING:
@@ -22,20 +21,16 @@ if TYPE_CHECKING:
 
 LEFT_OUT = (*LOADS, "fluid_density", "density_difference")
 """Quantities of an arm without an option: the load is found, and densities do not enter the model."""
-REQUIRED = tuple(name for name, each in PARAMETERS.items() if each.default is None and name != "F")
-"""Parameters that a rod without an arm needs."""
 
 
 def rod_from(
-    parameters: Mapping[str, float | None],
-    quantities: Mapping[str, Any],
-    material: Mapping[str, str | None],
+    parameters: Mapping[str, float | None], quantities: Mapping[str, Any], material: Mapping[str, str | None]
 ) -> "DescribedRod":
     """The rod of the options, each None where it is not given; InputError for options that describe no rod.
 
     quantities: of an arm, with poisson and segments. Parameters given beside an arm replace its own.
     """
-    from ..config.axes import DEFAULTS
+    from ..config.axes import DEFAULTS, REQUIRED
     from ..model.arm.arm import SlenderArm
     from ..post.rod_portrait.results import DescribedRod
     from .arm_report import as_options

@@ -11,6 +11,8 @@ from .arm.section import ArmSection
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
+REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
+"""Parameters that every rod needs."""
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
 
 
@@ -44,9 +46,7 @@ class Axes(LinearAxes):
     @model_validator(mode="before")
     @classmethod
     def _with_defaults(cls, given: Any) -> Any:
-        """Adds defaults of parameters to a grid. Files of points have columns, and arms have their own
-        values.
-        """
+        """Adds defaults of parameters to a grid. Files of points and arms have values of their own."""
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
@@ -65,9 +65,7 @@ class Axes(LinearAxes):
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """Axes of a grid of parameters by name, including those made from an arm; else only the given
-        axes.
-        """
+        """Axes of a grid of parameters by name, with those made from an arm; else only the given axes."""
         if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes

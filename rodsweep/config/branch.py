@@ -18,8 +18,7 @@ from .schema import Config
 from .values import Number, Strict
 
 FOLLOWED = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Parameters along which branches can be followed; gamma1 is excluded because Hopf points do not depend on
-it."""
+"""Parameters along which branches can be followed: those on which Hopf points depend, so not gamma1."""
 
 
 class BranchOptions(Strict):
@@ -78,9 +77,7 @@ class BranchConfig(Config):
     @model_validator(mode="before")
     @classmethod
     def _followed_has_no_default(cls, given: Any) -> Any:
-        """Removes the default of the followed parameter, which has no value of its own; a given value is
-        refused.
-        """
+        """Removes the default of the followed parameter, which has no value; a given value is refused."""
         sections = given if isinstance(given, dict) else {}
         options = sections.get("branch")
         parameters = sections.get("parameters")

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from ..errors import InputError
 from ..model.material.build import Build
 from ..model.material.profile import FACTORS, Profile
-from .values import Number, Strict, as_number, overflows, short
+from .values import Number, Strict, cell_number, short
 
 MOST_ROWS = 1000
 """Largest number of rows of a profile."""
@@ -45,8 +45,7 @@ class ProfileTable(Strict):
     def profile(self) -> Profile:
         """The profile; ValueError for a table that describes no profile."""
         given = {name: getattr(self, name) for name in FACTORS}
-        ones = [1.0] * len(self.u)
-        columns = {name: ones if column is None else column for name, column in given.items()}
+        columns = {name: [1.0] * len(self.u) if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
                 raise ValueError(f"{name} has {len(column)} values and u has {len(self.u)}")
@@ -128,14 +127,8 @@ def read_profile(path: Path) -> dict[str, list[float]]:
         if len(row) != len(header):
             raise InputError(f"{place} has {len(row)} values, but the header names {len(header)}")
         for name, cell in zip(header, row, strict=True):
-            columns[name].append(_number(cell, f"{place}: {name}"))
+            try:
+                columns[name].append(cell_number(cell))
+            except ValueError:
+                raise InputError(f"{place}: {name} = {short(cell)} is not a number") from None
     return columns
-
-
-def _number(cell: str, where: str) -> float:
-    try:
-        if "_" in cell or not cell.isascii() or overflows(cell):
-            raise ValueError
-        return as_number(float(cell))
-    except ValueError:
-        raise InputError(f"{where} = {short(cell)} is not a number") from None

@@ -92,9 +92,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def gamma1(self) -> float:
-        """The axial drag, on which only criticality and cycles depend: the given value, the arm's, or the
-        default.
-        """
+        """The axial drag of criticality and cycles: the given value, the arm's, or the default."""
         if "gamma1" in self.parameters.numbers:
             return self.parameters.numbers["gamma1"]
         if self.parameters.arm is not None:

@@ -55,9 +55,7 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def follows(self) -> bool:
-        """Whether eigenvalues are followed along an axis: vectors come from the mesh, and only a count
-        reveals a miss.
-        """
+        """Whether eigenvalues are followed along an axis: without vectors, and with a count of misses."""
         return self.spectrum.follow and self._could_follow
 
     @property

@@ -41,6 +41,13 @@ def overflows(text: str) -> bool:
         return False
 
 
+def cell_number(cell: str) -> float:
+    """Number in a cell of a CSV file; ValueError for any other text."""
+    if "_" in cell or not cell.isascii() or overflows(cell):
+        raise ValueError
+    return as_number(float(cell))
+
+
 def short(value: Any) -> str:
     """`repr` of a value, cut to 60 characters."""
     try:
@@ -51,9 +58,7 @@ def short(value: Any) -> str:
 
 
 def named(name: object, most: int = 200) -> str:
-    """A name for a message: `repr` if it is not printable, shortened in the middle beyond `most`
-    characters.
-    """
+    """A name for a message: `repr` if not printable, shortened in the middle beyond `most` characters."""
     text = str(name)
     if not text.isprintable():
         text = repr(text)
@@ -80,8 +85,6 @@ Number = Annotated[
     PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
 ]
 """A number. JSON stores infinite numbers as text."""
-
-
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
 """JSON schema of a number on an axis."""
 AXIS_SCHEMA: dict[str, Any] = {
@@ -103,8 +106,6 @@ AXIS_SCHEMA: dict[str, Any] = {
     ],
 }
 """JSON schema of the values taken by `as_axis`."""
-
-
 DIGITS_OF_QUANTITY = 15
 """Significant digits of a quantity in SI units; unit conversion changes the 16th digit."""
 

@@ -6,7 +6,7 @@ stability of all cycles between the same two special points, if equal.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import pairwise
 from math import nan
 
@@ -24,7 +24,6 @@ STOPPED = ("no_cycle_found", "list_full")
 """Reasons for an end beyond which a branch goes on."""
 JOINED_RANGES = 1e-9
 """Largest relative distance between two ranges that are joined."""
-
 Range = tuple[float, float]
 """(smallest, largest) value of the parameter."""
 
@@ -94,8 +93,7 @@ class StoredBranch:
 
 def followed_parameter(view: View) -> str:
     """Parameter along which the branches of a file are followed."""
-    names = {str(name) for name in view.variables}
-    return next(name for name in PARAMETERS if f"branch_{name}" in names)
+    return next(name for name in PARAMETERS if f"branch_{name}" in view.variables)
 
 
 def count_incomplete_branches(view: View, rod: int) -> int:
@@ -134,17 +132,22 @@ def curves_of(view: View, rod: int) -> list[StoredBranch]:
             for is_cycle, i in order
         ]
         at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
-        counts = [_least_outside(v, i) if is_cycle else None for is_cycle, i in order]
+        crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
+        outside = [least_outside(int(count), float(m), float(error)) for count, m, error in crossing]
+        counts = [outside[i] if is_cycle else None for is_cycle, i in order]
         is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
         stable = stability_of_pieces(counts)
-        curves.append(StoredBranch(at, y, period, stable, is_cycle, _special_points(v, special)))
+        curves.append(
+            StoredBranch(at, y, period, stable, is_cycle, tuple(_special_point(v, i) for i in special))
+        )
     return curves
 
 
-def _least_outside(v: dict[str, Array], place: int) -> int:
-    """Least number of multipliers of a stored cycle outside the circle, -1 if its stability is undecided."""
-    multiplier, error = (float(v[name][place]) for name in ("multiplier", "multiplier_error"))
-    return least_outside(int(v["unstable_multipliers"][place]), multiplier, error)
+def _special_point(v: dict[str, Array], place: int) -> StoredSpecialPoint:
+    """Special point at a place of the stored list."""
+    values = {field.name: v[f"special_{field.name}"][place].item() for field in fields(StoredSpecialPoint)}
+    words = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
+    return StoredSpecialPoint(**values | words)
 
 
 def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
@@ -161,26 +164,6 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
             if len({count == 0 for count in beside}) == 1:
                 stable[i] = int(beside[0] == 0)
     return np.array(stable, dtype=int)
-
-
-def _special_points(v: dict[str, Array], places: Iterable[int]) -> tuple[StoredSpecialPoint, ...]:
-    """Special points at some places of the stored list."""
-    return tuple(
-        StoredSpecialPoint(
-            SPECIAL_KINDS[int(v["special_kind"][i])],
-            float(v["special_at"][i]),
-            float(v["special_error"][i]),
-            float(v["special_period"][i]),
-            float(v["special_tip_y_max"][i]),
-            END_REASONS[int(v["special_reason"][i])],
-            int(v["special_unstable_after"][i]),
-            int(v["special_meets"][i]),
-            float(v["special_amplitude_coefficient"][i]),
-            float(v["special_period_error"][i]),
-            float(v["special_tip_y_max_error"][i]),
-        )
-        for i in places
-    )
 
 
 def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:

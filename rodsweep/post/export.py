@@ -58,8 +58,7 @@ def _sentence(table: Table, view: View) -> str:
     """Sentence on the written table, points without rows, and further tables."""
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
-        points = counted(view.variables["status"].size, "point")
-        text += f"; {table.empty_points} of {points} without any"
+        text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without any"
     if table.others:
         text += f"; --table takes {words(table.others, 'or')} instead"
     return text

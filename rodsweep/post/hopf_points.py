@@ -15,11 +15,10 @@ from ..model.parameters import OPTIONAL_PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
-from ..sweep.points.lines import ParameterLine
+from ..sweep.points.points import ParameterLine
 
 ON_A_HOPF_POINT = 1e-9
-"""Relative distance below which a point of a file lies on a Hopf point; the growth rate is then rounding
-error."""
+"""Relative distance of a point of a file from a Hopf point below which its growth rate is rounding error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
 """(kind, number of growing modes beyond) of Hopf points at which the stability of the straight rod changes.
 At other Hopf points further modes become unstable or stable."""
@@ -87,9 +86,8 @@ class StoredChanges:
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
         """Reads the changes selected by `along` from variables with a prefix."""
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
-        at, error, frequency, kind = (
-            v[f"{prefix}_{field}"] for field in (name, "error", "frequency", "kind")
-        )
+        fields = (name, "error", "frequency", "kind")
+        at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
         for i in np.flatnonzero(along):
             place = float(at[i])

@@ -18,13 +18,8 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
     found = dict.fromkeys(numbers, False)
     rows = view.point_columns[row]
     kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
-    paths = {
-        number: (
-            v[f"curve_{line}"][v["curve_number"] == number],
-            v[f"curve_{row}"][v["curve_number"] == number],
-        )
-        for number in numbers
-    }
+    on = {number: v["curve_number"] == number for number in numbers}
+    paths = {number: (v[f"curve_{line}"][own], v[f"curve_{row}"][own]) for number, own in on.items()}
     for place, i in zip(*np.nonzero(np.isfinite(at)), strict=True):
         kind = CROSSING_KINDS[int(kinds[place, i])]
         if numbers and (kind, int(after[place, i])) in STABILITY_CHANGES and np.isfinite(rows[place]):

@@ -40,13 +40,7 @@ WAIT_SECONDS = 0.05
 class FirstRankClaims:
     """Claims of the first rank, with a thread that serves all further ranks."""
 
-    def __init__(
-        self,
-        team: Team,
-        handout: Handout,
-        stop: StopRequest,
-        show: Callable[[str, float], None],
-    ):
+    def __init__(self, team: Team, handout: Handout, stop: StopRequest, show: Callable[[str, float], None]):
         """show: displays the progress of a long point, in words, and the work done of unfinished points."""
         self.team = team
         self.handout = handout

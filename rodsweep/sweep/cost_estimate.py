@@ -20,8 +20,7 @@ from .points.stretches import Stretches
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
 HARDER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters with which branches become more expensive; for all further parameters small values are
-expensive."""
+"""Parameters whose large values make branches expensive; of all others small values do."""
 FIXED_MS = 0.03
 """Overhead of the solve of a spectrum, in ms, measured."""
 LINEAR_MS = 2.2e-3
@@ -63,8 +62,7 @@ HOPF_CERTIFICATE_MS = 3.0
 HOPF_POINTS_MS = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 TWO_MESHES = 8.0
-"""Time of a spectrum on two meshes, in units of a spectrum that begins on a single mesh: mean over 800
-rods."""
+"""Time of a spectrum on two meshes, in units of a spectrum that begins on one: mean over 800 rods."""
 FINER_MESH = 4 / 3
 """Ratio of the unknowns of the second mesh to the unknowns of the first."""
 MODES_MS = 1.5
@@ -151,10 +149,7 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Cost of spectra along stretches, from the cost of the same points solved alone.
-
-    standard: whether all rods are uniform and of linear material.
-    """
+    """Cost of spectra along stretches, from that of points solved alone; standard: uniform, linear rods."""
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
     each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS

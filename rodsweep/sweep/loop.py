@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from ..watch import Stopped, reporting_to
 from .claims import FirstRankClaims, OtherRankClaims
 from .handout import GIVE_BACK_AFTER, OVER, Handout, Report, chunk_seconds
-from .listener import RankListener
 from .points.ranges import IndexRange
-from .stop import StopRequest
+from .stop import RankListener, StopRequest
 from .team import Team
 
 Indices = int | NDArray[np.int64]

@@ -3,6 +3,7 @@
 import os
 import sys
 import time
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
@@ -18,10 +19,7 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether the user sees standard error live.
-
-    Under a launcher the ranks write to a pipe, and the launcher's own standard error decides.
-    """
+    """Whether the user sees standard error live; under a launcher, its own standard error decides."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -65,10 +63,7 @@ class ProgressReporter:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, done: int) -> None:
-        """Takes the total number of finished points and shows it if an update is due.
-
-        The clock starts with the call for 0 points.
-        """
+        """Takes the number of finished points, 0 to start the clock, and shows it if an update is due."""
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS
@@ -78,10 +73,7 @@ class ProgressReporter:
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Takes the progress of a long point, in words, and shows it if an update is due.
-
-        begun: work done of all unfinished points, in points.
-        """
+        """Shows, if due, the progress of a long point in words; begun: work done of unfinished points."""
         self.begun = begun
         self.where = words
         self._show()
@@ -99,14 +91,8 @@ class ProgressReporter:
         if self.bar is not None:
             self.bar.start()
             self.next = now + BAR_SECONDS
-            self.bar.update(
-                self.task,
-                completed=self.done + self.begun,
-                count=count,
-                rate=rate,
-                left=left,
-                where=self.where,
-            )
+            fields: dict[str, Any] = {"count": count, "rate": rate, "left": left, "where": self.where}
+            self.bar.update(self.task, completed=self.done + self.begun, **fields)
             self.bar.refresh()
             return
         self.next = now + LINE_SECONDS
@@ -121,12 +107,6 @@ class ProgressReporter:
 def _bar(title: str) -> Progress:
     """Progress bar on standard error, or in a notebook."""
     console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
-    columns = (
-        TextColumn(title, markup=False),
-        BarColumn(),
-        *(
-            TextColumn(f"{{task.fields[{name}]}}", markup=False)
-            for name in ("count", "rate", "left", "where")
-        ),
-    )
-    return Progress(*columns, console=console, transient=True, auto_refresh=False)
+    fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))
+    head, *columns = (TextColumn(text, markup=False) for text in (title, *fields))
+    return Progress(head, BarColumn(), *columns, console=console, transient=True, auto_refresh=False)

@@ -14,11 +14,9 @@ PACE_FROM = 0.5
 MIN_POINTS = 2
 """Finished points after the first record that are needed for a pace."""
 MIN_BEGUN = 0.1
-"""Least work of unfinished points, in points, for a first estimate; with less work the start-up cost
-dominates."""
+"""Least work of unfinished points, in points, for a first estimate; below, the start-up cost dominates."""
 TIME_CONSTANT = 0.25
-"""Time constant of the reported remaining time, as a fraction of the time passed or left, whichever is
-shorter."""
+"""Time constant of the reported remaining time, as a fraction of the shorter of time passed and left."""
 RECORD_RATIO = 1.02
 """Ratio of finished points between two stored records: about 35 records for each doubling."""
 

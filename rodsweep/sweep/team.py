@@ -54,10 +54,7 @@ class Team:
         return value
 
     def wait_for_all(self) -> None:
-        """Waits for all ranks.
-
-        Unlike MPI's barrier the wait sleeps, and leaves the processor to ranks still at work.
-        """
+        """Waits for all ranks; sleeps, unlike MPI's barrier, and leaves the processor to ranks at work."""
         request = self.comm.Ibarrier()
         pause = SHORTEST_PAUSE
         while not request.Test():

@@ -26,5 +26,4 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "criticality": CriticalityTask,
     "branch": BranchTask,
 }
-"""Constructors of the tasks from config and points. Raise InputError for errors only the task can
-recognise."""
+"""Constructors of the tasks from config and points. Raise InputError for what only the task recognises."""

@@ -78,11 +78,8 @@ class BranchTask(NonlinearTask):
 
 def record(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
     """All branches of a rod as variables of the file; points, special: lengths of the two lists."""
-    cycles = [
-        _cycle(point, along) | {"branch": number}
-        for number, curve in enumerate(result.curves, 1)
-        for point in curve.points
-    ]
+    every = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
+    cycles = [_cycle(point, along) | {"branch": number} for number, point in every]
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
@@ -108,8 +105,7 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
     """Branches that meet at symmetry breakings: {(branch, index of special point): second branch}."""
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        ends = ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1))
-        for breaking, place in ends:
+        for breaking, place in ((curve.breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
             if breaking is not None:
                 numbers[number, place] = breaking.branch
                 numbers[breaking.branch, breaking.place] = number

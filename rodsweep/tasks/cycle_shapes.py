@@ -1,6 +1,5 @@
 """Shapes and samples of cycles for a figure of a file without them: the cycles are solved again."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -63,15 +62,14 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
 
 def _job(view: View, number: int) -> Job:
     """Job of a point of the file, with the file's config, but independent of neighbouring points."""
-    config = json.loads(view.attributes["config_resolved"])
-    stored = config["limit_cycle"]
+    stored = view.config["limit_cycle"]
     options = {"shapes": SHAPES, "samples": SAMPLES, "harmonics": stored["harmonics"], "start": "hopf"}
     if stored["start"] != "hopf":
         options |= {"start": "mode", "amplitude": stored["amplitude"], "most_periods": stored["most_periods"]}
     tree = {
         "task": "limit_cycle",
         "parameters": {name: float(column[number - 1]) for name, column in view.point_columns.items()},
-        "accuracy": config["accuracy"],
+        "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
     return job_of(Path(view.path.name), validated(tree), yaml_of(tree))

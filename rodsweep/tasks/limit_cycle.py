@@ -1,6 +1,4 @@
-"""The task limit_cycle: the beating of the nonlinear rod at every point, or its return to the straight
-rod.
-"""
+"""The task limit_cycle: beating of the nonlinear rod at every point, or return to the straight rod."""
 
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -37,8 +35,7 @@ if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
 OF_THE_SWEEP = ("method", "along", "direction", "time")
-"""Options for the method, the order of the points and the units of the file; a cycle is solved for all other
-options."""
+"""Options of the sweep, not of a cycle: the method, the order of the points, the units of the file."""
 MULTIPLIERS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
 """Names of variables by the field of a cycle, where the two names differ."""
 FINITE_STIFFNESS = Range(isfinite, "a finite number")
@@ -59,8 +56,7 @@ class LimitCycleTask(Task):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, in which each point starts from the cycle of the previous point; None without
-        chains."""
+        """Chains of points, each started from the cycle of the previous point; None without chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -68,9 +64,7 @@ class LimitCycleTask(Task):
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Times of samples, shapes and transients in their units; material coordinates of the nodes of
-        shapes.
-        """
+        """Times of samples, shapes and transients; material coordinates of the nodes of shapes. All (n,)."""
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
         times = {name: np.arange(count) / count for name, count in extents.items() if count}

@@ -1,6 +1,4 @@
-"""The task modes: the leading modes with their adjoints, and the transient growth of the non-normal
-operator.
-"""
+"""The task modes: leading modes with their adjoints, and transient growth of the non-normal operator."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -57,8 +57,7 @@ class ProvedTask(Task):
         return largest_first_mesh(self.points, mesh_of, self.searched())
 
     def searched(self) -> dict[str, np.ndarray]:
-        """Values, (n,), of the searched parameter, by name of the parameter; empty for tasks that search no
-        parameter."""
+        """Values, (n,), of the searched parameter, by name; empty for tasks that search no parameter."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:
@@ -88,13 +87,8 @@ class ProvedTask(Task):
 
     def parts(self) -> list[Part]:
         what, why = self.left_out
-        return [
-            *rod_parts(self.moved),
-            *material_parts(self.config, self.moved),
-            *self.asked(),
-            ("certificate", *self.certificate()),
-            (what, False, why),
-        ]
+        parts = [*rod_parts(self.moved), *material_parts(self.config, self.moved), *self.asked()]
+        return [*parts, ("certificate", *self.certificate()), (what, False, why)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +172,8 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     """Quantities that vary along the arms, in words; empty for uniform arms."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
-    shapes = [] if (tapers == 1).all() else [f"{ratios} {_span(tapers)}"]
+    ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
+    shapes = [] if (tapers == 1).all() else [f"{ratios} {ends}"]
     profile = config.build.profile
     if profile is not None:
         shapes.append(_profile(config, profile))
@@ -198,13 +193,6 @@ def _law(config: Config) -> str:
     """The constitutive law in words."""
     law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
-
-
-def _span(values: np.ndarray) -> str:
-    """The range of several numbers in words."""
-    low = float(values.min())
-    high = float(values.max())
-    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def _deformation(parameter: Parameter, values: np.ndarray) -> Part:

@@ -7,12 +7,10 @@ import numpy as np
 
 from ..config.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
-from ..results.layouts.phase_diagram import (
-    MAX_CYCLE_SPECIAL,
-)
+from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram_of_arms, estimate_lines
 from .diagram.curves import DiagramCurves
-from .diagram.cycles import cycles_record
+from .diagram.records import cycles_record
 from .parts import ProvedTask
 from .protocol import Part, Solver
 from .thresholds import search_record
@@ -114,9 +112,7 @@ class PhaseDiagramTask(ProvedTask):
         )
 
     def rod(self, index: int) -> Rod:
-        """A rod of a row. The parameter that varies along the row is at a neutral value: F = 0, or k1 =
-        inf.
-        """
+        """A rod of a row. The parameter that varies along the row is neutral: F = 0, or k1 = inf."""
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":

@@ -20,8 +20,7 @@ Arrays = dict[str, np.ndarray]
 InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Maps a function over items, in their order, possibly sharing the work among ranks."""
 Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
-"""Wraps the solve of a point: takes index, starting state and the solve, returns (outcome, state for the
-neighbour)."""
+"""Wraps the solve of a point: from index, starting state and solve to (outcome, neighbour's state)."""
 Part = tuple[str, bool, str]
 """(part, whether it is modelled, reason): a row of the table printed by `check`."""
 
@@ -78,9 +77,7 @@ class Solver:
     """Replaces `solve` if neighbours are solved together; takes flat indices."""
 
     def within(self, around: Around, together: SolveStretch | None = None, **changed: Any) -> "Solver":
-        """The solver with `around` wrapped about the solve of every point, and with `together` for
-        stretches.
-        """
+        """The solver with `around` wrapped about every point's solve, and with `together` for stretches."""
         chained = self.chained
         stretched = self.stretched
         if chained is not None:
@@ -112,8 +109,7 @@ class Task(ABC):
 
     @property
     def chains(self) -> Chains | None:
-        """Chains of points, in which each point starts from the solution of the previous point; None without
-        chains."""
+        """Chains of points, each started from the solution of the previous point; None without chains."""
         return None
 
     @property
@@ -141,8 +137,7 @@ class Task(ABC):
         """One line: the number of points and the request for each point."""
 
     def arms(self) -> str:
-        """A line on arms that are not uniform or of rubber: variation, law, and the first mesh; empty for all
-        other arms."""
+        """A line on arms not uniform or of rubber: variation, law, first mesh; empty for all other arms."""
         return ""
 
     @abstractmethod

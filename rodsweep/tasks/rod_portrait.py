@@ -28,16 +28,12 @@ MODE_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
 """Default of the largest force, as of the task thresholds."""
-
 Solve = Callable[[Job], View]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitRequest:
-    """A rod and the choices of its portrait.
-
-    F_max: largest force. accuracy: relative error, or None for the default of each task.
-    """
+    """A rod, the largest force, and the accuracy, or None for the default of each task."""
 
     rod: DescribedRod
     F_max: float = F_MAX
@@ -99,8 +95,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
 
 
 def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at a force, started from the Hopf point; if no cycle is found, from a large
-    deflection."""
+    """The limit cycle at a force, started from the Hopf point, or else from a large deflection."""
     found = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_START}):
         view = solved("limit_cycle", {**start, "shapes": SHAPES}, F)

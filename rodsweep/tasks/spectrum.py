@@ -17,12 +17,7 @@ from ..model.longitudinal import longitudinal_rates
 from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
-from ..results.layouts.spectrum import (
-    EACH_FOLLOWED_POINT,
-    EACH_MODE,
-    longitudinal,
-    longitudinal_parameters,
-)
+from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal, longitudinal_parameters
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
@@ -54,11 +49,9 @@ class SpectrumTask(ProvedTask):
     @property
     def stretches(self) -> Stretches | None:
         """Stretches of neighbouring points, along which eigenvalues are followed; None without stretches."""
-        return (
-            stretches_along_longest_axis(self.points.shape, self.points.moved)
-            if self.config.follows
-            else None
-        )
+        if not self.config.follows:
+            return None
+        return stretches_along_longest_axis(self.points.shape, self.points.moved)
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates of the vectors' nodes, shape (nodes,); empty without vectors."""
@@ -177,10 +170,7 @@ class SpectrumTask(ProvedTask):
 
 
 def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
-    """(rates, relative errors) of an arm, (2, modes); NaN for an arm that is crushed.
-
-    values: those of its parameters on which the rates depend.
-    """
+    """(rates, relative errors) of an arm with these parameters, (2, modes); NaN for a crushed arm."""
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
     except Crushed:

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
 
 EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Kinds of crossings; the first crossing of a kind is a threshold. Each kind has the variable stored beside
-F."""
+"""Kinds of crossings whose first is a threshold, each with the variable stored beside F."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +76,7 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
 
 
 def search_record(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
-    """Variables of a search along `line`: at most `most` crossings; `at`: name of the variable with their
-    places.
-    """
+    """Variables of a search along `line`: at most `most` crossings; at: name of the variable of places."""
     found = result.transitions
     variables = crossing_variables(line, at)
     rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]

@@ -19,7 +19,7 @@ from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import options
-from rodsweep.api.answers.option_words import in_python
+from rodsweep.api.answers.picture import in_python
 from rodsweep.api.asking import job_from, tree_of, yaml_of
 from rodsweep.cli import commands
 from rodsweep.config.schema import Config
@@ -494,7 +494,7 @@ def test_a_long_solve_is_shown_where_it_is_asked_for_or_a_terminal_is(progress, 
     """The display is due at once; standard error is no terminal here."""
     monkeypatch.setattr("rodsweep.sweep.progress.FIRST_SECONDS", 0.0)
     monkeypatch.setattr("rodsweep.sweep.progress.BAR_SECONDS", 0.0)
-    monkeypatch.setattr("rodsweep.sweep.listener.PLACE_SECONDS", 0.0)
+    monkeypatch.setattr("rodsweep.sweep.stop.PLACE_SECONDS", 0.0)
     asked = {} if progress is None else {"progress": progress}
     rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4).branch(stop=40, accuracy=1e-4, **asked)
     said = capsys.readouterr().err
@@ -516,7 +516,7 @@ def test_ctrl_c_on_a_branch_is_a_keyboard_interrupt_and_the_next_solve_is_right(
             signal.raise_signal(signal.SIGINT)
 
     with monkeypatch.context() as patch:
-        patch.setattr("rodsweep.sweep.listener.RankListener.__call__", interrupt)
+        patch.setattr("rodsweep.sweep.stop.RankListener.__call__", interrupt)
         with pytest.raises(KeyboardInterrupt):
             rod.branch(stop=40, accuracy=1e-4)
     assert (

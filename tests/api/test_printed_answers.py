@@ -14,7 +14,7 @@ from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
 import rodsweep as rs
 from rodsweep.api.answers.frames import frame_of
 from rodsweep.cli.checking import describe_job
-from rodsweep.post.headline.digits import Digits
+from rodsweep.post.headline.one_rod import Digits
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
 from rodsweep.post.tables.alignment import blocks, column_cells, point_aligned, refolded, rows_with_prose

@@ -15,13 +15,23 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.machine import machine
 from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own_solvers import KRYLOV_SCHUR, ORDERS, WANTED_MODES, krylov_schur, own_spectrum
-from rodsweep.bench.spectrum.study import HARD_RODS, RACE, every_size, hard_table, spectrum_study
+from rodsweep.bench.spectrum.study import (
+    HARD_RODS,
+    KRYLOV_SCHUR,
+    ORDERS,
+    RACE,
+    WANTED_MODES,
+    every_size,
+    hard_table,
+    krylov_schur,
+    own_spectrum,
+    spectrum_study,
+)
 from rodsweep.bench.study import Contender, Measurement, Study, contest, every_nth_setting, race
+from rodsweep.cli.benching import machine
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
 

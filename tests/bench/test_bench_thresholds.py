@@ -9,8 +9,16 @@ from conftest import ROOT
 from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds import study as thresholds
-from rodsweep.bench.thresholds.cases import CASES, HOPF, ONSET, FirstThreshold, ThresholdCase
-from rodsweep.bench.thresholds.study import threshold_table, thresholds_study, timed_on
+from rodsweep.bench.thresholds.study import (
+    CASES,
+    HOPF,
+    ONSET,
+    FirstThreshold,
+    ThresholdCase,
+    threshold_table,
+    thresholds_study,
+    timed_on,
+)
 
 CASE = {case.name: case for case in CASES}
 

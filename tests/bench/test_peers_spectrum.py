@@ -10,8 +10,7 @@ from benchmarks.spectrum.eigensolvers import (
     displacement_elements,
 )
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own_solvers import WANTED_MODES
-from rodsweep.bench.spectrum.study import HARD_RODS, RACE
+from rodsweep.bench.spectrum.study import HARD_RODS, RACE, WANTED_MODES
 from rodsweep.model.rod import Rod
 
 EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)

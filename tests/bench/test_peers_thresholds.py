@@ -34,8 +34,7 @@ from benchmarks.thresholds.spectra_by_force import (
     square_root_law,
 )
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds.cases import CASES, HOPF, ONSET, ThresholdCase
-from rodsweep.bench.thresholds.study import threshold_table, timed_on
+from rodsweep.bench.thresholds.study import CASES, HOPF, ONSET, ThresholdCase, threshold_table, timed_on
 
 CASE = {case.name: case for case in CASES}
 FLUTTERING = [case for case in CASES if not isnan(case.hopf)]

@@ -4,7 +4,7 @@ import pytest
 from faults import small
 
 import rodsweep as rs
-from rodsweep.config.json.schema import json_schema
+from rodsweep.config.json_schema import json_schema
 
 RESULTS = "is not a name for results, which are HDF5: it must end in .h5, .hdf5, .nc"
 

@@ -178,7 +178,7 @@ accuracy: 1.0e-4
 """
 FOR_EVER_INSIDE = """
 import os, pathlib, time
-from rodsweep.sweep.listener import RankListener
+from rodsweep.sweep.stop import RankListener
 
 hear, rank = RankListener.__call__, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))
 

@@ -11,7 +11,7 @@ from faults import small
 
 from rodsweep.config import load_config
 from rodsweep.config.document.parsing import parse
-from rodsweep.config.json.schema import json_schema
+from rodsweep.config.json_schema import json_schema
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
 from rodsweep.tasks.running.job import job_of

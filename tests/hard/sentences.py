@@ -22,7 +22,7 @@ from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import curves_of
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.sweep.points.lines import lines_over
+from rodsweep.sweep.points.points import lines_over
 
 from .arm_sentences import arm_sentences, random_arm, region_as_stated
 from .branch_sentences import branch_sentences

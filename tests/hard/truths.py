@@ -10,7 +10,7 @@ from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.sweep.points.lines import lines_over
+from rodsweep.sweep.points.points import lines_over
 
 BESIDE = 1e-7
 """Relative distance from a stated threshold at which eigenvalues are computed on both its sides."""

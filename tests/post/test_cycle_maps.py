@@ -11,8 +11,7 @@ from surveyed import few
 
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cycle.amplitudes.hopf_lines import hopf_lines
-from rodsweep.post.figures.cycle.maps import STATUS_LOOKS, draw_maps
+from rodsweep.post.figures.cycle.maps import STATUS_LOOKS, draw_maps, hopf_lines
 from rodsweep.post.figures.cycle.point_map import cell_edges, point_map
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest

@@ -21,10 +21,9 @@ from rodsweep.post.figures.lists import number_points
 from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import broken, mark_thresholds, select_roots
-from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
+from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import PIXELS, ClassifiedPoints, coloured
-from rodsweep.post.figures.stability.row_classes import class_along_row
 from rodsweep.post.figures.stability.threshold_lines import _alike
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
 from rodsweep.post.summary import SUMMARIES

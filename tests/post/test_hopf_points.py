@@ -10,7 +10,7 @@ from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
-from rodsweep.sweep.points.lines import lines_over
+from rodsweep.sweep.points.points import lines_over
 from rodsweep.tasks.protocol import alone
 from rodsweep.tasks.running.job import make_job
 

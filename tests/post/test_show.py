@@ -14,7 +14,7 @@ from rodsweep.post.summary.ranges import to_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdStatus
-from rodsweep.sweep.points.lines import lines_over
+from rodsweep.sweep.points.points import lines_over
 from rodsweep.tasks.running.job import make_job
 
 ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"

@@ -14,11 +14,11 @@ from ranks import PATIENCE
 
 from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
+from rodsweep.results.file import exchange
 from rodsweep.results.file.combination.merge import merge
-from rodsweep.results.run import lock
+from rodsweep.results.file.exchange import Lock
 from rodsweep.results.run.journal import journal_directory
-from rodsweep.results.run.lock import Lock
-from rodsweep.sweep.points.shards import Shard, shard_of
+from rodsweep.sweep.points.ranges import Shard, shard_of
 
 SPECTRA = """
 title: shards
@@ -162,7 +162,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
     held = Lock(journal_directory(merged), merged)
     waits = threading.Event()
     clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
-    monkeypatch.setattr(lock, "time", clock)
+    monkeypatch.setattr(exchange, "time", clock)
     with ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(merge, merged, [second], plan_without_solver)
         assert waits.wait(PATIENCE)

@@ -8,7 +8,7 @@ import pytest
 
 from rodsweep.config.document.reading import canonical, validated
 from rodsweep.errors import InputError
-from rodsweep.results.file import points, validation
+from rodsweep.results.file import exchange, points, validation
 from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
@@ -18,7 +18,6 @@ from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
-from rodsweep.results.run import lock
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals
 from rodsweep.sweep.points.points import Points
 
@@ -227,7 +226,7 @@ def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path
 
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(lock, "LOCK_PATIENCE", 0.3)
+    monkeypatch.setattr(exchange, "LOCK_PATIENCE", 0.3)
     store = Store(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
         Store(tmp_path / "a.h5", plan())

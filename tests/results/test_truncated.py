@@ -9,9 +9,8 @@ from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.sweep.points.shards import Shard
-from rodsweep.tasks.running.job import make_job
-from rodsweep.tasks.running.plan import plan_of
+from rodsweep.sweep.points.ranges import Shard
+from rodsweep.tasks.running.job import make_job, plan_of
 
 CONFIGS = {
     "spectrum": """

@@ -16,8 +16,7 @@ from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalf
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.sweep.handout import OVER, Report
-from rodsweep.sweep.pool import Pool
+from rodsweep.sweep.handout import OVER, Pool, Report
 
 DIAGRAM = """
 task: phase_diagram
@@ -32,7 +31,7 @@ HALT = """
 import pathlib, time
 from rodsweep.results.run.checkpoints import UnitResults
 import rodsweep.watch as watch
-from rodsweep.sweep.listener import RankListener
+from rodsweep.sweep.stop import RankListener
 
 write, hear = UnitResults.write, RankListener.__call__
 state = []

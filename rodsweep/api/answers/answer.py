@@ -1,7 +1,6 @@
 """Result of a task for one rod: variables as attributes, lists as pandas DataFrames."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
@@ -118,7 +117,10 @@ class Answer:
         (column,) = (column for column in self._tables.items(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
-        values = np.asarray(series_of(column) if not _lacks_counts(column) else _with_nan(column))
+        lacks_counts = column.values.dtype.kind in "iu" and column.absent.any() and not column.words
+        values = np.asarray(
+            np.where(column.absent, np.nan, column.values) if lacks_counts else series_of(column)
+        )
         inner = [self.data.sizes[each] for each in dimensions[1:]]
         return values[:: prod(inner)] if name == dimensions[0] else values.reshape(-1, *inner)
 
@@ -149,7 +151,10 @@ class Answer:
         rod = OneRod(tables.view)
         own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
         own.sort(key=_is_dimensionless)
-        lists = {name: _units_first(tables.items(name)) for name in self.lists}
+        lists = {}
+        for name in self.lists:
+            number, *others = tables.items(name)
+            lists[name] = (number, *sorted(others, key=_is_dimensionless))
         if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
         totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
@@ -162,7 +167,11 @@ class Answer:
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in IN_FULL},
-            named={name: rows for name, columns in lists.items() if (rows := _rows_beyond(name, columns))},
+            named={
+                name: rows
+                for name, columns in lists.items()
+                if name not in IN_FULL and (rows := len(columns[0].values))
+            },
         )
 
 
@@ -185,20 +194,9 @@ def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
     return cast(type[StrEnum], found)
 
 
-def _rows_beyond(name: str, columns: Sequence[Column]) -> int:
-    """Number of rows of a list that is not printed in full; 0 for a printed list."""
-    return 0 if name in IN_FULL else len(columns[0].values)
-
-
 def _is_dimensionless(column: Column) -> bool:
     """Whether a column is in units of the rod. Columns in SI units are printed first."""
     return column.unit not in SI_UNITS
-
-
-def _units_first(columns: Sequence[Column]) -> tuple[Column, ...]:
-    """Columns in printing order: item number, columns in SI units, all others."""
-    first, *others = columns
-    return (first, *sorted(others, key=_is_dimensionless))
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:
@@ -207,13 +205,3 @@ def _scalar(column: Column) -> float | int | bool | str | None:
         return None
     value = series_of(column)[0]
     return value if value is None or isinstance(value, str) else value.item()
-
-
-def _lacks_counts(column: Column) -> bool:
-    """Whether a column has integers, no words, and at least one missing value."""
-    return column.values.dtype.kind in "iu" and bool(column.absent.any()) and not column.words
-
-
-def _with_nan(column: Column) -> np.ndarray:
-    """A column of counts as real numbers, NaN for missing values."""
-    return np.where(column.absent, np.nan, column.values)

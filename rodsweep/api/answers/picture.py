@@ -1,11 +1,13 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import wraps
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
-from typing import Any, Literal, TypedDict, Unpack
+from typing import Any, Literal, ParamSpec, TypedDict, TypeVar, Unpack
 
 import xarray as xr
 
@@ -20,10 +22,49 @@ from ...solve.exclusive import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
 from ..dataset import file_path
 from .answer import Answer
-from .option_words import in_python, refusing_in_python
 from .tabling import view_for
 
+P = ParamSpec("P")
+R = TypeVar("R")
+PLACE = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
+NUMBER = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
+WORDS = (
+    (re.compile(r"--what (\w+)"), r'what="\1"'),
+    (re.compile(r"--point (\d+)"), r"points=\1"),
+    (re.compile(r"--point\b"), "points"),
+    (re.compile(r"--(at|what|output|roots|width|style|title)\b"), r"\1"),
+)
+"""Options of `rodsweep plot`, and how `rs.plot` has them."""
 EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
+
+
+def in_python(sentence: str) -> str:
+    """A sentence about options of `rodsweep plot` with the arguments of `rs.plot` in their place."""
+    sentence = PLACE.sub(_place, sentence)
+    for option, argument in WORDS:
+        sentence = option.sub(argument, sentence)
+    return sentence
+
+
+def _place(match: re.Match[str]) -> str:
+    """`at` as a dictionary: a number as it is, a quantity or a word in quotes."""
+    name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
+    return f'at={{"{name}": {value}}}' if NUMBER.fullmatch(value) else f'at={{"{name}": "{value}"}}'
+
+
+def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
+    """Decorator: the InputError of a call has the arguments of `rs.plot`."""
+
+    @wraps(function)
+    def call(*values: P.args, **named: P.kwargs) -> R:
+        try:
+            return function(*values, **named)
+        except InputError as error:
+            raise InputError(in_python(str(error))) from None
+
+    return call
+
+
 Drawable = xr.Dataset | Answer | str | Path
 
 
@@ -36,10 +77,7 @@ class Looks(TypedDict, total=False):
 
 
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument with a value that is not allowed.
-
-    choices: (given value or None, allowed values) of each argument, by name.
-    """
+    """Raises InputError for the first argument, by name with its choices, whose value is not among them."""
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
@@ -67,10 +105,7 @@ class Picture:
 
     @one_at_a_time
     def figure(self) -> Drawing:
-        """The figure as a new `matplotlib.figure.Figure`, whose `axes` are the panels row by row.
-
-        Raises InputError for an animation.
-        """
+        """A new `matplotlib.figure.Figure` with the panels row by row; InputError for an animation."""
         drawn: list[Drawing] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
         draw(self.views, name, keep=drawn.append, **self.choices)

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from ...post.headline.digits import Digits
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
 from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, folded, rows_with_prose
@@ -67,8 +66,7 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
 
 def brief_text(printed: Printed) -> str:
     """An answer in about ten lines: the sentence, the main numbers and the main list."""
-    heads = _heads(printed)
-    lines = [*heads, *_number_lines(printed)]
+    lines = [*_heads(printed), *_number_lines(printed)]
     more = _more(printed)
     lines += _brief_list(printed, BRIEF_LINES - len(lines) - more.count("\n") - 1)
     return "\n".join([*lines, more])
@@ -88,14 +86,15 @@ def brief_html(printed: Printed) -> str:
 
 def whole_text(printed: Printed) -> str:
     """An answer as text: every number with its unit and meaning, then the lists."""
-    points = printed.rod.points
-    rows = [(c.name, points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
     for name, columns in printed.lists.items():
         lines = [folded(_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
+            digits = printed.rod.lists[name]
             kept = [column for column in columns if not column.absent.all()]
-            for number, block in enumerate(blocks(_cells(printed.rod.lists[name], kept))):
+            cells = [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in kept]
+            for number, block in enumerate(blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
     return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.ends))]))
@@ -103,8 +102,7 @@ def whole_text(printed: Printed) -> str:
 
 def whole_html(printed: Printed) -> str:
     """An answer as HTML, with the content of `whole_text`."""
-    points = printed.rod.points
-    rows = [(c.name, points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
         parts.append(f"<p>{escape(_title(name, columns, printed.totals.get(name, 0)))}</p>")
@@ -174,11 +172,6 @@ def _brief_cells(printed: Printed, room: int) -> tuple[list[list[str]], int]:
             break
         found += added
     return found, count
-
-
-def _cells(digits: Digits, columns: Sequence[Column]) -> list[list[str]]:
-    """Cells of the columns of a list under their names and units."""
-    return [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in columns]
 
 
 def _brief_list(printed: Printed, room: int) -> list[str]:

@@ -33,8 +33,7 @@ RODS = (
     Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
 )
-"""Rods with cycles near and far from their Hopf points, stiff rods, and a rod shortened to half by its
-force."""
+"""Rods with cycles near and far from Hopf points, stiff rods, and a rod shortened to half by its force."""
 QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01

@@ -41,8 +41,7 @@ REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
 EXACT = 1e-13
 """Relative tolerance of Newton's method for the reference."""
 PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
-"""Scheme for locating events. The number of equal steps determines the error; Newton's error is
-negligible."""
+"""Scheme for locating events. The number of equal steps decides the error; Newton's is negligible."""
 FOLLOWED_PERIODS = 6.3
 """Length of a run in periods. The first return is left out, because the start is not exactly on the cycle."""
 TARGET = 1e-6

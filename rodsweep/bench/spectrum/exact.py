@@ -43,10 +43,7 @@ def determinant(rod: Rod) -> Callable[[Any], Any]:
 
 
 def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
-    """The leading eigenvalues to 30 digits, as numbers of mpmath.
-
-    Raises ArithmeticError if the leading eigenvalues are not certified or cannot be refined.
-    """
+    """The leading eigenvalues to 30 digits, as numbers of mpmath; ArithmeticError if not certified."""
     found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
     if found.status != SpectrumStatus.ok or not found.certified:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")

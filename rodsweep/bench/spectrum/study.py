@@ -5,14 +5,18 @@ The race RACE runs on a `Rod` and gives the leading eigenvalues, at least WANTED
 
 from collections.abc import Sequence
 from functools import partial
-from math import isinf, nan
+from math import ceil, isinf, nan
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Complex
+from ...discretization.elements.resolution import RESOLUTION, Resolution
+from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
-from ...solve.spectrum.search import warm_up
+from ...solve.spectrum.krylov_schur import eigen_solver
+from ...solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
+from ...solve.spectrum.shift_invert import KRYLOV
 from ..peers import Peers
 from ..study import (
     Contender,
@@ -28,10 +32,18 @@ from ..study import (
     table,
 )
 from .exact import exact_spectrum, relative_error
-from .own_solvers import PLAIN, WANTED_MODES, contenders
 
+WANTED_MODES = 4
+ACCURACY = 1e-12
+"""Accuracy requested from rodsweep; its error does not depend on the request."""
+ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
+"""Sizes of the pencil."""
+PLAIN = "rodsweep, certificate off"
+PROVED = "rodsweep, certificate on"
+KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
+THIS_TOOL, PENCIL = "this tool", "the same pencil"
+"""Groups of methods in the figure."""
 RACE = "spectrum"
-
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
     "Fig. 2b": (1e4, 1e2, 1e-2, 45.0),
@@ -121,12 +133,13 @@ def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
     """Measurements of all methods at all sizes on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(_judge, exact_spectrum(rod, WANTED_MODES))
+        judge = partial(judged_spectrum, exact_spectrum(rod, WANTED_MODES))
         measurements += contest(case, rod, every, rounds, judge)
     return measurements
 
 
-def _judge(exact: list[Any], w: Complex) -> dict[str, float]:
+def judged_spectrum(exact: list[Any], w: Complex) -> dict[str, float]:
+    """Error of eigenvalues, shape (modes,)."""
     return {"error": relative_error(w, exact)}
 
 
@@ -148,3 +161,39 @@ def best(measurements: Sequence[Measurement]) -> str:
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
+
+
+def own_spectrum(rod: Rod, certify: bool) -> Complex:
+    """rodsweep as in its task, with automatic size, shape (modes,)."""
+    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
+
+
+def mesh_of(order: int) -> Resolution:
+    """One element of the given order, or several equal elements of at most RESOLUTION.largest_order."""
+    elements = ceil(order / RESOLUTION.largest_order)
+    return Resolution(elements, ceil(order / elements))
+
+
+def shift_of(rod: Rod) -> float:
+    """Shift of rodsweep's own shift-and-invert."""
+    return KRYLOV.shift_above_growth * most_amplified_wave(rod)[0]
+
+
+def krylov_schur(rod: Rod, size: int) -> Complex:
+    """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
+    w = eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True)
+    return leading(w, WANTED_MODES + 1)
+
+
+def leading(w: Complex, count: int) -> Complex:
+    """The eigenvalues with the largest real parts, largest first; from shape (n,) to (count,)."""
+    return w[np.argsort(-w.real, kind="stable")][:count]
+
+
+def contenders() -> list[Contender]:
+    """rodsweep with and without certificate, and Krylov-Schur at all sizes."""
+    return [
+        Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
+        Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),
+        *(Contender(KRYLOV_SCHUR, str(size), PENCIL, partial(krylov_schur, size=size)) for size in ORDERS),
+    ]

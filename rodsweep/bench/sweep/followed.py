@@ -76,11 +76,8 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]
-        rows.append(
-            {"axis": one.case.removeprefix("axis, "), "seconds": one.seconds, "gain": gain}
-            | one.extra
-            | {f"{name}_alone": value for name, value in other.extra.items()}
-        )
+        row = {"axis": one.case.removeprefix("axis, "), "seconds": one.seconds, "gain": gain}
+        rows.append(row | one.extra | {f"{name}_alone": value for name, value in other.extra.items()})
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
         '"alone" is `follow: false` on a part of the same grid. Seconds are stated by the run, including '

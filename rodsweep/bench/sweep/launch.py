@@ -27,8 +27,7 @@ RESULT, NOTES = "c.h5", "notes"
 FIRST_RANK = "first"
 OTHER_RANKS = "other"
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
-"""Kinds of solver: the real solver; instant random outcomes; instant outcomes and a kill at the last
-point."""
+"""Kinds of solver: the real one; instant random outcomes; instant outcomes and a kill at the last point."""
 CONFIG = "c.yaml"
 SPECTRUM_CONFIG = """
 task: spectrum

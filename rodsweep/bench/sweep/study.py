@@ -37,7 +37,6 @@ QUICK_CYCLES = 10
 ROUNDS = 3
 CYCLE_ROUNDS = 2
 QUICK_ROUNDS = 1
-
 APART = "spectra, two commands"
 """Case of two commands, each with half of the spectra on one rank: the upper bound for two ranks."""
 MEGABYTE = 1e6
@@ -50,7 +49,6 @@ run, without the start of Python and MPI; "% busy" is the share of the ranks' ti
 points instead of waiting. "Beside the solver" is the ranks' time inside minus the `seconds` in the file:
 loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
-
 RunCase = Callable[..., CommandRun]
 """`run_case` with the words that start the command."""
 
@@ -215,10 +213,7 @@ def totals(m: Measurement) -> dict[str, float]:
 
 
 def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
-    """Exponent of the growth of the time, beyond the smallest sweep's time, with the number of points.
-
-    nan if the time does not grow.
-    """
+    """Exponent of the growth of the time beyond the smallest sweep's; nan if the time does not grow."""
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan
     times = (more.seconds - start.seconds) / (less.seconds - start.seconds)

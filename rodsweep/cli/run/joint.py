@@ -11,26 +11,22 @@ from ...results.layouts.variables import Filled
 from ...results.run.checkpoints import UnitResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.kept import forget_all
-from ...sweep.handout import Handout
-from ...sweep.listener import NoClaims, RankListener
+from ...sweep.handout import Handout, Pool
 from ...sweep.loop import Indices, Loop, Share, sweep
-from ...sweep.pool import Pool
 from ...sweep.progress import ProgressReporter, Silent
-from ...sweep.stop import StopRequest
+from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import AllPoints, Arrays
 from ...tasks.running.unforeseen import PASSING, UnitNote
 from ...watch import Stopped, reporting_to
 
 NOUN = "halves of curves"
-"""Name of the units of work: half a curve each, because a curve is followed in both directions from a
-start."""
+"""Name of the units of work: half a curve each, as a curve is followed in both directions from a start."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointDue:
-    """Joint work of a run. due: whether the file lacks variables that need all points. units: units of work,
-    or None."""
+    """Joint work. due: whether the file lacks variables that need all points. units: of work, or None."""
 
     due: bool
     units: Any = None

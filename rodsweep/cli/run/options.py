@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...sweep.points.shards import Shard
+from ...sweep.points.ranges import Shard
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

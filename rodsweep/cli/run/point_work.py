@@ -16,8 +16,7 @@ from ...results.run.journal import Journal, journal_directory, kept_sentence
 from ...sweep.handout import Handout
 from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
-from ...sweep.points.ranges import IndexRange, IndexSet, total
-from ...sweep.points.shards import Shard
+from ...sweep.points.ranges import IndexRange, IndexSet, Shard, total
 from ...sweep.points.stretches import StretchResult, StretchSolver
 from ...sweep.progress import ProgressReporter, Silent
 from ...sweep.stop import StopRequest

@@ -17,20 +17,24 @@ from ...sweep.points.ranges import IndexRange, total
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.running.failures import parameters_in_words
-from ...tasks.running.job import Job, job_of
-from ...tasks.running.plan import plan_of
+from ...tasks.running.job import Job, job_of, plan_of
 from ...tasks.running.unforeseen import Log, guarded
 from ...wording import counted
 from ..beforehand import flutter_beforehand, planned_beforehand, say_stopped
-from .closing import RunEnd
-from .contribution import MAX_FAILURES_PRINTED, Contribution, history_of, of_the_last_run, reasons_of
+from .contribution import (
+    MAX_FAILURES_PRINTED,
+    Contribution,
+    RunEnd,
+    history_of,
+    of_the_last_run,
+    reasons_of,
+)
 from .joint import JointDue, JointWork
 from .options import RunOptions
 from .point_work import PointWork
 
 CONTINUE = 75
-"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
-run."""
+"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -87,7 +91,8 @@ class _Run:
 
     def run(self) -> int:
         """Solves missing points and writes them into the file; returns the exit status."""
-        if self.team.on_first(self._creates):
+        replaces = self.options.fresh or self.options.extend
+        if self.team.on_first(lambda: replaces or not self.output.exists()):
             plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 say_stopped(self.team, self.stop)
@@ -113,10 +118,6 @@ class _Run:
             shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
-
-    def _creates(self) -> bool:
-        """Whether a file will be created, as far as can be decided before opening it."""
-        return self.options.fresh or self.options.extend or not self.output.exists()
 
     def _lacks_curves(self, missing: int) -> bool:
         """Whether only the variables that all points together determine are missing; on the first rank."""
@@ -146,13 +147,15 @@ class _Run:
     def _note(self, indices: Sequence[int], error: Exception) -> None:
         """Writes an unforeseen exception into the log; raises it in strict mode."""
         self.log(indices, error)
-        if self.options.strict:
-            error.add_note(f"at {self._where(indices[0])}")
-            raise error
+        self._raise_if_strict(self._where(indices[0]), error)
 
     def _note_unit(self, place: str, error: Exception) -> None:
         """Writes an unforeseen exception of a unit of joint work into the log; raises it in strict mode."""
         self.log.note(place, error)
+        self._raise_if_strict(place, error)
+
+    def _raise_if_strict(self, place: str, error: Exception) -> None:
+        """Raises the exception with its place in strict mode."""
         if self.options.strict:
             error.add_note(f"at {place}")
             raise error

@@ -9,7 +9,10 @@ values of drag are an axis of gamma3.
 
 from collections.abc import Mapping
 
+from ...errors import InputError
 from ...model.arm.quantities import LOADS, RELATIVE
+from ...model.arm.refusals import NotSlender
+from ...model.arm.section import NoWall
 from ...model.parameters import PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
@@ -19,8 +22,7 @@ AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 MOVES = AXIS_OF | dict.fromkeys(RELATIVE, "F")
 """The parameter changed by an axis, in a grid over an arm's quantities."""
 ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
-"""The parameter along whose axis a quantity or unit with several values is stored, in a grid of
-parameters."""
+"""The parameter along whose axis a quantity or unit with several values is stored."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
 whether the model applies."""
@@ -59,6 +61,17 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
 
 
 def moved_by(axis: str) -> str:
-    """The only parameter that an axis of an arm's grid changes; "" if the axis changes several parameters or
-    no parameter."""
+    """The only parameter that an axis of an arm's grid changes; "" for several parameters or none."""
     return axis if axis in PARAMETERS else MOVES.get(axis, "")
+
+
+UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+"""Status of a point by the error of its arm."""
+
+
+class UncoveredArm(ValueError):
+    """The rod model does not apply to this arm; `status` is the status of the arm's points."""
+
+    def __init__(self, error: InputError):
+        super().__init__(f"parameters.arm.{error}")
+        self.status = UNCOVERED[type(error)]

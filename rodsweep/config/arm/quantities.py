@@ -87,8 +87,7 @@ def _shares(value: Any) -> tuple[list[float | None], bool]:
 
 
 def as_drags(value: Any) -> Axis:
-    """Axis of indices in DRAGS from a name of a drag, a list of names, or "range"; ValueError for anything
-    else."""
+    """Axis of indices in DRAGS from a drag's name, a list of names, or "range"; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
     names = list(DRAGS) if value == RANGE_OF_DRAG else value if isinstance(value, list | tuple) else [value]
@@ -143,11 +142,7 @@ def _schema() -> dict[str, Any]:
     *_, values, span = AXIS_SCHEMA["anyOf"]
     ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
     return {
-        "anyOf": [
-            *each["anyOf"],
-            values | {"items": each},
-            span | {"properties": span["properties"] | ends},
-        ]
+        "anyOf": [*each["anyOf"], values | {"items": each}, span | {"properties": span["properties"] | ends}]
     }
 
 

@@ -16,17 +16,14 @@ from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..material import LawName, SectionName
 from ..values import Axis, Strict, Values
-from .axes import AXIS_OF, LOAD_AXES, SECTION
+from .axes import AXIS_OF, LOAD_AXES, SECTION, UNCOVERED, UncoveredArm
 from .quantities import Drags, Quantities, drags_written, with_shares
-from .shape import SEGMENTS_ALLOWED, Segments, build_of, is_standard, material_of, with_length
-from .uncovered import UNCOVERED, UncoveredArm
+from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
 DragAllowed = Field(description="range, the name of a drag, or a list of names")
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
-
-
 NO_LOAD = {"pressure": 0.0}
 
 
@@ -96,7 +93,7 @@ class ArmSection(Strict):
     @property
     def material(self) -> dict[str, Any]:
         """The keys among segments, law and section that are given."""
-        return material_of(self)
+        return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property
     def varies(self) -> bool:
@@ -106,7 +103,9 @@ class ArmSection(Strict):
     @property
     def standard(self) -> bool:
         """Whether all arms are uniform and of linear material."""
-        return is_standard(self)
+        if self.segments is None:
+            return self.build.standard and tapers_of(self) == {1.0}
+        return all(build.standard for build in builds_of(self))
 
     @property
     def load_axis(self) -> str | None:
@@ -115,9 +114,7 @@ class ArmSection(Strict):
 
     @property
     def load(self) -> str | None:
-        """Kind of the load, pressure or force, given absolutely or relative to flutter; None without a
-        load.
-        """
+        """Kind of the load, pressure or force, absolute or relative to flutter; None without a load."""
         return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
@@ -127,8 +124,7 @@ class ArmSection(Strict):
 
     @property
     def meaning(self) -> dict[str, Any]:
-        """Given quantities in SI units, by name: the value if equal at all points, else None; and the
-        material."""
+        """Given quantities in SI units, by name: a value equal at all points, else None; and the material."""
         varied = AXIS_OF if self.is_grid else self.several
         numbers = {n: None if n in varied else float(axis.array()[0]) for n, axis in self.given.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
@@ -194,9 +190,7 @@ class ArmSection(Strict):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Quantities and units in a grid of parameters: numbers of shape (), or arrays along their
-        parameter.
-        """
+        """Quantities and units in a grid of parameters, of shape (), or along their parameter, (n,)."""
         values = {name: axis.array() for name, axis in self.given.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]

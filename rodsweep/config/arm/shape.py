@@ -1,5 +1,4 @@
-"""Shape and material of an arm in a config: segments, taper, law, and the build, which is equal at all
-points."""
+"""Shape and material of an arm in a config: segments, taper, law, and the build, equal at all points."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -12,7 +11,7 @@ from ...errors import InputError
 from ...model.arm.segments import EXAMPLE, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import STANDARD, Build
 from ...model.units import unit_of, written_in
-from .uncovered import UncoveredArm
+from .axes import UncoveredArm
 
 if TYPE_CHECKING:
     from .section import ArmSection
@@ -45,35 +44,20 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
     return given | {"length": f"{written_in(total, unit, 'm'):.15g} {unit}"}
 
 
-def material_of(arm: "ArmSection") -> dict[str, Any]:
-    """The given keys among segments, law and section of an arm."""
-    return {name: getattr(arm, name) for name in OF_MATERIAL if getattr(arm, name) is not None}
-
-
 def build_of(arm: "ArmSection") -> Build:
-    """Law of all arms, and profile of the first that a rod covers.
-
-    ValueError where a grid of parameters has arms with several profiles.
-    """
+    """Law of all arms, profile of the first with a rod; ValueError for several profiles in a grid."""
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
     if all(getattr(arm, name) is None for name in SHAPES):
         return alike
-    if arm.is_grid and len(set(_builds_of(arm))) > 1:
+    if arm.is_grid and len(set(builds_of(arm))) > 1:
         raise ValueError(
             f"parameters.arm.{arm.several[0]} has several values, and the ratios between the segments "
             "would differ from value to value; give one value"
         )
-    return next(_builds_of(arm), alike)
+    return next(builds_of(arm), alike)
 
 
-def is_standard(arm: "ArmSection") -> bool:
-    """Whether all arms are uniform and of linear material."""
-    if arm.segments is None:
-        return arm.build.standard and tapers_of(arm) == {1.0}
-    return all(build.standard for build in _builds_of(arm))
-
-
-def _builds_of(arm: "ArmSection") -> Iterator[Build]:
+def builds_of(arm: "ArmSection") -> Iterator[Build]:
     """Law and profile of every arm that a rod covers."""
     for values in arm.sections():
         with suppress(UncoveredArm):

@@ -14,10 +14,7 @@ R = TypeVar("R")
 
 
 def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorator: calls with missing, unknown or surplus arguments raise InputError instead of TypeError.
-
-    example: a correct call, shown in the message.
-    """
+    """Decorator: wrong arguments of a call raise InputError, with a correct example, instead of TypeError."""
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
         asked = signature(function)

@@ -16,8 +16,7 @@ from ...errors import InputError
 from ..values import named, overflows, short
 
 LARGEST_FILE = 100_000
-"""Maximum file size in bytes: about 15,000 numbers, read in a second. Longer lists of points are CSV
-files."""
+"""Maximum file size in bytes: about 15,000 numbers, read in a second. Longer lists are CSV files."""
 LONGEST = 1000
 """Maximum length of a key or value, in characters."""
 RESULT = b"\x89HDF"

@@ -1,5 +1,9 @@
-"""Reads a YAML file with --set overrides into a Config; every error is one sentence with the key."""
+"""Reads a YAML file with --set overrides into a Config; every error is one sentence with the key.
 
+The content of files named in a config becomes keys of the config before validation.
+"""
+
+import csv
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -8,15 +12,19 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 
 from ...errors import InputError
+from ...model.parameters import OPTIONAL_PARAMETERS
 from ..arm.quantities import drags_written
 from ..arm.section import ArmSection
 from ..axes import words
+from ..material import with_profile_read
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import Axis, axis_of, named, short
-from .files import with_files_read
 from .parsing import DEEPEST, parse, read_text
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
+
+LONGEST_HEADER = 10_000
+"""Largest number of characters of a header. The reader of points refuses a file with a longer first line."""
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
@@ -48,20 +56,15 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """The config with all defaults, as JSON-compatible values; inf becomes "inf".
-
-    For an arm with a grid of parameters, the axes of all parameters are included.
-    """
+    """The config with all defaults and axes of parameters, as JSON-compatible values; inf becomes "inf"."""
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
-        axes = config.parameters.axes
-        tree["parameters"] |= {name: axis.resolved for name, axis in axes.items()}
+        tree["parameters"] |= {name: axis.resolved for name, axis in config.parameters.axes.items()}
     return tree
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from which `canonical` made `resolved`; ValueError if this version does not accept the
-    config."""
+    """The config from which `canonical` made `resolved`; ValueError if this version does not accept it."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -122,9 +125,7 @@ def text_of(config: Config) -> str:
 
 
 def _written(axis: Any) -> Any:
-    """A resolved axis in the user's form: a number, a list or a range. Also converts the section of an
-    arm.
-    """
+    """A resolved axis, or the section of an arm, in the user's form: a number, a list or a range."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -173,3 +174,36 @@ def _task(tree: dict) -> str:
                 raise InputError(f"unknown key {name}; did you mean {task}.{name}?")
             raise InputError(f"{name} is given but the task is {task}; remove it")
     return task
+
+
+def with_files_read(tree: Any, directory: Path) -> Any:
+    """A config's tree, with the columns of the profile's file, and with the names of columns of the list of
+    points if omitted.
+
+    directory: folder of relative file names. Raises InputError for a profile that is no table of numbers.
+    """
+    return _with_columns(with_profile_read(tree, directory), directory)
+
+
+def _with_columns(tree: Any, directory: Path) -> Any:
+    """The tree with `parameters.columns`, if the file of points has columns beside those of every list."""
+    parameters = tree.get("parameters") if isinstance(tree, dict) else None
+    if not isinstance(parameters, dict) or not isinstance(parameters.get("points"), str):
+        return tree
+    if parameters.get("columns") is not None:
+        return tree
+    header = _header(directory / parameters["points"])
+    columns = [name for name in OPTIONAL_PARAMETERS if name in header]
+    return tree | {"parameters": parameters | {"columns": columns}} if columns else tree
+
+
+def _header(path: Path) -> list[str]:
+    """Names in the first line of a CSV file; empty without a header, which the reader of points refuses."""
+    try:
+        if not path.is_file():
+            return []
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            line = file.readline(LONGEST_HEADER)
+        return [cell.strip() for cell in next(csv.reader([line]), [])]
+    except (OSError, ValueError, csv.Error):
+        return []

@@ -1,6 +1,4 @@
-"""Error messages of a config, a sentence each: the key, the value, the allowed values, and the likely
-meaning.
-"""
+"""Error messages of a config, a sentence each: the key, the value, what is allowed, the likely meaning."""
 
 from collections.abc import Sequence
 from math import isinf
@@ -33,10 +31,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     value = problem["input"]
     if kind == "extra_forbidden":
         fields = _section(config, location[:-1]).model_fields
-        known = [
-            *(name for name in PARAMETERS if name in fields),
-            *(n for n in fields if n not in PARAMETERS),
-        ]
+        known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
         elsewhere = places_of(config, location)
         hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
         return f"unknown key {key}; {hint}"
@@ -103,8 +98,7 @@ def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
-        known = _section(config, section).model_fields
-        if location[-1] in known and section != tuple(location[:-1]):
+        if location[-1] in _section(config, section).model_fields and section != tuple(location[:-1]):
             found.append(dotted((*section, location[-1])))
     return found
 
@@ -134,12 +128,8 @@ def model_of(field: FieldInfo) -> Any:
 def what_is_allowed(field: FieldInfo) -> str:
     """Allowed values of a key as a phrase, from its type and bounds."""
     kind = field.annotation
-    bound = {
-        name: getattr(part, name)
-        for part in field.metadata
-        for name in ("ge", "gt", "le", "lt", "max_length")
-        if hasattr(part, name)
-    }
+    bounds = ("ge", "gt", "le", "lt", "max_length")
+    bound = {name: getattr(part, name) for part in field.metadata for name in bounds if hasattr(part, name)}
     if field.description:
         return field.description
     if get_origin(kind) is Literal:

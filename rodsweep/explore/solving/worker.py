@@ -15,8 +15,7 @@ from threading import Thread
 from types import FrameType
 
 from ...errors import Refusal
-from ...sweep.listener import NoClaims, RankListener
-from ...sweep.stop import StopRequest
+from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 

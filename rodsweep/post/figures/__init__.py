@@ -36,8 +36,6 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "branch": draw_branch,
 }
 """Function of each task that writes the figure and returns a description."""
-
-
 DEFAULT_LOOK = Look()
 """Default appearance of figures."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}
@@ -72,8 +70,7 @@ def _drawn(request: FigureRequest) -> str:
     """Writes the figure and returns a description; an arm has a map over the arm's quantities."""
     if can_draw(request):
         return draw_arm_map(request)
-    listed = replace(request, views=[view.listed for view in request.views])
-    return FIGURES[request.views[0].task](listed)
+    return FIGURES[request.views[0].task](replace(request, views=[view.listed for view in request.views]))
 
 
 def draw(

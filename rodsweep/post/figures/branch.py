@@ -41,8 +41,7 @@ MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""Marker and legend entry of a special point, by kind or, for an end, by reason; further ends have no
-marker."""
+"""Marker and legend entry of a special point, by kind or, for an end, by reason; other ends have none."""
 PREDICTED = (0, (4, 1, 1, 1))
 """Line style of the amplitude that the normal form predicts near a Hopf point."""
 PREDICTED_WORD = "by the normal form"
@@ -92,7 +91,9 @@ def draw_curves(
     """Draws branches into the panels of the largest y and of the period; returns legend entries by kind."""
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
-        _draw(upper, lower, curve, colours[number % len(colours)])
+        at, y, period, stable = through_cycles(curve)
+        for axes, values in ((upper, y), (lower, period)):
+            _pieces(axes, at, values, stable, colours[number % len(colours)])
         _mark(upper, lower, curve, marked)
     return marked
 
@@ -119,11 +120,8 @@ def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
     rods = view.variables["status"].size - missing
     if len(drawn) < len(beating):
         more += f"; of the first {len(drawn)} of {len(beating)} rods with branches (--at chooses others)"
-    return more + (
-        f"; {some_of(rods - len(beating), rods, 'rod')} {has_or_have(rods - len(beating))} none"
-        if len(beating) < rods
-        else ""
-    )
+    without = rods - len(beating)
+    return more + (f"; {some_of(without, rods, 'rod')} {has_or_have(without)} none" if without > 0 else "")
 
 
 def _shown(view: View, rod: int, curves: Sequence[StoredBranch]) -> Range:
@@ -136,13 +134,6 @@ def _shown(view: View, rod: int, curves: Sequence[StoredBranch]) -> Range:
     if followed_parameter(view) == force:
         return low, min(high, columns[stiffness])
     return (max(low, columns[force]) if followed_parameter(view) == stiffness else low), high
-
-
-def _draw(upper: Axes, lower: Axes, curve: StoredBranch, colour: str) -> None:
-    """Draws a branch in both panels."""
-    at, y, period, stable = through_cycles(curve)
-    _pieces(upper, at, y, stable, colour)
-    _pieces(lower, at, period, stable, colour)
 
 
 def _pieces(

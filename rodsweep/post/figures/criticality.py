@@ -14,10 +14,18 @@ from ...results.file.view import View
 from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, is_map, point_map, varied_parameters
+from .cycle.selection import shared_and_own_of_points
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.normal_forms import draw_predictions
 
+FARTHEST_DRAWN = 0.1
+"""Largest |F/F_H - 1| of a drawn prediction; farther away cycles depart from the leading-order law."""
+LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
+"""Line style and word of the cycles of a Hopf point, by criticality."""
+COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "#000000")
+"""Colours of the rods, in order."""
+PREDICTION_POINTS = 60
+"""Number of points of a drawn prediction, dense near the Hopf point, where the curve is steep."""
 MARKS = {
     -1: ("supercritical", style.FIRST, "o"),
     1: ("subcritical", style.SECOND, "s"),
@@ -84,10 +92,7 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Maps of the criticality of the first Hopf points and of the amplitude coefficients.
-
-    narrow: whether the two maps are stacked.
-    """
+    """Maps of the criticality of first Hopf points and of |a|; narrow: whether the maps are stacked."""
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
     style.require(view, np.isfinite(a).any(), "first Hopf point with a normal form")
@@ -115,3 +120,36 @@ def _classes(side: Array) -> Array:
     # The numbers are indices in CLASSES; a rod without a Hopf point has NaN and stays 0.
     classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
     return np.where((first == -1) & later, 2.0, classes)
+
+
+def draw_predictions(view: View) -> tuple[Figure, str]:
+    """Figure of the predicted amplitudes near every Hopf point, for the first rods; and a description."""
+    kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
+    having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
+    style.require(view, having.size, "Hopf point with a normal form")
+    drawn = having[: len(COLOURS)]
+    figure = Figure(figsize=(5.6, 3.8), layout="constrained")
+    axes = figure.subplots()
+    shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
+    distance = FARTHEST_DRAWN * np.linspace(0, 1, PREDICTION_POINTS) ** 2
+    for rod, colour in zip(drawn, COLOURS, strict=False):
+        for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
+            if np.isfinite(kind) and np.isfinite(size):
+                # The cycles are above the Hopf point for a > 0, below it for a < 0.
+                beside = at * (1 + np.sign(size) * distance)
+                axes.plot(beside, abs(size) * np.sqrt(distance), LINES[int(kind)][0], color=colour, lw=1.4)
+                axes.plot(at, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
+    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
+    axes.set_ylim(bottom=0)
+    seen = {int(kind) for kind in kinds[drawn].ravel() if np.isfinite(kind)}
+    handles = [Line2D([], [], color="0.3", ls=ls, label=word) for k, (ls, word) in LINES.items() if k in seen]
+    handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
+    pairs = zip(COLOURS, own, strict=False)
+    handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
+    style.legend_below(figure, handles, columns=3)
+    figure.suptitle(style.heading(view, shared))
+    shown = f"the cycles that normal forms predict within {FARTHEST_DRAWN:.0%} of every Hopf point"
+    if len(drawn) < having.size:
+        shown += f", of the first {len(drawn)} of {having.size} rods with Hopf points"
+    return figure, shown

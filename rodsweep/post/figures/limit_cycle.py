@@ -45,8 +45,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 def _with_needs(request: FigureRequest, name: str) -> View:
     """The file with the variables needed by the figure; missing variables are solved if possible."""
     view = request.views[0]
-    needs = NEEDS.get(name, ())
-    if request.shapes is None or all(variable in view.variables for variable in needs):
+    if request.shapes is None or all(variable in view.variables for variable in NEEDS.get(name, ())):
         return view
     numbers = request.points or [int(index) + 1 for index in np.flatnonzero(outcomes(view) == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
@@ -99,6 +98,5 @@ def _has_many_lines(view: View) -> bool:
     """Whether the points form a map with more lines than the figure of amplitudes can show."""
     if not is_map(view):
         return False
-    points = point_map(view)
-    across = next(name for name in points.names if name != abscissa(view))
+    across = next(name for name in point_map(view).names if name != abscissa(view))
     return len(np.unique(view.point_columns[across])) > len(BRANCH_LOOKS)

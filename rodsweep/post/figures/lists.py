@@ -31,8 +31,7 @@ def as_grid(view: View) -> View:
     sizes = tuple(len(unique) for unique, _ in values.values())
     places = np.ravel_multi_index([place.ravel() for _, place in values.values()], sizes)
     is_complete = np.prod(sizes) == count and len(np.unique(places)) == count
-    varied = sum(size > 1 for size in sizes)
-    if not is_complete or varied > 2:
+    if not is_complete or sum(size > 1 for size in sizes) > 2:
         return view
     order = np.argsort(places)
     variables = {name: data for name, data in view.variables.items() if name != "point"}
@@ -68,11 +67,8 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
     """(name with unit, value at each point) of an arm's quantities with several values."""
-    return [
-        _described(name, values)
-        for name, values in view.quantities.items()
-        if name not in ARM_UNITS and np.ndim(values) and len(np.unique(values)) > 1
-    ]
+    own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
+    return [_described(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
 def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:

@@ -22,8 +22,7 @@ PANELS = (
 def draw_modes(request: FigureRequest) -> str:
     """Draws a row of panels for each point: the leading mode, the deformations and the adjoint."""
     view = request.only_view()
-    v = view.variables
-    growth = v["growth_rate"][..., 0].ravel()
+    growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     require(view, points.size, "computed point")
     narrow = request.look.narrow

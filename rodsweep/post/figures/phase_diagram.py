@@ -16,13 +16,12 @@ from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.variables import has_covering
+from ...results.layouts.variables import has_covering, number_of
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_between_crossings
+from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXELS, ClassifiedPoints, DrawnPlane, coloured
-from .stability.row_classes import class_along_row
 from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
 from .style import number as number_text
 
@@ -54,11 +53,6 @@ class Palette:
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
             "norm": BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers)),
         }
-
-    @property
-    def crushed(self) -> int:
-        """Number of the word `crushed`."""
-        return next(number for number, word in self.words if word == "crushed")
 
     def patches(self, table: Array) -> list[Patch]:
         """Legend entries for the words in a table, (rows, columns)."""
@@ -118,7 +112,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         handles += draw_cycle_curves(axes, view, line, row)
     if "cycle_special_kind" in view.variables:
         handles += mark_cycles_on_rows(axes, view, line, row)
-    handles += edge if (table == palette.crushed).any() else []
+    handles += edge if (table == number_of("crushed", palette.words)).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading(view, _fixed(view, line, row)))
     missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
@@ -152,9 +146,7 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row, used if there are too few rows for a plane, or if a row lies at
-    infinity.
-    """
+    """Figure with a bar for each row, for too few rows for a plane, or a row at infinity."""
     x = view.variables[line]
     y = view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
@@ -183,26 +175,21 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
-    known = (table != palette.crushed) | (not _crushed_at_k1(view, line, row))
+    known = (table != number_of("crushed", palette.words)) | (not _crushed_at_k1(view, line, row))
     computed = ClassifiedPoints(plane.unit(columns[known], rows[known]), table[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
         x, at, found = classes_between_crossings(view, row)
         further = ClassifiedPoints(plane.unit(x, at), found)
-    curves = [
-        plane.unit(view.variables[f"{kind}_{line}"][one], view.variables[f"{kind}_{row}"][one])
-        for kind in ("curve", "cycle_curve")
-        if f"{kind}_number" in view.variables
-        for one in _each_curve(view, kind, double=palette is CLASS_PALETTE)
-    ]
+    curves = []
+    v = view.variables
+    for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in v):
+        number = v[f"{kind}_number"]
+        if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
+            number = np.where(v["curve_kind"] == 1, number, 0)
+        ones = [number == one for one in np.unique(number[number > 0])]
+        curves += [plane.unit(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
     if _crushed_at_k1(view, line, row):
         edge = np.linspace(plane.y[0], plane.y[-1], 1000)
         curves += [plane.unit(share * edge, edge) for share in BESIDE_CRUSHING]
     return coloured(computed, further, curves)
-
-
-def _each_curve(view: View, kind: str, double: bool) -> list[Array]:
-    """Mask of the points of each curve; double: whether curves of double eigenvalues are included."""
-    number = view.variables[f"{kind}_number"]
-    counts = number if double or kind != "curve" else np.where(view.variables["curve_kind"] == 1, number, 0)
-    return [number == one for one in np.unique(counts[counts > 0])]

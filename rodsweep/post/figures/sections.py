@@ -66,7 +66,13 @@ def _cut(view: View, name: str, value: float) -> View:
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{', '.join(named)}{more}"
         )
-    return _grid_at(view, name, chosen) if view.is_grid or view.over else _list_at(view, chosen)
+    if view.is_grid or view.over:
+        return _grid_at(view, name, chosen)
+    variables = {
+        key: data[chosen] if data.shape[:1] == chosen.shape and key not in BESIDE_POINTS else data
+        for key, data in view.variables.items()
+    }
+    return replace(view, variables=variables)
 
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
@@ -86,13 +92,13 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     return replace(view, variables=variables)
 
 
-def _list_at(view: View, chosen: np.ndarray) -> View:
-    """A list restricted to the chosen points, a mask."""
-    variables = {
-        key: data[chosen] if data.shape[:1] == chosen.shape and key not in BESIDE_POINTS else data
-        for key, data in view.variables.items()
-    }
-    return replace(view, variables=variables)
+def without_infinite(view: View) -> View:
+    """A grid without infinite values of its axes, which have no place in a figure."""
+    for name, values in view.axes.items():
+        finite = np.isfinite(values)
+        if len(values) > 1 and not finite.all():
+            view = _grid_at(view, name, finite)
+    return view
 
 
 def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:

@@ -1,24 +1,47 @@
 """Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from string import ascii_lowercase
 
 import matplotlib.cm
 import matplotlib.colors
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ...errors import InputError
 from ...results.file.view import View
 from .layout.fitting import MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
-from .sections import section
+from .sections import section, without_infinite
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
-from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
-from .spectra.panels import MAX_PANELS, draw_panels
-from .style import LABELS, fixed_text, heading, long_axes, require, scale
+from .spectra.line import (
+    FOLLOWED_ROOTS,
+    THRESHOLD_LINE,
+    THRESHOLD_LOOKS,
+    draw_line,
+    draw_roots,
+    mark_thresholds,
+    roots_to_follow,
+    threshold_text,
+)
+from .style import LABELS, fixed_text, heading, legend_below, long_axes, require, scale
 
+MAX_PANELS = 12
+"""Largest number of panels on a page."""
+PANEL_HEIGHT = {1: 2.1, 2: 2.6}
+"""Height of a panel, in inches, by the number of columns."""
+FIGURE_WIDTH = {1: 3.375, 2: 7.0}
+"""Width of the figure, in inches, by the number of columns."""
+THRESHOLD_WORDS = {
+    "onset": "onset of oscillation",
+    "hopf": "change of stability",
+    "restabilization": "change of stability",
+}
+"""Entries of the common legend for lines at thresholds; the panel titles have names and forces."""
 MAP_COLOURS = "PuOr_r"
 SHADES_PER_SIGN = 40
 """Number of colours of a map on each side of zero growth."""
@@ -26,15 +49,11 @@ MAX_LINE_PANELS = 6
 """Largest number of values of a parameter that get a panel each; for more values a map interpolates."""
 SMALLEST_SHADE = 1e-4
 """Growth rate, in units of the largest, below which the colour scale is linear."""
-
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 
 def draw_spectrum(request: FigureRequest) -> str:
-    """Draws a line or a map, depending on the number of long axes; otherwise the eigenvalues of each point.
-
-    The lines of several files are drawn side by side.
-    """
+    """Draws lines, of several files side by side, a map, or the eigenvalues of points without a long axis."""
     if len(request.views) > 1:
         return _several(request)
     view = as_grid(request.only_view())
@@ -77,35 +96,19 @@ def _several(request: FigureRequest) -> str:
     return request.write(figure, shown)
 
 
-def _line_of(given: View, request: FigureRequest) -> View:
+def _line_of(view: View, request: FigureRequest) -> View:
     """A file of several to draw; raises InputError unless the file is a line of spectra."""
-    if given.task != request.views[0].task:
-        raise InputError(
-            f"{given.path} is of the task {given.task}; only lines of spectra can share a figure"
-        )
-    view = as_grid(given)
+    if view.task != request.views[0].task:
+        raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
+    view = as_grid(view)
     require(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(
-            f"{given.path} is not a line of spectra, along which one parameter varies; only such files share "
+            f"{view.path} is not a line of spectra, along which one parameter varies; only such files share "
             "a figure"
         )
     return view
-
-
-def without_infinite(view: View) -> View:
-    """The view without infinite values of axes, which have no place in a figure."""
-    variables = dict(view.variables)
-    for place, (name, values) in enumerate(view.axes.items()):
-        finite = np.isfinite(values)
-        if len(values) > 1 and not finite.all():
-            shape = variables["status"].shape
-            of_points = [key for key, data in variables.items() if data.shape[: len(shape)] == shape]
-            for key in of_points:
-                variables[key] = np.compress(finite, variables[key], axis=place)
-            variables[name] = values[finite]
-    return replace(view, variables=variables)
 
 
 def _map(view: View, names: list[str]) -> Figure:
@@ -145,3 +148,31 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
     across, up = np.meshgrid(x, y, indexing="ij")
     axes.scatter(across.ravel(), up.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
     axes.axis(limits)
+
+
+def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
+    """Figure of the followed roots of each file, in one column if narrow, with a common legend."""
+    columns = 1 if narrow else 2
+    rows = -(-len(views) // columns)
+    size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    handles: dict[str, Artist] = {}
+    for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
+        (name,) = long_axes(view)
+        draw_roots(panel, view, name, roots)
+        thresholds = mark_thresholds(panel, view, name)
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+        for threshold in thresholds:
+            handles.pop(threshold_text(threshold), None)
+            word = THRESHOLD_WORDS[threshold.kind]
+            _, style = THRESHOLD_LOOKS[threshold.kind]
+            handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
+        text = heading(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
+        panel.set_title(f"({letter})  {text}", loc="left")
+    for panel in panels[len(views) :]:
+        panel.remove()
+    legend_below(figure, list(handles.values()), 2 if narrow else 3)
+    figure.suptitle(FOLLOWED_ROOTS[roots])
+    return figure

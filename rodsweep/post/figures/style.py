@@ -52,8 +52,6 @@ STYLE = {
     "ps.fonttype": 42,
 }
 """Settings of matplotlib for all figures."""
-
-
 FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
 """Settings of font sizes."""
@@ -76,8 +74,7 @@ def material_text(view: View) -> str:
     """Law and profile of the arms of a file; empty for arms of linear material without a profile."""
     material = view.config.get("material", {})
     law = material.get("law", "linear")
-    section = material.get("section", "fixed")
-    words = [] if law == "linear" else [f"neo-Hookean, {section} section"]
+    words = [] if law == "linear" else [f"neo-Hookean, {material.get('section', 'fixed')} section"]
     return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
 
 
@@ -171,6 +168,15 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
+def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
+    """Labels the axes of a panel in a grid of panels that share axes; inner panels get no labels."""
+    place = axes.get_subplotspec()
+    if place is None or place.is_last_row():
+        axes.set_xlabel(xlabel)
+    if place is None or place.is_first_col():
+        axes.set_ylabel(ylabel)
+
+
 def colour_cells(
     axes: Axes,
     edges: tuple[np.ndarray, np.ndarray],
@@ -191,8 +197,7 @@ def colour_cells(
         norm = Normalize(
             low, high if high != low or low else 1.0
         )  # equal zeros would give a scale below zero
-    drawn = np.ma.masked_invalid(values)
-    mesh = axes.pcolormesh(*edges, drawn, norm=norm, cmap=colours, rasterized=True)
+    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, cmap=colours, rasterized=True)
     bar = axes.figure.colorbar(mesh, ax=axes, label=label)
     if isinstance(norm, LogNorm):
         label_few_decades(bar.ax.yaxis, low, high)

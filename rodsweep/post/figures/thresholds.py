@@ -32,8 +32,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     """Draws the first thresholds over one or two parameters; otherwise a bar of classes for each rod."""
     if request.views[1:]:
         return _of_files(request)
-    given = request.only_view("lines", "map")
-    view = as_grid(given)
+    view = as_grid(request.only_view("lines", "map"))
     if not view.is_grid or view.variables["status"].size == 1:
         if request.what and view.quantities:
             raise InputError(
@@ -98,6 +97,5 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     label_maps(panels, points)
     if lacking:
         style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], columns=1)
-    heading = style.heading(view, style.parameter_text(points.shared), searched(view))
-    figure.suptitle(heading)
+    figure.suptitle(style.heading(view, style.parameter_text(points.shared), searched(view)))
     return figure, points.left_out

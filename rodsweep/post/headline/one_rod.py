@@ -1,16 +1,100 @@
 """The result of one rod: its numbers and lists as text, for the first lines that are printed about it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ...arrays import Array
 from ...results.file.view import View
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
+from ..summary.errors import ABSOLUTE, RELATIVE, errors_of
+from ..summary.ranges import error_text, number_and_error, rounded
 from ..tables import Tables
 from ..tables.columns import Column
 from ..tables.contents import POINTS
-from .digits import Digits
+
+YES_NO = ("no", "yes")
+COMPLEX_PARTS = {"landau": "landau_error", "growth_slope": "growth_slope_error"}
+"""Complex variables, stored as two parts, and their error relative to the modulus."""
+EXACT = ("F_end",)
+"""Variables that repeat an option."""
+
+
+class Digits:
+    """Texts of the columns of a table, or of the numbers of one rod, with digits by their errors.
+
+    columns: of equal length. si: name of the SI variable of a variable, by the variable's name. beside:
+    absolute errors of variables whose errors are stored elsewhere, (rows,).
+    """
+
+    def __init__(
+        self, columns: Sequence[Column], si: Mapping[str, str], beside: Mapping[str, Array] | None = None
+    ):
+        self.columns = {column.name: column for column in columns}
+        self._values = {name: self._numbers(column) for name, column in self.columns.items()}
+        self._base = {si_name: name for name, si_name in si.items()}
+        self._beside = beside or {}
+
+    @staticmethod
+    def _numbers(column: Column) -> Array:
+        return np.where(column.absent, np.nan, column.values.astype(float))
+
+    def error(self, name: str) -> Array:
+        """Absolute errors of a variable, (rows,); NaN where no error is known."""
+        base = self._base.get(name)
+        if base in self.columns:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return self.error(base) * np.abs(self._values[name] / self._values[base])
+        if name in EXACT:
+            return np.zeros_like(self._values[name])
+        if name in self._beside:
+            return self._beside[name]
+        for whole, error in COMPLEX_PARTS.items():
+            if name in (f"{whole}_real", f"{whole}_imag") and error in self.columns:
+                parts = (self._values[f"{whole}_{part}"] for part in ("real", "imag"))
+                return np.hypot(*parts) * self._values[error]
+        known = errors_of(self._values, name)
+        has_error = any(table.get(name, "") in self.columns for table in (RELATIVE, ABSOLUTE))
+        return known if has_error else np.where(known > 0, known, np.nan)
+
+    def pairs(self, name: str) -> list[tuple[str, str]]:
+        """(value, absolute error) of a variable, as text, in every row; the error may be empty."""
+        column = self.columns[name]
+        if column.is_boolean:
+            return [(YES_NO[int(value)], "") for value in column.values]
+        if column.words or column.values.dtype.kind != "f":
+            return [(text, "") for text in column.text()]
+        if column.is_estimate:
+            stated = self._values[name] + self._rounding(name)
+            texts = (error_text(float(value)) if value else "0" for value in stated)
+            return [("" if none else text, "") for text, none in zip(texts, column.absent, strict=True)]
+        rows = zip(self._values[name], self.error(name), column.absent, strict=True)
+        return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
+
+    def _rounding(self, error: str) -> Array:
+        """Largest rounding of the printed numbers with an error, (rows,): relative where the error is."""
+        largest = np.zeros_like(self._values[error])
+        for table, relative in ((ABSOLUTE, False), (RELATIVE, True)):
+            for name in (name for name, known in table.items() if known == error and name in self.columns):
+                values = self._values[name]
+                printed = np.array([float(text) if text else np.nan for text in self.texts(name)])
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    rounding = np.abs(printed - values) / (np.abs(values) if relative else 1.0)
+                largest = np.fmax(largest, np.where(np.isfinite(rounding), rounding, 0.0))
+        return largest
+
+    def texts(self, name: str) -> list[str]:
+        """Values of a variable as text, in every row."""
+        return [text for text, _ in self.pairs(name)]
+
+    def short(self, name: str, row: int = 0) -> str:
+        """A value for a sentence: at most six digits, with the unit."""
+        column = self.columns[name]
+        value = float(self._values[name][row])
+        error = float(np.nan_to_num(self.error(name)[row]))
+        return f"{rounded(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
+
 
 EVENTS = ("onset", "hopf", "restabilization")
 """Kinds of thresholds whose first force is a number of the rod."""
@@ -40,8 +124,7 @@ class OneRod:
         for event in EVENTS:
             force = self.view.variables.get(f"F_{event}")
             if at is not None and force is not None:
-                same = at.values == force.ravel()[0]
-                error = columns["crossing_error"].values[same]
+                error = columns["crossing_error"].values[at.values == force.ravel()[0]]
                 found[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
         return found
 

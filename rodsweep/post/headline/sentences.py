@@ -68,23 +68,17 @@ def branch_sentence(rod: OneRod) -> str:
     branches = rod.count("branch_count")
     if branches is None:
         return ""
-    options = rod.view.config["branch"]
-    along = options["along"]
+    along, start, stop = (rod.view.config["branch"][key] for key in ("along", "start", "stop"))
     if not branches:
-        return (
-            f"no branch of cycles: no Hopf point for {along} from {options['start']:g} to {options['stop']:g}"
-        )
+        return f"no branch of cycles: no Hopf point for {along} from {start:g} to {stop:g}"
     cycles = rod.lists["cycles"]
-    text = (
-        f"{counted(branches, 'branch')} of cycles from {counted(rod.count('hopf_count') or 0, 'Hopf point')}"
-    )
+    begin = counted(rod.count("hopf_count") or 0, "Hopf point")
+    text = f"{counted(branches, 'branch')} of cycles from {begin}"
     y = rod.preferred(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
-    largest = int(np.nanargmax(cycles.columns[y].values))
-    return (
-        f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {cycles.short(y, largest)}"
-    )
+    largest = cycles.short(y, int(np.nanargmax(cycles.columns[y].values)))
+    return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest}"
 
 
 def cycle_sentence(rod: OneRod) -> str:

@@ -1,6 +1,5 @@
 """Branches of cycles in `rodsweep show`: their ends and special points, and ranges with two stable states."""
 
-import json
 from collections.abc import Callable, Iterable, Iterator
 from itertools import combinations
 
@@ -59,9 +58,8 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
     line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
-    return SummaryLines(
-        [line, *_special_lines(view, rods), *_coexistence(view, rods)], [_searched(view, done)]
-    )
+    answer = [line, *_special_lines(view, rods), *_coexistence(view, rods)]
+    return SummaryLines(answer, [_searched(view, done)])
 
 
 def _one_rod(view: View, rod: int) -> Iterator[str]:
@@ -156,7 +154,7 @@ def errors_of(curves: Iterable[StoredBranch]) -> dict[float, float]:
 
 def ends_of(view: View) -> Range:
     """(start, stop) of the followed parameter."""
-    options = json.loads(view.attributes["config_resolved"])["branch"]
+    options = view.config["branch"]
     return float(options["start"]), float(options["stop"])
 
 

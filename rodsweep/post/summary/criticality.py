@@ -14,7 +14,6 @@ from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, r
 from .thresholds import ended_early, not_known, not_known_beyond, not_stored
 
 Number = Callable[[Mapping[str, np.ndarray], int], tuple[float, float]]
-
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
 NAMED_RODS = 8
@@ -79,14 +78,9 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of the single rod of a file, a column for each; None without a Hopf point.
-
-    v: the variables of the file, flat.
-    """
+    """Table of the Hopf points of a single rod, a column for each; None without any. v: flat variables."""
     at = np.flatnonzero(v["crossing_kind"] > 0)
-    columns = [
-        [cell for i in at for cell in number_and_error(*number(v, int(i)))] for number in NUMBERS.values()
-    ]
+    columns = [[cell for i in at for cell in number_and_error(*each(v, int(i)))] for each in NUMBERS.values()]
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
     rows = zip(NUMBERS, columns, strict=True)
@@ -136,9 +130,7 @@ def _words(v: Mapping[str, np.ndarray], i: int) -> str:
         return f"unstable cycles at {above}"
     if after < 0:
         return f"cycles at {above}"
-    return (
-        f"stable cycles at {above}" if others == 0 else f"cycles at {above}, unstable by {others} other modes"
-    )
+    return f"cycles at {above}, unstable by {others} other modes" if others else f"stable cycles at {above}"
 
 
 def _subcritical_lines(view: View) -> Iterator[str]:

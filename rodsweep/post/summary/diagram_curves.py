@@ -148,8 +148,7 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
         for i in range(len(v["bautin_curve"]))
     ]
     if unlocated := int(v["bautin_unlocated"]):
-        changes = counted(unlocated, "change")
-        lines.append(f"{changes} of criticality could not be located")
+        lines.append(f"{counted(unlocated, 'change')} of criticality could not be located")
     return lines
 
 

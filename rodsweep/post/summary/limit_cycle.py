@@ -18,7 +18,6 @@ from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, r
 
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 """Words for outcomes; unlisted statuses are words already."""
-
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR),
@@ -39,17 +38,18 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     if view.quantities and done.size > 1 and not beats[done].all():
         of_arm.insert(0, outcome_line(view, done, region_of_arms))
     trust = _proof_lines(view)
-    details = [_straight_line(v, done)]
+    rate, frequency = (span_of(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
+    details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
-        multipliers = span_of(v, "multiplier", on_torus)
-        details.append(f"tori: the cycles inside have multipliers {multipliers}")
+        details.append(f"tori: the cycles inside have multipliers {span_of(v, 'multiplier', on_torus)}")
     if done.size == 1 and orbit.any():
         answer.insert(1, orbit_line(v, stable=bool(beats.any())))
         numbers = orbit_table(v)
     elif beats.any():
-        answer[1:1] = _size_lines(v, beats)
+        period, y = (span_of(v, name, beats) for name in ("period", "tip_y_max"))
+        answer.insert(1, f"period: {period} tau2; largest y of the tip: {y} L")
         trust.insert(0, _error_line(v, beats))
     details += _cycle_lines(v, beats) if beats.any() else []
     return SummaryLines(answer, trust, details, of_arm, numbers)
@@ -74,10 +74,7 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
 
 
 def _stability(view: View) -> tuple[list[str], list[str]]:
-    """(lines about changes of the straight rod along F, the same in an arm's own units).
-
-    If F is no axis the lines are about the remaining parameters.
-    """
+    """(changes of the straight rod along F, the same in an arm's units), or along another axis without F."""
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()
     of_arm = list[str]()
@@ -96,12 +93,6 @@ def _proof_lines(view: View) -> list[str]:
         return []
     proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
     return [f"the list of Hopf points between the points {completeness(view)} on {proved}"]
-
-
-def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:
-    """Line on the leading eigenvalue of the straight rods."""
-    rate, frequency = (span_of(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
-    return f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
@@ -144,12 +135,6 @@ def _at(some: np.ndarray, done: np.ndarray) -> str:
     return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
 
 
-def _size_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
-    """Line on the period and the amplitude of the cycles of several points."""
-    period, y = (span_of(v, name, beats) for name in ("period", "tip_y_max"))
-    return [f"period: {period} tau2; largest y of the tip: {y} L"]
-
-
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     """Lines about further properties of the cycles."""
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
@@ -181,11 +166,8 @@ def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
         "energy balance": "energy_imbalance",
         "multiplier": "multiplier_error",
     }
-    errors = (f"{word} {_worst(v[name][beats])}" for word, name in names.items())
+    errors = []
+    for word, name in names.items():
+        known = np.abs(v[name][beats & np.isfinite(v[name])])
+        errors.append(f"{word} {error_text(float(known.max())) if known.size else 'not known'}")
     return f"worst errors: {', '.join(errors)}; the error of multipliers is absolute, others are relative"
-
-
-def _worst(values: np.ndarray) -> str:
-    """Largest modulus of the finite values, as text."""
-    finite = np.abs(values[np.isfinite(values)])
-    return error_text(float(finite.max())) if finite.size else "not known"

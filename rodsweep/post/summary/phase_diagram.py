@@ -1,7 +1,5 @@
 """Phase diagrams in `rodsweep show`: shares of the classes in the plane, and changes on the rows."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
@@ -9,7 +7,7 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...results.layouts.variables import has_covering
+from ...results.layouts.variables import has_covering, number_of
 from ...wording import counted, some_of
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
@@ -17,16 +15,8 @@ from .ranges import span
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
-FLUTTER = next(value for value, word in CLASSES if word == "flutter")
-"""Number of the class flutter."""
-UNDECIDED = next(value for value, word in CLASSES if word == "undecided")
-"""Number of the class undecided."""
-BOTH = next(value for value, word in STABLE_STATES if word == "both")
-"""Number of the stable states where straight rod and cycle are both stable."""
-STATES_UNDECIDED = next(value for value, word in STABLE_STATES if word == "undecided")
-"""Stored value of the state `undecided`."""
-STATES_NAMED = {"straight rod and cycle both stable": BOTH, "stable states undecided": STATES_UNDECIDED}
-"""Stored values of the stable states for which `show` lists places, by the words of `show`."""
+STATES_NAMED = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
+"""Stable states for which `show` lists places, by the words of `show`."""
 CHANGES_OF_CYCLES = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
@@ -82,22 +72,18 @@ def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the share of the grid in which each state is stable, and about changes of cycles.
-
-    done: a mask of the rows' shape.
-    """
+    """Lines about the share of each stable state, and changes of cycles; done: a mask of the rows' shape."""
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     states = v["stable_states"]
     kinds = v["cycle_special_kind"]
     at = v[f"cycle_special_{line}"]
-    found = states[done]
-    shares = ((100 * float((found == value).mean()), word) for value, word in STABLE_STATES)
+    shares = ((100 * float((states[done] == value).mean()), word) for value, word in STABLE_STATES)
     parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
     lines = [f"stable states, of the grid: {parts}"]
     found_on = {}
-    for words, number in STATES_NAMED.items():
-        there = (states == number) & done[..., np.newaxis]
+    for words, state in STATES_NAMED.items():
+        there = (states == number_of(state, STABLE_STATES)) & done[..., np.newaxis]
         found_on[words] = there.any(axis=-1), np.broadcast_to(v[line], there.shape)[there]
     for kind, words in CHANGES_OF_CYCLES.items():
         of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
@@ -132,7 +118,8 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)
-    unknown = done & ~_all_stored(v)
+    stored = (v["crossing_kind"] > 0).sum(axis=-1)
+    unknown = done & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))  # of incomplete rows
     for number, word in enumerate(CROSSING_KINDS):
         of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
         on_row = of_kind.any(axis=-1)
@@ -147,24 +134,19 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
                 least = "at least " * bool(unknown.any())
                 text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
             lines.append(text)
-    undecided = (v["class"] == UNDECIDED) & done[..., np.newaxis]
+    flutter, unknown_class = (number_of(word, CLASSES) for word in ("flutter", "undecided"))
+    undecided = (v["class"] == unknown_class) & done[..., np.newaxis]
     if undecided.any():
         rows = undecided.any(axis=-1)
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
         on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(places)}"
         lines.append(f"undecided: {on_rows}, {row} = {span(of_row[rows])}")
-    flutters = (v["class"] == FLUTTER).any(axis=-1)
-    never = ~flutters & (v["class"] != UNDECIDED).all(axis=-1)
+    flutters = (v["class"] == flutter).any(axis=-1)
+    never = ~flutters & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
         with_it, without = (span(of_row[done & mask]) for mask in (flutters, never))
         lines.append(f"flutter on the rows {row} = {with_it}; on none of {row} = {without}")
     return lines
-
-
-def _all_stored(v: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Mask of the rows whose list of changes is complete: no change was left out, no interval is open."""
-    stored = (v["crossing_kind"] > 0).sum(axis=-1)
-    return (v["crossing_count"] == stored) & ~np.isfinite(v["open_from"])
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:

@@ -43,10 +43,7 @@ def span(values: np.ndarray, errors: np.ndarray | None = None) -> str:
 
 
 def listed(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
-    """Ranges of a parameter as text; NONE without a range.
-
-    errors: absolute errors of ends that are not exact.
-    """
+    """Ranges of a parameter as text, or NONE. errors: absolute errors of ends that are not exact."""
     ends = [[_rounded(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
     return ", ".join(" to ".join(pair) for pair in ends) or NONE
 
@@ -102,10 +99,7 @@ def error_text(error: float) -> str:
 
 
 def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
-    """A number with as many digits as the absolute error allows, at most `most`.
-
-    The error is at most half a unit of the last digit.
-    """
+    """A number with at most `most` digits, and an error of at most half a unit of the last digit."""
     return _rounded(float(value), 2 * float(error), most) if isfinite(value) else NONE
 
 

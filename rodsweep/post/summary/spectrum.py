@@ -25,16 +25,11 @@ PROOFS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
-        return SummaryLines(
-            [count_line(view)], details=unknowns_lines(view, done), numbers=eigenvalue_table(view)
-        )
+        return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
     lines, how, of_arm = threshold_lines(view)
-    return SummaryLines(
-        [stable_line(view, done), *lines],
-        [*error_lines(view, done), stability_line(view, done), *how],
-        [leading_line(view, done), *unknowns_lines(view, done)],
-        of_arm,
-    )
+    trust = [*error_lines(view, done), stability_line(view, done), *how]
+    details = [leading_line(view, done), *unknowns_lines(view, done)]
+    return SummaryLines([stable_line(view, done), *lines], trust, details, of_arm)
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
@@ -59,10 +54,7 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
-    """(lines about changes along F, line on their computation, lines in an arm's units).
-
-    All are empty if F is no axis.
-    """
+    """(lines about changes along F, line on their computation, lines on an arm); empty if F is no axis."""
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
     how = HOW_FOUND if has_covering(view.config) else NOT_LOCATED
     return lines, [f"thresholds: {how}"] if lines else [], of_arm
@@ -70,8 +62,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
 
 def eigenvalue_table(view: View) -> TextTable | None:
     """Table of the eigenvalues of the single point of a file, with errors; None without an eigenvalue."""
-    v = view.variables
-    columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
+    columns = (view.variables[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     rows = [
         (str(number), *number_and_error(growth, error), *number_and_error(frequency, error))
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ...results.file.view import View
-from ...sweep.points.lines import ParameterLine, lines_over
+from ...sweep.points.points import ParameterLine, lines_over
 from ...wording import counted, some_of
 from ..hopf_points import BracketedChange, LocatedChange
 from .arm.arm import thresholds_of_arm
@@ -24,7 +24,6 @@ OVER_OTHERS = {
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
 """Words for a change of stability along another parameter, by kind."""
-
 Threshold = LocatedChange | BracketedChange
 """A threshold: located, or bracketed by two points."""
 
@@ -41,7 +40,8 @@ def stability_lines(
     if len(np.unique(column[np.isfinite(column)])) < 2:
         return [], []
     lines = list(lines_over(view.point_columns, name))
-    names = names_of(lines)
+    varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
+    names = [", ".join(f"{n} = {line.parameters[n]:.6g}" for n in varied) for line in lines]
     along = [found_on(line) for line in lines]
     texts = list[str]()
     of_arm = list[str]()
@@ -53,12 +53,6 @@ def stability_lines(
             located = [(point, at) for point, at in every if isinstance(point, LocatedChange)]
             of_arm += thresholds_of_arm(view, kind, located) if name == "F" else []
     return texts, of_arm
-
-
-def names_of(lines: Sequence[ParameterLine]) -> list[str]:
-    """Parameters that distinguish each line, as text; empty for a single line."""
-    varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
-    return [", ".join(f"{name} = {line.parameters[name]:.6g}" for name in varied) for line in lines]
 
 
 def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
@@ -73,8 +67,8 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _text(located[0]) + error + some + beats
     if len(found) <= FEW_LINES:
-        texts = (_thresholds_of_line(found[i], names[i]) for i in found)
-        return f"{', '.join(texts)}{error}"
+        each = ((" and ".join(map(_text, found[i])), names[i]) for i in found)
+        return f"{', '.join(' for '.join(filter(None, pair)) for pair in each)}{error}"
     if not located:
         ends = [(point.low, point.high) for point in points if isinstance(point, BracketedChange)]
         low = min(low for low, _ in ends)
@@ -85,11 +79,6 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     rest = len(points) - len(located)
     more = f"; at {counted(rest, 'other place')} known only to lie between two points" if rest else ""
     return f"{_text(first)} to {_text(last)}{error}{some}{more}"
-
-
-def _thresholds_of_line(points: Sequence[Threshold], name: str) -> str:
-    """Thresholds of a line, with the parameters of the line."""
-    return " for ".join(filter(None, (" and ".join(map(_text, points)), name)))
 
 
 def _text(threshold: Threshold) -> str:

@@ -58,16 +58,13 @@ def varied(view: View) -> dict[str, np.ndarray]:
 
 def region(view: View, mask: np.ndarray) -> str:
     """Ranges of the varied parameters over points, a mask of their shape; empty for a single rod."""
-    columns = varied(view)
-    chosen = mask.ravel()
-    return ", ".join(f"{name} = {_extent(column[chosen])}" for name, column in columns.items())
-
-
-def _extent(values: np.ndarray) -> str:
-    """Range of values of a parameter, which may be inf."""
-    if np.isfinite(values).all():
-        return span(values)
-    return " and ".join(filter(None, (span(values) if np.isfinite(values).any() else "", "inf")))
+    ranges = []
+    for name, column in varied(view).items():
+        values = column[mask.ravel()]
+        is_finite = np.isfinite(values)
+        ends = [span(values)] if is_finite.any() else []
+        ranges.append(f"{name} = {' and '.join([*ends, *(['inf'] if not is_finite.all() else [])])}")
+    return ", ".join(ranges)
 
 
 def at_point(view: View, index: int) -> str:

@@ -19,27 +19,17 @@ EVENTS = {
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
-
 ENDED_EARLY = "ended_early"
 """Status of a search that ended before the requested force."""
-FIRSTS = {
-    "onset": "oscillates from",
-    "hopf": "beats from",
-    "restabilization": "stable again from",
-}
+FIRSTS = {"onset": "oscillates from", "hopf": "beats from", "restabilization": "stable again from"}
 """Words before the force of the first crossing of a kind, for a single rod."""
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
-        return SummaryLines(
-            crossing_lines(view),
-            trust_of_one(view),
-            cost_lines(view, done),
-            crossings_of_arm(view),
-            crossing_table(view),
-        )
+        details, of_arm = cost_lines(view, done), crossings_of_arm(view)
+        return SummaryLines(crossing_lines(view), trust_of_one(view), details, of_arm, crossing_table(view))
     answer = [event_line(view, done, event) for event in EVENTS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
     return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
@@ -139,10 +129,7 @@ def not_stored(hidden: int) -> str:
 
 
 def monotony_lines(view: View) -> list[str]:
-    """Lines on whether the first onset and Hopf point rise with a parameter.
-
-    The paper states that they rise with k2 and 1/gamma3.
-    """
+    """Lines on whether the first thresholds rise with a parameter, as the paper has it for k2, 1/gamma3."""
     lines = []
     long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
     for name, force in product(long, ("F_onset", "F_hopf")):
@@ -174,10 +161,7 @@ def monotony_lines(view: View) -> list[str]:
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about completeness and errors of the searches; done: a mask of the points' shape.
-
-    noun: name of a point.
-    """
+    """Lines about completeness and errors; done: a mask of the points' shape. noun: name of a point."""
     v = view.variables
     searches = int(done.sum())
     is_crossing = v["crossing_kind"][done] > 0

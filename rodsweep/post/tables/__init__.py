@@ -1,16 +1,16 @@
 """Results as tables with one row for each item, for `rodsweep export` and for DataFrames in Python."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arm.quantities import LOADS
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
-from .branches import merged_columns, merged_rows
 from .columns import Column
 from .contents import BRANCHES, GRID, POINTS, Contents, chosen, contents_of, refuse_unknown
 from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
@@ -98,3 +98,54 @@ class Tables:
         points, of_cycle, at_special = merged_rows(self.view, cycles, special)
         along = followed_parameter(self.view)
         return points, merged_columns(of_cycles, of_special, of_cycle, at_special, along)
+
+
+def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArray, NDArray]:
+    """Rows of the table: (point, row of the cycles or -1, row of the special points or -1), each (rows,).
+
+    A special point follows the cycle before it on the branch, or precedes the first cycle of the branch.
+    """
+    shape = view.variables["status"].size
+    branch = np.concatenate([_of(view, "branch", shape, cycles), _of(view, "special_branch", shape, special)])
+    place = np.concatenate([cycles[1] + 1, _of(view, "special_point", shape, special)])
+    point = np.concatenate([cycles[0], special[0]])
+    kind = np.repeat([0, 1], [len(cycles[0]), len(special[0])])
+    order = np.lexsort((np.concatenate([cycles[1], special[1]]), kind, place, branch, point))
+    row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special[0]))])
+    of_cycle = np.where(kind == 0, row, -1)
+    of_special = np.where(kind == 1, row, -1)
+    return point[order], of_cycle[order], of_special[order]
+
+
+def merged_columns(
+    cycles: list[Column], special: list[Column], of_cycle: NDArray, of_special: NDArray, along: str
+) -> list[Column]:
+    """Columns of the cycles, with values of the special points between them, and the kind of special point.
+
+    of_cycle, of_special: rows of the columns, (rows,), -1 in a row without a cycle or a special point.
+    """
+    named = {column.name: column for column in special}
+    merged = []
+    for column in cycles:
+        values = column.rows(of_cycle)
+        counterpart = named.get(_special_of(column.name, along))
+        if counterpart is not None:
+            others = counterpart.rows(of_special)
+            both = np.where(values.absent, others.values, values.values)
+            values = replace(values, values=both, absent=values.absent & others.absent)
+        merged.append(values)
+    return [*merged, named["special_kind"].rows(of_special)]
+
+
+def _special_of(name: str, along: str) -> str:
+    """Name of a variable of cycles at special points."""
+    if name == f"branch_{along}":
+        return "special_at"
+    if along == "F" and name in {f"branch_{load}" for load in LOADS}:
+        return "special_at_si"
+    return f"special_{name}"
+
+
+def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:
+    """Values of a variable at the items of a list, (rows,)."""
+    return view.variables[name].reshape(count, -1)[rows]

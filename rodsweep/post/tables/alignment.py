@@ -14,7 +14,6 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
 NO_BREAK = "\xa0"
 GLUED = re.compile(r" = \S+| \(\+- [^)]*\)")
 """Parts of a sentence that stay on one line: a value beside its name, an error beside its number."""
-
 Line = tuple[str, ...]
 
 
@@ -37,9 +36,7 @@ def refolded(line: str, width: int = WIDTH) -> str:
 
 
 def point_aligned(cells: Sequence[str]) -> list[str]:
-    """Cells of a column of equal length, numbers with their decimal points below each other, words at the
-    left.
-    """
+    """Cells of a column of equal length, numbers with aligned decimal points, words at the left."""
     if not all(NUMBER.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
         return [f"{cell:{width}}" for cell in cells]

@@ -47,10 +47,8 @@ class Column:
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
         # An appended row makes index -1 a missing value.
-        nothing = np.zeros(1, self.values.dtype)
-        values = np.append(self.values, nothing)[which]
-        absent = np.append(self.absent, True)[which]
-        return replace(self, values=values, absent=absent)
+        values = np.append(self.values, np.zeros(1, self.values.dtype))[which]
+        return replace(self, values=values, absent=np.append(self.absent, True)[which])
 
     def text(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number that reads back equal."""
@@ -70,25 +68,17 @@ class Column:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
         texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
-        return (
-            [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]
-            if self.given
-            else texts
-        )
+        if not self.given:
+            return texts
+        return [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]
 
 
 def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
     """Column of a variable with values of shape (rows,); words: by value, if not those of the variable."""
     known = dict(variable.flags) if words is None else words
-    return Column(
-        variable.name,
-        variable.units,
-        variable.long_name.removesuffix(NOT_KNOWN),
-        values,
-        absent_in(variable, values),
-        known,
-        is_boolean=variable.is_boolean,
-    )
+    meaning = variable.long_name.removesuffix(NOT_KNOWN)
+    absent, boolean = absent_in(variable, values), variable.is_boolean
+    return Column(variable.name, variable.units, meaning, values, absent, known, is_boolean=boolean)
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
@@ -110,12 +100,10 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
-        none = [value for value, word in variable.flags if word in NO_WORD]
-        return np.isin(values, none)
+        return np.isin(values, [value for value, word in variable.flags if word in NO_WORD])
     return values == variable.fill if variable.fill == -1 else np.zeros(values.shape, bool)
 
 
 def tells_of_items(variable: Variable) -> bool:
-    """Whether a value of the variable reveals a missing item, because no valid value equals the fill
-    value."""
+    """Whether a value of the variable reveals a missing item: no valid value equals the fill value."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

@@ -4,7 +4,6 @@ A table has a row for each item, with the parameters and the status of a point. 
 diagram, in which each point of the file is a row of the diagram.
 """
 
-import json
 from dataclasses import dataclass
 
 from ...config.document.refusals import hint_of
@@ -79,7 +78,7 @@ class Contents:
 
 def contents_of(view: View) -> Contents:
     """Tables of a result and their variables."""
-    config = json.loads(view.attributes["config_resolved"])
+    config = view.config
     own: list[Variable] = []
     lists: dict[str, list[Variable]] = {}
     for variable in layout_of(config).variables:
@@ -107,10 +106,7 @@ def name_of(dimensions: tuple[str, ...]) -> str:
 
 
 def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
-    """Name of the table asked for: by name, by its columns, or the first of the task.
-
-    Raises InputError for an unknown name, and for columns of two tables.
-    """
+    """Name of the table asked for by name or columns, or the first of the task; InputError without one."""
     if table is not None:
         if table not in contents.tables:
             raise InputError(

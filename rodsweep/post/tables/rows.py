@@ -19,10 +19,7 @@ Rows = tuple[NDArray[np.int64], ...]
 
 
 def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
-    """Rows of a list: the items at every point; joint: whether the items belong to all points together.
-
-    An item exists if some variable has a value.
-    """
+    """Rows of a list: items with any value, at every point, or of all points together if `joint`."""
     points = 1 if joint else view.variables["status"].size
     exists: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:

@@ -28,16 +28,13 @@ BOOKKEEPING = frozenset(
         "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL,
     }
 )  # fmt: skip
-"""Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions
-themselves."""
+"""Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions."""
 NUMBERS = "iuf"
 """Kinds of NumPy types that variables of a result have."""
 BYTES_A_READ = 1 << 18
 """Bytes read at once, to bound the memory."""
-
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
 """Attribute added by xarray on writing, without effect."""
-
 Digests = dict[str, dict[str, str]]
 """Digests by name, under the keys `attributes` and `variables`."""
 
@@ -70,7 +67,12 @@ def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
 
 def digests_of(file: h5py.File) -> Digests:
     """Digests of an open file; raises ValueError, as a clause, for content that no result has."""
-    variables = {name: _dataset_digest(name, data) for name, data in _variables(file)}
+    variables = {}
+    for name, data in _variables(file):
+        if data.dtype.kind not in NUMBERS or data.shape is None:
+            raise ValueError(f"{named(name, 40)} has no numbers")
+        dimensions = _dimensions(name, data)
+        variables[name] = variable_digest(data.dtype, data.shape, dimensions, data.attrs, _blocks(data))
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
 
 
@@ -114,13 +116,6 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
         places.add(place)
         if not is_users(name):
             yield name, data
-
-
-def _dataset_digest(name: str, data: h5py.Dataset) -> str:
-    """Digest of a variable of an open file."""
-    if data.dtype.kind not in NUMBERS or data.shape is None:
-        raise ValueError(f"{named(name, 40)} has no numbers")
-    return variable_digest(data.dtype, data.shape, _dimensions(name, data), data.attrs, _blocks(data))
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:

@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...sweep.points.chains import Chains
 from ...sweep.points.points import Points
 from ...sweep.points.stretches import Stretches
-from ..layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
+from ..layouts.variables import MISSING, Filled, Layout, Variable, dimension_attributes, flag_attributes
 from .combination.identity import fingerprint_of
 from .validation import FORMAT, PROGRAM
 
@@ -36,8 +36,7 @@ class Plan:
     flags: tuple[tuple[int, str], ...]
     """Values and meanings of `status`, without MISSING."""
     quantities: tuple[Filled, ...] = ()
-    """Quantities of an arm. They are coordinates of the points besides the parameters, or dimensions of the
-    points."""
+    """Quantities of an arm: coordinates of the points besides the parameters, or dimensions of the points."""
     chains: Chains | None = None
     """Chains of points; None if every point starts cold."""
     stretches: Stretches | None = None
@@ -67,7 +66,7 @@ def create_file(path: Path, plan: Plan) -> None:
             _describe(file, data, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants())
         add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])
-        _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
+        file["status"].attrs.update(flag_attributes(((MISSING, "missing"), *plan.flags)))
         file.attrs["program"] = PROGRAM
         file.attrs["format"] = FORMAT
         file.attrs["fingerprint"] = plan.fingerprint
@@ -104,7 +103,7 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
             _write_scale(file, name, column)
         else:
             data = file.create_dataset(name, data=column)
-            _name(data, name)
+            data.attrs.update(dimension_attributes(name))
             data.dims[0].attach_scale(file["point"])
 
 
@@ -117,16 +116,7 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
     """Writes a dimension with a coordinate; variable: describes a dimension outside DIMENSIONS."""
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
-    if variable is None:
-        _name(data, name)
-    else:
-        _describe(file, data, variable, ())
-
-
-def _name(data: h5py.Dataset, name: str) -> None:
-    """Adds unit and long name of a parameter or a dimension, from DIMENSIONS."""
-    units, long_name = DIMENSIONS[name]
-    data.attrs.update(units=units, long_name=long_name)
+    data.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
@@ -142,18 +132,8 @@ def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> 
 
 def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]) -> None:
     """Adds unit, long name, flags and dimensions of a variable."""
-    data.attrs.update(units=variable.units, long_name=variable.long_name)
-    if variable.typed:
-        data.attrs[TYPED] = variable.typed
-    if variable.flags:
-        _describe_flags(data, variable.flags)
+    data.attrs.update(variable.attributes)
     for axis, name in enumerate(dimensions):
         data.dims[axis].attach_scale(file[name])
     if "point" in dimensions:
         data.attrs["coordinates"] = file.attrs["coordinates"]
-
-
-def _describe_flags(data: h5py.Dataset, flags: Sequence[tuple[int, str]]) -> None:
-    """Adds the values and meanings of a word variable."""
-    data.attrs["flag_values"] = np.array([value for value, _ in flags], dtype="i1")
-    data.attrs["flag_meanings"] = " ".join(meaning for _, meaning in flags)

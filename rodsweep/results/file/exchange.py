@@ -3,17 +3,20 @@
 The new file is written beside the journals, and sealed and synced to disk before the rename.
 """
 
+import fcntl
 import os
 import shutil
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ...errors import EnvironmentIncomplete
+from ...errors import EnvironmentIncomplete, InputError
 from ..run.journal import journal_directory
-from ..run.lock import Lock
 from .seal import seal
 
+LOCK_PATIENCE = 5.0
+"""Seconds to wait for the lock. Ranks of a launcher that was killed live on for a moment."""
 Identity = tuple[int, ...]
 """Numbers that change when a file is replaced or written to; empty without a file."""
 
@@ -75,3 +78,47 @@ class Exchange:
         with suppress(OSError):
             self.copy.unlink()
         self.lock.release()
+
+
+class Lock:
+    """Lock on a result file, in the journal directory, which the lock creates and removes."""
+
+    def __init__(self, directory: Path, path: Path):
+        """Takes the lock; raises InputError if the lock is taken."""
+        self.directory = directory
+        patience = time.monotonic() + LOCK_PATIENCE
+        while True:
+            try:
+                directory.mkdir(exist_ok=True)
+            except FileExistsError:
+                if os.path.lexists(directory):
+                    raise
+                continue  # a run that ended just now has removed the directory
+            try:
+                self.handle = os.open(directory / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+            except FileNotFoundError:  # a run that ended just now has removed the directory
+                continue
+            try:
+                fcntl.flock(self.handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if os.fstat(self.handle).st_nlink:
+                    return
+            except BlockingIOError:
+                os.close(self.handle)
+                if time.monotonic() < patience:
+                    time.sleep(0.1)
+                    continue
+                raise InputError(
+                    f"{path} is being written by another run; wait for its end, or choose another file with "
+                    "-o (if several ranks print this message, they were started without MPI)"
+                ) from None
+            os.close(self.handle)  # the run that ended just now has removed this lock file: take a new one
+
+    def release(self) -> None:
+        """Releases the lock and removes the directory if it is empty."""
+        own = self.directory / "lock"
+        with suppress(OSError):  # the lock file was moved or deleted
+            if os.path.samestat(os.stat(own), os.fstat(self.handle)):
+                own.unlink()
+        with suppress(OSError):  # the directory is not empty, or is a link made by the user
+            self.directory.rmdir()
+        os.close(self.handle)

@@ -10,7 +10,6 @@ from ...errors import EnvironmentIncomplete
 
 Table = dict[str, Sequence[str] | Sequence[float]]
 """Columns of equal length, by name."""
-
 UNITS = {"seconds": "s", "error": "1"}
 """Units of columns."""
 

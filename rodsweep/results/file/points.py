@@ -123,10 +123,7 @@ def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, (n,) in any order, into the variables; returns whether there was any record.
-
-    Neighbouring points are written by a single call.
-    """
+    """Writes records, (n,) in any order, neighbours by a single call; returns whether there was any one."""
     offsets = _offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:

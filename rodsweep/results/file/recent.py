@@ -25,7 +25,6 @@ MAX_REREADS = 20
 point to a fault."""
 SNAPSHOT = "snapshot"
 """Attribute with the time of a snapshot, which marks a file as a snapshot."""
-
 Found = TypeVar("Found")
 
 
@@ -59,8 +58,7 @@ def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
 
 def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
     """Writes records, (n,), of a variable into the values, of the shape of points and variable."""
-    inner = records[name].shape[1:]
-    values.reshape(-1, *inner)[records["index"]] = records[name]
+    values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 
 def take_snapshot(path: Path, output: Path) -> tuple[int, int]:

@@ -30,9 +30,7 @@ LONGEST_FRAME = 100_000
 BYTES_A_READ = 1 << 20
 """Bytes read at once, to bound the memory."""
 LARGEST_INCLUDED = 1 << 16
-"""Largest size, in bytes, of a variable whose numbers the checksum includes: axes, and numbers read on every
-opening."""
-
+"""Largest size, in bytes, of a variable, such as an axis, whose numbers the checksum includes."""
 Piece = tuple[int, int]
 """(offset, size) in bytes."""
 

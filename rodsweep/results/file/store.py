@@ -42,14 +42,6 @@ from .validation import Header, is_ours, reading
 BACKUPS = "before-*.h5"
 """Copies, beside the journals, of the file before an extension that is not complete yet."""
 
-Additions = Callable[[h5py.File], Sequence[Filled]]
-"""Function from the open file to complete variables added to it."""
-
-
-def no_additions(file: h5py.File) -> Sequence[Filled]:
-    """No variables."""
-    return ()
-
 
 class Store:
     """Result file of one run. Only the first rank has a store, and a file has a single run at a time."""
@@ -107,8 +99,7 @@ class Store:
 
     def _extend(self, header: Header) -> None:
         """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
-        points = parameters_of(self.path, header.layout)
-        extension = extension_of(header, points, self.plan)
+        extension = extension_of(header, parameters_of(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
         self._fold_blocks(blocks, header.layout, header.fingerprint, {})
@@ -162,8 +153,13 @@ class Store:
         """Folds journals in, and adds variables, also those computed from all points of the complete file."""
         self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
 
-    def fold(self, attributes: dict[str, Any], additions: Additions = no_additions) -> None:
-        """Adds journalled points, attributes and variables by one replacement; deletes the journals."""
+    def fold(
+        self, attributes: dict[str, Any], additions: Callable[[h5py.File], Sequence[Filled]] | None = None
+    ) -> None:
+        """Adds journalled points, attributes and variables by one replacement; deletes the journals.
+
+        additions: function from the open file to complete variables.
+        """
         plan = self.plan
         with disk_refusals(self.path, self._kept):
             self._restore_if_gone()
@@ -195,7 +191,7 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Additions = no_additions,
+        additions: Callable[[h5py.File], Sequence[Filled]] | None = None,
     ) -> None:
         """Writes blocks of points of the given fingerprint into the file, and deletes the journals."""
         with disk_refusals(self.path, self._kept):
@@ -207,7 +203,7 @@ class Store:
                         write_points(copy, chain([first], blocks), layout)
                     if attributes:
                         with h5py.File(copy, "r+") as file:
-                            add_variables(file, additions(file))
+                            add_variables(file, additions(file) if additions else ())
                             file.attrs.update(attributes)
             for journal in journals:
                 journal.unlink(missing_ok=True)

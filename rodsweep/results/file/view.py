@@ -154,11 +154,7 @@ def _view(path: Path) -> View:
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
-        typed = {name: str(file[name].attrs[TYPED]) for name in ALL_QUANTITIES if is_typed(file, name)}
+        stored = (name for name in ALL_QUANTITIES if name in file)
+        typed = {name: str(file[name].attrs[TYPED]) for name in stored if TYPED in file[name].attrs}
     layout = header.layout
     return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
-
-
-def is_typed(file: h5py.File, name: str) -> bool:
-    """Whether the file records in which unit a quantity was typed."""
-    return name in file and TYPED in file[name].attrs

@@ -23,17 +23,14 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
 }
 """Function of each task from a resolved config to the layout."""
 INCREASES: dict[str, dict[str, Increase]] = {task: module.INCREASES for task, module in MODULES.items()}
-"""Options of each task that ask for more of a point. A change of any further option makes a different
-file."""
-
+"""Options of each task that ask for more of a point. A change of any other option makes another file."""
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
     "phase_diagram": phase_diagram.beside_points,
     "limit_cycle": limit_cycle.beside_points,
 }
-"""Variables of each task that all points share or together give, as a function of (resolved config,
-is_grid)."""
+"""Variables of each task that all points share or together give, from (resolved config, is_grid)."""
 
 
 def layout_of(config: dict[str, Any]) -> Layout:
@@ -42,15 +39,11 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
     layout = LAYOUTS[task](config)
-    parameters = (*layout.parameters, *optional_in(config))
-    return with_si(replace(layout, parameters=parameters), config)
+    return with_si(replace(layout, parameters=(*layout.parameters, *optional_in(config))), config)
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables that the file of a resolved config may hold besides the points.
-
-    `extra` has all dimensions of a variable.
-    """
+    """Variables of a file besides the points, by resolved config. `extra` has all dimensions of each."""
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 

@@ -62,8 +62,7 @@ SI_UNITS = {
 }
 """SI units of the dimensionless units of time, length, energy and power."""
 FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS}
-"""SI unit of a follower force, by the kind of the arm's load; without a load the force is given as a
-pressure."""
+"""SI unit of a follower force, by the kind of the arm's load; without a load that of a pressure."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Kind of load by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
@@ -71,9 +70,7 @@ EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in 
 BRANCH_FORCES = ("special_at", "special_error")
 """Forces along the branches of an arm; its branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Variables with these extra dimensions are stored in SI units as well; longer tables are not stored
-twice."""
-
+"""Variables with these extra dimensions are stored in SI units too; longer tables are not stored twice."""
 EFFECTS = (
     "inertia_of_the_arm",
     "inertia_of_the_fluid",
@@ -117,9 +114,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """SI variables for a rod's layout and a resolved config, by the name of the dimensionless variable."""
     as_force = any(RELATIVE.get(name, name) == "force" for name in config["parameters"]["arm"])
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
-    return {
-        v.name: real(si_name_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit
-    }
+    return {v.name: real(si_name_of(v.name, si), si, _meaning(v, si), *v.extra) for v, si in units if si}
 
 
 def si_name_of(name: str, unit: str) -> str:
@@ -159,10 +154,7 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
 
 
 def converted(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
-    """A variable and its values, (n,), in the unit of `si_unit_of`.
-
-    quantities: the arm's quantities, each of shape () or (n,).
-    """
+    """A variable and its values, (n,), in SI units; quantities: the arm's, each of shape () or (n,)."""
     si = si_unit_of(variable, "force" in quantities)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
     return si_variable, values * si.scale(quantities)
@@ -172,13 +164,9 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Axes of the grid over an arm's quantities of a resolved config; empty for other points."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
-    sizes = {name: _size(axis) for name, axis in axes.items() if isinstance(axis, Mapping)}
+    ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
+    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
     return names_over(sizes, makes_diagram(config["task"]))
-
-
-def _size(axis: Mapping[str, Any]) -> int:
-    """Number of values of a resolved axis."""
-    return len(axis["values"]) if axis.get("values") is not None else int(axis["num"])
 
 
 def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
@@ -218,9 +206,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
-    """Quantities by name. If the file is a grid over quantities, each is expanded to its value at every
-    point, (points,).
-    """
+    """Quantities by name; in a grid over quantities each has its value at every point, (points,)."""
     if not points.over:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.over)

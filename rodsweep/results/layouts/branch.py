@@ -10,6 +10,7 @@ from .variables import (
     Increase,
     Layout,
     Variable,
+    along,
     boolean,
     confirmed,
     integer,
@@ -21,7 +22,6 @@ ALONG = "branch_point"
 """Dimension of the cycles of all branches."""
 SPECIAL = "special"
 """Dimension of the special points of all branches."""
-
 SPECIAL_MEANINGS = {
     "none": "no special point: the list has more room than points",
     "hopf": "Hopf point: a branch of cycles begins or ends at the straight rod",
@@ -37,7 +37,6 @@ SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
 """Kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
 """Reasons for the end of a branch at a special point of the kind `end`."""
-
 ERRORS = (
     ("period_error", "the relative error of period"),
     ("amplitude_error", "the relative error of tip_y_max"),
@@ -47,75 +46,67 @@ ERRORS = (
 """(name of the error of a cycle, its meaning); errors are at the stored value of the parameter."""
 
 
-def followed_variables(along: str) -> tuple[Variable, ...]:
+def followed_variables(parameter: str) -> tuple[Variable, ...]:
     """Variables of the cycles of all branches, branch by branch."""
-    unit = PARAMETERS[along].unit
-    return (
-        integer("branch", "number of the branch, from 1", ALONG),
-        real(f"branch_{along}", unit, f"{along} of the cycle", ALONG),
+    unit = PARAMETERS[parameter].unit
+    return along(
+        ALONG,
+        integer("branch", "number of the branch, from 1"),
+        real(f"branch_{parameter}", unit, f"{parameter} of the cycle"),
         real(
-            f"branch_{along}_error",
+            f"branch_{parameter}_error",
             "1",
-            f"estimate of the relative error of branch_{along}, at a given deflection at t = 0",
-            ALONG,
+            f"estimate of the relative error of branch_{parameter}, at a given deflection at t = 0",
         ),
-        real("period", "tau2", "period of the cycle", ALONG),
-        real("tip_y_max", "L", "largest y of the tip", ALONG),
-        real(
-            "tip_y_min", "L", "smallest y of the tip; -tip_y_max for a cycle with the mirror symmetry", ALONG
-        ),
-        real("tip_x_min", "L", "smallest x of the tip", ALONG),
-        real("tip_x_max", "L", "largest x of the tip", ALONG),
-        real("tip_theta_max", "1", "largest angle of the tip", ALONG),
-        real("least_stretch", "1", "smallest h1 on the cycle; the model holds while it is positive", ALONG),
-        real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier", ALONG),
+        real("period", "tau2", "period of the cycle"),
+        real("tip_y_max", "L", "largest y of the tip"),
+        real("tip_y_min", "L", "smallest y of the tip; -tip_y_max for a cycle with the mirror symmetry"),
+        real("tip_x_min", "L", "smallest x of the tip"),
+        real("tip_x_max", "L", "largest x of the tip"),
+        real("tip_theta_max", "1", "largest angle of the tip"),
+        real("least_stretch", "1", "smallest h1 on the cycle; the model holds while it is positive"),
+        real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(
             "unstable_multipliers",
             "number of Floquet multipliers outside the unit circle; 0: stable; -1: undecided within error",
-            ALONG,
         ),
-        *(real(name, "1", f"estimate of {error}, at branch_{along}", ALONG) for name, error in ERRORS),
+        *(real(name, "1", f"estimate of {error}, at branch_{parameter}") for name, error in ERRORS),
     )
 
 
-def special_variables(along: str) -> tuple[Variable, ...]:
+def special_variables(parameter: str) -> tuple[Variable, ...]:
     """Variables of the special points of all branches, branch by branch."""
-    unit = PARAMETERS[along].unit
-    return (
-        word("special_kind", "kind of the special point", SPECIAL_KINDS, SPECIAL),
-        real("special_at", unit, f"{along} at the special point", SPECIAL),
-        real("special_error", unit, "estimate of the absolute error of special_at", SPECIAL),
-        real("special_period", "tau2", "period of the cycle at the special point", SPECIAL),
-        real(
-            "special_tip_y_max", "L", "largest y of the tip at the special point; 0 at a Hopf point", SPECIAL
-        ),
+    unit = PARAMETERS[parameter].unit
+    return along(
+        SPECIAL,
+        word("special_kind", "kind of the special point", SPECIAL_KINDS),
+        real("special_at", unit, f"{parameter} at the special point"),
+        real("special_error", unit, "estimate of the absolute error of special_at"),
+        real("special_period", "tau2", "period of the cycle at the special point"),
+        real("special_tip_y_max", "L", "largest y of the tip at the special point; 0 at a Hopf point"),
         real(
             "special_amplitude_coefficient",
             "L",
-            "coefficient a of a Hopf point: the largest y of its cycles is "
-            f"|a| sqrt(|{along}/special_at - 1|) to leading order; a < 0: the cycles are at smaller {along}",
-            SPECIAL,
+            "coefficient a of a Hopf point: the largest y of its cycles is |a| sqrt("
+            f"|{parameter}/special_at - 1|) to leading order; a < 0: the cycles are at smaller {parameter}",
         ),
         *(
-            real(f"special_{name}_error", "1", f"estimate of the relative error of special_{name}", SPECIAL)
+            real(f"special_{name}_error", "1", f"estimate of the relative error of special_{name}")
             for name in ("period", "tip_y_max", "amplitude_coefficient")
         ),
-        integer("special_branch", "number of the branch, from 1", SPECIAL),
+        integer("special_branch", "number of the branch, from 1"),
         integer(
             "special_point",
             "number, from 1, of the branch_point before the special point; 0: before the first of its branch",
-            SPECIAL,
         ),
-        word("special_reason", "reason for the end of the branch", END_REASONS, SPECIAL),
+        word("special_reason", "reason for the end of the branch", END_REASONS),
         integer(
             "special_meets",
             "at a symmetry breaking: number of the other branch that begins or ends there; -1: none",
-            SPECIAL,
         ),
         integer(
             "special_unstable_after",
             "at a Hopf point: number of unstable modes of the straight rod beyond it in the parameter",
-            SPECIAL,
         ),
     )
 
@@ -131,9 +122,9 @@ INCREASES = {"cycles": _has("point_count"), "special": _has("special_count"), "c
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
     options = config["branch"]
-    along = options["along"]
+    parameter = options["along"]
     variables = (
-        integer("hopf_count", f"number of Hopf points between start and stop of {along}"),
+        integer("hopf_count", f"number of Hopf points between start and stop of {parameter}"),
         integer(
             "branch_count",
             "number of branches that begin at Hopf points or symmetry breakings, each counted once",
@@ -142,11 +133,11 @@ def layout(config: dict[str, Any]) -> Layout:
         integer("special_count", "number of special points of all branches, stored or not"),
         integer("unstable_at_start", "number of unstable modes of the straight rod at start; -1: not known"),
         boolean("certified", "whether the list of Hopf points is proved complete"),
-        *followed_variables(along),
-        *special_variables(along),
+        *followed_variables(parameter),
+        *special_variables(parameter),
         SECONDS,
         STATUS,
     )
-    parameters = all_but(along, NONLINEAR_PARAMETERS)
+    parameters = all_but(parameter, NONLINEAR_PARAMETERS)
     variables = confirmed(variables, config, "Hopf points")
     return Layout(variables, {ALONG: options["cycles"], SPECIAL: options["special"]}, parameters)

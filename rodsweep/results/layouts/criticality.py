@@ -5,7 +5,7 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, confirmed, integer, real
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, along, confirmed, integer, real
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"
@@ -14,68 +14,58 @@ LANDAU = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
 ALONG = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
-"""Variables of a search for crossings that a search for Hopf points lacks: the growth rate is 0, no solve is
-needed."""
+"""Variables of a search for crossings that a search for Hopf points lacks: its growth rate is 0."""
 SIDES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
 """Stored numbers and words of the criticality: the sign of Re c; NaN if c is not known."""
 
 
-def side(name: str, decided_by: str, along: str) -> Variable:
+def side(name: str, decided_by: str) -> Variable:
     """Variable for the criticality of Hopf points; decided_by: name of the number whose sign decides."""
     meaning = (
         "supercritical: cycles exist where the pair is unstable, and are stable unless other modes are "
         "unstable; subcritical: cycles exist where the pair is stable; "
         f"undecided: the sign of {decided_by} is within its error"
     )
-    return Variable(name, "<f8", nan, "1", meaning, (along,), SIDES)
+    return Variable(name, "<f8", nan, "1", meaning, flags=SIDES)
 
 
-NORMAL_FORM = (
-    real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency", ALONG),
-    real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the Hopf point", ALONG),
-    real("growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair at the Hopf point", ALONG),
-    real("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF", ALONG),
-    real("landau_real", LANDAU, "real part of the Landau coefficient c, for tip y = Re Z", ALONG),
-    real("landau_imag", LANDAU, "imaginary part of the Landau coefficient c", ALONG),
-    real("landau_error", "1", "estimate of the relative error of the complex c", ALONG),
+NORMAL_FORM = along(
+    ALONG,
+    real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency"),
+    real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the Hopf point"),
+    real("growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair at the Hopf point"),
+    real("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF"),
+    real("landau_real", LANDAU, "real part of the Landau coefficient c, for tip y = Re Z"),
+    real("landau_imag", LANDAU, "imaginary part of the Landau coefficient c"),
+    real("landau_error", "1", "estimate of the relative error of the complex c"),
     real(
         "amplitude_coefficient",
         "L",
         "coefficient a: to leading order the largest tip y of the cycles is |a| sqrt(|F - F_H|/F_H); "
         "a < 0: cycles at F < F_H",
-        ALONG,
     ),
-    real(
-        "amplitude_coefficient_error",
-        "1",
-        "estimate of the relative error of amplitude_coefficient",
-        ALONG,
-    ),
+    real("amplitude_coefficient_error", "1", "estimate of the relative error of amplitude_coefficient"),
     real(
         "frequency_slope",
         SLOPE,
         "coefficient b: to leading order the angular frequency of the cycles is that of the Hopf point "
         "+ b (F - F_H)",
-        ALONG,
     ),
-    real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope", ALONG),
-    side("criticality", "landau_real", ALONG),
-    Variable("elements", "<i2", 0, "1", "spectral elements used", (ALONG,)),
-    Variable("order", "<i2", 0, "1", "polynomial order used", (ALONG,)),
+    real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope"),
+    side("criticality", "landau_real"),
+    Variable("elements", "<i2", 0, "1", "spectral elements used"),
+    Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-
 INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
     search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
-    names = [v.name for v in search]
-    after = names.index("unstable_after") + 1
+    after = [v.name for v in search].index("unstable_after") + 1
     ends = (
         real("F_end", FORCE, "largest F of the search"),
         integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
     variables = confirmed((*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points")
-    parameters = all_but("F", NONLINEAR_PARAMETERS)
-    return Layout(variables, {ALONG: config["criticality"]["crossings"]}, parameters)
+    return Layout(variables, {ALONG: config["criticality"]["crossings"]}, all_but("F", NONLINEAR_PARAMETERS))

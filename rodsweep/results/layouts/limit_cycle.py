@@ -11,11 +11,13 @@ from .variables import (
     ANGULAR,
     MESH,
     NEEDS_NEW_SOLVE,
+    NOT_KNOWN,
     SECONDS,
     STATUS,
     Increase,
     Layout,
     Variable,
+    along,
     has_covering,
     integer,
     optional_in,
@@ -63,13 +65,11 @@ CYCLE = (
     real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
     real("multiplier_error", "1", "estimate of the absolute error of multiplier"),
     real("trivial_multiplier_error", "1", "distance of the trivial Floquet multiplier from 1"),
-    real(
-        "multiplier_real",
-        "1",
-        "real part of a nontrivial Floquet multiplier, by descending modulus",
+    *along(
         "multiplier_number",
+        real("multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"),
+        real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
     ),
-    real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier", "multiplier_number"),
     real("least_stretch", "1", "smallest stretch h1 along the rod over a period"),
     integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH,
@@ -95,7 +95,6 @@ TRANSIENT = (
         for name, units in TIP_UNITS.items()
     ),
 )
-
 HOPF = "hopf"
 """Dimension of the Hopf points on the lines between the points of a file."""
 HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
@@ -105,61 +104,38 @@ PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 
 def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
-    """Hopf points of the straight rods between the points of a file with these parameters.
-
-    They are known before any point is solved.
-    """
-    places = (
-        real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF)
-        for name in HOPF_ALONG
-        if name in names
+    """Hopf points of straight rods between the points of a file with these parameters, known beforehand."""
+    at = "at the Hopf point"
+    kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
+    return (
+        *along(
+            HOPF,
+            word(
+                "hopf_along",
+                "parameter along which the Hopf point was found, between points of a line",
+                HOPF_ALONG,
+            ),
+            word("hopf_kind", f"change of stability {at} as the parameter hopf_along grows", kinds),
+            *(real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {at}") for p in HOPF_ALONG if p in names),
+            real("hopf_error", "1", f"estimate of the relative error of the parameter hopf_along {at}"),
+            real("hopf_frequency", ANGULAR, "angular frequency of the pair that crosses"),
+            real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency"),
+            integer(
+                "hopf_unstable_after",
+                f"number of modes with positive growth rate beyond the Hopf point{NOT_KNOWN}",
+            ),
+        ),
+        integer(
+            "hopf_lines",
+            "number of searched lines of points, which differ in one parameter of the straight rod",
+        ),
+        integer("hopf_lines_proved", "number of searched lines whose list of Hopf points is proved complete"),
     )
-    return (*HOPF_KIND, *places, *HOPF_NUMBERS)
 
-
-HOPF_KIND = (
-    word(
-        "hopf_along",
-        "parameter along which the Hopf point was found, between points of a line",
-        HOPF_ALONG,
-        HOPF,
-    ),
-    word(
-        "hopf_kind",
-        "change of stability at the Hopf point as the parameter hopf_along grows",
-        ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS),
-        HOPF,
-    ),
-)
-"""Kind of a Hopf point."""
-HOPF_NUMBERS = (
-    real(
-        "hopf_error",
-        "1",
-        "estimate of the relative error of the parameter hopf_along at the Hopf point",
-        HOPF,
-    ),
-    real("hopf_frequency", ANGULAR, "angular frequency of the pair that crosses", HOPF),
-    real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency", HOPF),
-    integer(
-        "hopf_unstable_after",
-        "number of modes with positive growth rate beyond the Hopf point; -1: not known",
-        HOPF,
-    ),
-    integer(
-        "hopf_lines", "number of searched lines of points, which differ in one parameter of the straight rod"
-    ),
-    integer("hopf_lines_proved", "number of searched lines whose list of Hopf points is proved complete"),
-)
-"""Errors and frequency of a Hopf point, and how many lines were searched."""
 
 NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
 """Increase of the data of a cycle; a point without a cycle is complete already."""
-INCREASES = {
-    "harmonics": NO_CYCLE,
-    "samples": NO_CYCLE,
-    "shapes": NO_CYCLE,
-    "nodes": NO_CYCLE,
+INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE) | {
     "transient": NEEDS_NEW_SOLVE,
     "time": Increase(NO_CYCLE.has, ("tau2", "tau1")),
 }

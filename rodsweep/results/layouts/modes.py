@@ -3,7 +3,7 @@
 from typing import Any
 
 from .spectrum import EACH_MODE, EACH_POINT, VECTORS, complex_pair
-from .variables import NEEDS_NEW_SOLVE, Layout, real
+from .variables import NEEDS_NEW_SOLVE, Layout, along, real
 
 MODE_FIELDS = (
     *VECTORS,
@@ -12,17 +12,17 @@ MODE_FIELDS = (
     *complex_pair("adjoint_Y", "1", "the adjoint mode's deflection, scaled to adjoint_Y(1) = 1"),
     *complex_pair("adjoint_Theta", "1", "the adjoint mode's angle, with the scale of adjoint_Y"),
 )
-MODE_NUMBERS = (
+MODE_NUMBERS = along(
+    "mode",
     real(
         "mode_error",
         "1",
         "largest error of the mode's fields, each relative to the largest value of its field",
-        "mode",
     ),
-    real("pairing_real", "1", "real part of the product of the adjoint mode and the mode", "mode"),
-    real("pairing_imag", "1", "imaginary part of the product of the adjoint mode and the mode", "mode"),
-    real("condition", "1", "condition number of the eigenvalue in the norm of the dissipation", "mode"),
-    real("condition_error", "1", "relative error of condition", "mode"),
+    real("pairing_real", "1", "real part of the product of the adjoint mode and the mode"),
+    real("pairing_imag", "1", "imaginary part of the product of the adjoint mode and the mode"),
+    real("condition", "1", "condition number of the eigenvalue in the norm of the dissipation"),
+    real("condition_error", "1", "relative error of condition"),
 )
 GROWTH = (
     real("numerical_abscissa", "1/tau2", "largest initial growth rate of any perturbation"),
@@ -31,13 +31,7 @@ GROWTH = (
     real("transient_time", "tau2", "time at which transient_growth is reached"),
     real("growth_error", "1", "relative error of transient_growth"),
 )
-
-INCREASES = {
-    "modes": NEEDS_NEW_SOLVE,
-    "nodes": NEEDS_NEW_SOLVE,
-    "growth": NEEDS_NEW_SOLVE,
-    "certify": NEEDS_NEW_SOLVE,
-}
+INCREASES = dict.fromkeys(("modes", "nodes", "growth", "certify"), NEEDS_NEW_SOLVE)
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -14,20 +14,14 @@ from .variables import (
     NEEDS_NO_SOLVE,
     Layout,
     Variable,
+    along,
     confirmed,
     integer,
     real,
     word,
 )
 
-CLASSES = (
-    (-1, "missing"),
-    (0, "monotone"),
-    (1, "oscillatory"),
-    (2, "flutter"),
-    (3, "undecided"),
-    (4, "crushed"),
-)
+CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
 """Behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
 """Reasons for the end of a curve of generalised Hopf points; the file stores the index in this list."""
@@ -42,22 +36,13 @@ CURVE_ENDS = {
 """Reasons for the end of a boundary curve; the file stores the index in this list."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """Kinds of boundary curves: double real eigenvalues, where oscillations set in or end, or Hopf points."""
-
-STABLE_STATES = (
-    (-1, "missing"),
-    (0, "neither_known"),
-    (1, "straight"),
-    (2, "cycle"),
-    (3, "both"),
-    (4, "undecided"),
-    (5, "crushed"),
-)
+STATES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
+STABLE_STATES = ((-1, "missing"), *enumerate(STATES))
 """Stable states of the rod at a point of a phase diagram with cycles."""
 CYCLE_SPECIAL = "cycle_special"
 """Dimension of the special points of the branches of a row."""
 MAX_CYCLE_SPECIAL = 64
 """Largest number of special points stored for a row; cycle_special_count counts all of them."""
-
 CYCLE_CURVE_ENDS = {
     "none": "the curve goes on",
     "edge": "the curve leaves the diagram",
@@ -69,14 +54,10 @@ CYCLE_CURVE_ENDS = {
     "closed": "the curve returns to its first point",
     "not_followed": "no further point was found",
 }
-"""Reasons for the end of a curve of folds of cycles or of torus points; the file stores the index in this
-list."""
-
-INCREASES = {
+"""Reasons for the end of a curve of folds of cycles or torus points; the file stores the index."""
+INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
     "crossings": CROSSINGS,
-    "certify": NEEDS_NEW_SOLVE,
     "curves": NEEDS_NO_SOLVE,
-    "cycles": NEEDS_NEW_SOLVE,
 }
 
 
@@ -120,43 +101,38 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
     """Variables that `phase_diagram.cycles` adds to every row: stable states, special points of cycles."""
     unit = PARAMETERS[line].unit
     at = "at the special point"
-    error = f"estimate of the absolute error of cycle_special_{line}"
-    amplitude = f"largest y of the tip {at}; 0 at a Hopf point"
+    error = "estimate of the relative error of cycle_special_"
     return (
         word("stable_states", "stable states of the rod", STABLE_STATES, line),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
-        word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS, CYCLE_SPECIAL),
-        real(f"cycle_special_{line}", unit, f"{line} {at}", CYCLE_SPECIAL),
-        real("cycle_special_error", unit, error, CYCLE_SPECIAL),
-        real("cycle_special_period", "tau2", f"period of the cycle {at}", CYCLE_SPECIAL),
-        real("cycle_special_tip_y_max", "L", amplitude, CYCLE_SPECIAL),
-        *(
-            real(
-                f"cycle_special_{name}_error",
-                "1",
-                f"estimate of the relative error of cycle_special_{name}",
-                CYCLE_SPECIAL,
-            )
-            for name in ("period", "tip_y_max")
+        *along(
+            CYCLE_SPECIAL,
+            word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
+            real(f"cycle_special_{line}", unit, f"{line} {at}"),
+            real("cycle_special_error", unit, f"estimate of the absolute error of cycle_special_{line}"),
+            real("cycle_special_period", "tau2", f"period of the cycle {at}"),
+            real("cycle_special_tip_y_max", "L", f"largest y of the tip {at}; 0 at a Hopf point"),
+            real("cycle_special_period_error", "1", f"{error}period"),
+            real("cycle_special_tip_y_max_error", "1", f"{error}tip_y_max"),
         ),
     )
 
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables that `phase_diagram.cycles` adds from all rows, by name: curves of folds and torus points."""
-    along = "cycle_curve_point"
+    at = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
-        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", along),
-        word("cycle_curve_kind", kind, SPECIAL_KINDS, along),
-        real(f"cycle_curve_{line}", force, f"{line} on the curve", along),
-        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", along),
-        real("cycle_curve_error", force, error, along),
-        real("cycle_curve_period", "tau2", "period of the cycle on the curve", along),
-        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", along),
-        *end_words("cycle_curve", CYCLE_CURVE_ENDS, along),
+        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", at),
+        word("cycle_curve_kind", kind, SPECIAL_KINDS, at),
+        real(f"cycle_curve_{line}", force, f"{line} on the curve", at),
+        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", at),
+        real("cycle_curve_error", force, error, at),
+        real("cycle_curve_period", "tau2", "period of the cycle on the curve", at),
+        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", at),
+        *end_words("cycle_curve", CYCLE_CURVE_ENDS, at),
         real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
              f"curve, in units of the axis of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
@@ -175,23 +151,22 @@ def end_words(curve: str, reasons: Iterable[str], along: str) -> tuple[Variable,
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables of a phase diagram from all rows, by name: boundary curves and folds."""
-    along = (line, row)
     kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
-    units = {name: PARAMETERS[name].unit for name in along}
+    units = {name: PARAMETERS[name].unit for name in (line, row)}
     force = PARAMETERS["F"].unit
     error = "estimate of the error of fold_"
     variables = (
         integer("curve_number", "number of the curve, from 1", "curve_point"),
         word("curve_kind", kind, CURVE_KINDS, "curve_point"),
-        *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in along),
+        *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in units),
         real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
         *end_words("curve", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
         word("fold_kind", kind, CURVE_KINDS, "fold"),
-        word("fold_of", "parameter that has an extremum along the curve at the fold", along, "fold"),
-        *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in along),
-        *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in along),
+        word("fold_of", "parameter that has an extremum along the curve at the fold", units, "fold"),
+        *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in units),
+        *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
         real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
         real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range "
@@ -206,29 +181,24 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables that `phase_diagram.criticality` adds, by name: sign of Re c on Hopf curves, and zeros."""
-    along = (line, row)
-    units = {name: PARAMETERS[name].unit for name in along}
+    units = {name: PARAMETERS[name].unit for name in (line, row)}
     error = "estimate of the error of bautin_"
     variables = (
-        side("curve_criticality", "Re c", "curve_point"),
+        *along("curve_point", side("curve_criticality", "Re c")),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
-        integer("bautin_curve", "number of the curve on which the generalised Hopf point lies", "bautin"),
-        integer(
-            "bautin_curve_point",
-            "number, from 1, of the curve_point before the generalised Hopf point",
+        *along(
             "bautin",
+            integer("bautin_curve", "number of the curve on which the generalised Hopf point lies"),
+            integer(
+                "bautin_curve_point", "number, from 1, of the curve_point before the generalised Hopf point"
+            ),
+            *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0") for name in units),
+            *(real(f"bautin_{name}_error", units[name], f"{error}{name}") for name in units),
+            real("bautin_frequency", ANGULAR, "angular frequency of the pair at the generalised Hopf point"),
+            real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair"),
+            real("bautin_growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair"),
+            real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c"),
         ),
-        *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0", "bautin") for name in along),
-        *(real(f"bautin_{name}_error", units[name], f"{error}{name}", "bautin") for name in along),
-        real(
-            "bautin_frequency",
-            ANGULAR,
-            "angular frequency of the pair at the generalised Hopf point",
-            "bautin",
-        ),
-        real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair", "bautin"),
-        real("bautin_growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair", "bautin"),
-        real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c", "bautin"),
         integer(
             "bautin_unlocated", "number of sign changes of Re c along Hopf curves that could not be located"
         ),

@@ -3,7 +3,7 @@
 The task modes shares the variables.
 """
 
-from math import nan
+from dataclasses import replace
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
@@ -54,18 +54,12 @@ ESTIMATED = (
 )
 """Meaning of `certified` in a file of arms that vary along their length."""
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
+SHARED_TIME = "time spent on the point, or its share of the time of a stretch of points"
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
     CERTIFIED,
-    Variable(
-        "elements", "<i2", 0, "1", "number of spectral elements; 0: eigenvalues followed from a neighbour"
-    ),
-    Variable(
-        "order", "<i2", 0, "1", "polynomial order of the elements; 0: eigenvalues followed from a neighbour"
-    ),
-    Variable(
-        "seconds", "<f4", nan, "s", "time spent on the point, or its share of the time of a stretch of points"
-    ),
+    *(replace(v, long_name=f"{v.long_name}; 0: eigenvalues followed from a neighbour") for v in MESH),
+    replace(SECONDS, long_name=SHARED_TIME),
     STATUS,
 )
 """Variables of a point of the task spectrum, where eigenvalues may be followed from point to point."""
@@ -113,16 +107,8 @@ FORCE_CHANGES = (
     real("change_frequency", ANGULAR, "angular frequency of the modes that change", CHANGE),
 )
 """Forces at which rods start to oscillate, become unstable or stable again; located after the last point."""
-
-INCREASES = {
-    "modes": NEEDS_NEW_SOLVE,
-    "method": NEEDS_NEW_SOLVE,
-    "certify": NEEDS_NEW_SOLVE,
-    "vectors": NEEDS_NEW_SOLVE,
-    "nodes": NEEDS_NEW_SOLVE,
-    "follow": NEEDS_NEW_SOLVE,
-    "longitudinal": NEEDS_NO_SOLVE,
-}
+SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
+INCREASES = dict.fromkeys(SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS_NO_SOLVE}
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:

@@ -29,7 +29,6 @@ THRESHOLDS = (
     real("F_end", FORCE, "largest F of the search"),
     integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
-
 CROSSING_MEANINGS = {
     "none": "no crossing: the list has more room than crossings",
     "onset": "two real leading eigenvalues merge into a complex pair: oscillations set in",
@@ -61,10 +60,7 @@ def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
 
 
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of a search along `line`: crossings, completeness and cost.
-
-    at: name of the variable for the position of a crossing.
-    """
+    """Variables of a search along `line`; at: name of the variable for the position of a crossing."""
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to decide"
     return (

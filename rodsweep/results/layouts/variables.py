@@ -20,11 +20,9 @@ TYPED = "typed_unit"
 """Attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
 """Status of a point that has not been computed."""
-
 ANGULAR = "rad/tau2"
 """Unit of every dimensionless frequency. Frequencies are angular: the imaginary part of an eigenvalue, or 2
 pi/period. For an arm a second variable, with a name ending in `_hz`, has cycles per second."""
-
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "point": ("1", "row of the point list, from 1"),
     "mode": ("1", "order by descending growth rate; in a pair the positive frequency comes first"),
@@ -35,10 +33,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "branch_point": ("1", "order along all branches of a rod, branch by branch"),
     "special": ("1", "order along all branches of a rod, branch by branch"),
     "cycle_special": ("1", "order along the branches of a row, branch by branch"),
-    "cycle_curve_point": (
-        "1",
-        "number of the point on all curves of folds and torus points, curve by curve",
-    ),
+    "cycle_curve_point": ("1", "number of the point on all curves of folds and torus points, curve by curve"),
     "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),
     "change": ("1", "number of the change on the lines over F between the points, line by line"),
@@ -72,6 +67,24 @@ class Variable:
         """Whether the variable is 1 for yes and 0 for no."""
         return self.dtype == "|i1" and not self.flags and self.name != STATUS.name
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of the variable in a file."""
+        typed = {TYPED: self.typed} if self.typed else {}
+        flags = flag_attributes(self.flags) if self.flags else {}
+        return {"units": self.units, "long_name": self.long_name} | typed | flags
+
+
+def dimension_attributes(name: str) -> dict[str, Any]:
+    """Attributes of the coordinate of a dimension."""
+    return dict(zip(("units", "long_name"), DIMENSIONS[name], strict=True))
+
+
+def flag_attributes(flags: Iterable[tuple[int, str]]) -> dict[str, Any]:
+    """Attributes with the values and meanings of a word variable."""
+    values, meanings = zip(*flags, strict=True)
+    return {"flag_values": np.array(values, dtype="i1"), "flag_meanings": " ".join(meanings)}
+
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
     """Variable of floating-point numbers; NaN stands for a missing number."""
@@ -97,9 +110,19 @@ def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *ext
     return Variable(name, "|i1", fill, "1", long_name, extra, flags)
 
 
+def number_of(word: str, words: Iterable[tuple[int, str]]) -> int:
+    """Number that stands for a word."""
+    return next(number for number, known in words if known == word)
+
+
 def boolean(name: str, long_name: str) -> Variable:
     """Variable that is 1 where a statement holds, and 0 elsewhere."""
     return Variable(name, "|i1", 0, "1", long_name)
+
+
+def along(dimension: str, *variables: Variable) -> tuple[Variable, ...]:
+    """The variables, each with a value for every entry of a dimension."""
+    return tuple(replace(v, extra=(dimension,)) for v in variables)
 
 
 SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
@@ -146,8 +169,7 @@ class Increase:
     """Option whose larger value asks for more of every point, without further effect."""
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
-    """Function from stored records, (n,), and the stored value of the option to whether each is complete,
-    (n,)."""
+    """Function from stored records, (n,), and the option's stored value to whether each is complete, (n,)."""
     values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
@@ -162,7 +184,6 @@ NEEDS_NEW_SOLVE = Increase(lambda records, before: np.zeros(len(records), bool))
 """Increase for which every point must be solved again."""
 NEEDS_NO_SOLVE = Increase(lambda records, before: np.ones(len(records), bool))
 """Increase for which no point must be solved again, because the addition is computed besides the points."""
-
 Filled = tuple[Variable, NDArray[Any]]
 """A complete variable with values; `extra` names all dimensions."""
 
@@ -235,17 +256,12 @@ def is_linear(config: Mapping[str, Any]) -> bool:
     return all(each.get("law", "linear") == "linear" for each in stated)
 
 
-def confirmed(
-    variables: tuple[Variable, ...], config: Mapping[str, Any], listed: str
-) -> tuple[Variable, ...]:
-    """The variables, with the meaning of `certified` changed if no covering proves lists complete.
-
-    listed: noun for the entries of the list, such as "crossings".
-    """
+def confirmed(variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str) -> tuple[Variable, ...]:
+    """The variables; without a covering, `certified` says that counts confirm the list of the noun."""
     if has_covering(config):
         return variables
     meaning = (
-        f"whether counts of unstable modes confirm the list of {listed}; between the counts it rests on "
+        f"whether counts of unstable modes confirm the list of {noun}; between the counts it rests on "
         "slopes of the eigenvalues"
     )
     return with_meaning(variables, "certified", meaning)

@@ -61,10 +61,7 @@ class Journal:
         self._write(b"".join(part + zlib.crc32(part).to_bytes(4, "little") for part in parts))
 
     def close(self) -> None:
-        """Syncs the journal to disk, and deletes a journal without points.
-
-        A journal that was moved or deleted meanwhile is written again.
-        """
+        """Syncs the journal to disk, written again if it was moved; deletes it if it has no points."""
         empty = os.fstat(self.handle).st_size == self.head
         if not empty and not self._is_in_place():
             self._write_anew()

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER
+from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
-from ...config.arm.uncovered import UncoveredArm
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
 from ...model.arm.refusals import CRUSHED_FROM
@@ -58,7 +57,9 @@ def grid_of_arms(
     table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.varies else ()
     if "F" in table:
-        shares = _crushing_shares(arms) if builds else build.crushing_shares(table.get("taper", np.ones(1)))
+        shares = build.crushing_shares(table.get("taper", np.ones(1)))
+        if builds:
+            shares = _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
         coverage[(coverage == SLENDER) & crushed] = CRUSHED
     if (coverage != SLENDER).all():
@@ -75,11 +76,6 @@ def grid_of_arms(
 def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
     """A quantity of arms along the dimension of arms; NaN for arms without a valid rod."""
     return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
-
-
-def _crushing_shares(arms: Sequence[SlenderArm | None]) -> Array:
-    """Forces that crush arms, in units of k1, along the dimension of arms."""
-    return _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
@@ -114,10 +110,7 @@ def _force_of(
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
-    """Codes of points with those of a load relative to flutter, (arms, loads, replaced parameters) each.
-
-    flutter: F of flutter, which is the same for all loads.
-    """
+    """Codes of points with those of a load relative to flutter; flutter: its F, the same for all loads."""
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)
     return codes

@@ -69,8 +69,7 @@ class Chains:
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the chains with missing points."""
-        chains = (n for n in range(self.count) if missing[self.indices(n)].any())
-        return joined((n, n + 1) for n in chains)
+        return joined((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import inf, nan
 from typing import TypeAlias
 
+from ...config.arm.axes import UncoveredArm
 from ...config.arm.section import ArmSection
-from ...config.arm.uncovered import UncoveredArm
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import RELATIVE
@@ -20,10 +20,7 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """F of first flutter, with the likeliest drag: inf without flutter, NaN if the search fails.
-
-    failure: why the search fails, else empty.
-    """
+    """F of first flutter at the likeliest drag: inf without flutter, NaN if the search fails, and why."""
 
     F: float
     failure: str = ""
@@ -48,8 +45,7 @@ def rods_of_flutter(
     from ...verdict.relative import plane_rods
 
     shapes = ((arm, taper) for arm in _arms(section) for taper in tapers)
-    rods = (rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper))
-    return list(dict.fromkeys(rods))
+    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper)))
 
 
 def _arms(section: ArmSection) -> Iterable[SlenderArm]:

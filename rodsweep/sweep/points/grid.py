@@ -16,7 +16,7 @@ from ...model.arm.refusals import CRUSHED_FROM
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING, PARAMETERS, Range
 from ...model.rod import Rod
-from .arm_grid import FlutterOf, grid_of_arms
+from .arm_grid import grid_of_arms
 from .flutter_forces import FlutterForces, flutter_of_arm, flutter_of_rod, rods_of_flutter
 from .lists import read_points
 from .points import Points
@@ -45,7 +45,8 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         for name, column in axes.items():
             refuse_outside(PARAMETERS[name].allowed, name, column)
         try:
-            of_arm = _flutter_in(config, flutter)
+            known = flutter or {rod: flutter_of_rod(rod) for rod in flutter_rods(config)}
+            of_arm = partial(flutter_of_arm, known=known, build=config.stated_build)
             return grid_of_arms(parameters.arm, axes, config.names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
@@ -73,10 +74,7 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
 
 
 def flutter_rods(config: Config) -> list[Rod]:
-    """The different rods whose flutter the points of a config need; none unless a load is relative to it.
-
-    Raises InputError for an arm or a taper that is refused.
-    """
+    """The different rods whose flutter the points of a config need; InputError for a refused arm or taper."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
         return rods_of_flutter(config.parameters.arm, config.stated_build)
@@ -84,20 +82,10 @@ def flutter_rods(config: Config) -> list[Rod]:
     return rods_of_flutter(config.parameters.arm, config.stated_build, given.array().tolist())
 
 
-def _flutter_in(config: Config, known: FlutterForces | None) -> FlutterOf:
-    """Function from (arm, taper beside it) to first flutter, which is searched for where it is not known."""
-    if known is None:
-        known = {rod: flutter_of_rod(rod) for rod in flutter_rods(config)}
-    return partial(flutter_of_arm, known=known, build=config.stated_build)
-
-
 def refuse_outside(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
-    """Raises InputError for the first forbidden value of a parameter.
-
-    where, why: continue the sentence of the error.
-    """
+    """Raises InputError for the first forbidden value; where, why: continue the sentence."""
     bad = allowed.first_outside(values)
     if bad is not None:
         raise InputError(

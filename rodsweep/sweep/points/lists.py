@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...config.axes import words
-from ...config.values import as_number, overflows, short
+from ...config.values import cell_number, short
 from ...errors import InputError
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
@@ -18,8 +18,7 @@ from ...model.rod import Rod
 from .points import NEUTRAL
 
 LONGEST_LINE = 10_000
-"""Largest number of characters in a line of a CSV file; a longer line is refused before it fills the
-memory."""
+"""Largest number of characters in a line of a CSV file; a longer line could fill the memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> tuple[Array, ...]:
@@ -67,18 +66,13 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
-    """Numbers of a line of the file.
-
-    Raises InputError for a cell without a number, and for an impossible rod.
-    """
+    """Numbers of a line of the file; InputError for a cell without a number, or an impossible rod."""
     if len(row) != len(header):
         raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:
-            if "_" in cell or not cell.isascii() or overflows(cell):
-                raise ValueError
-            numbers.append(as_number(float(cell)))
+            numbers.append(cell_number(cell))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
     parameters: dict[str, Any] = {**NEUTRAL, **dict(zip(header, numbers, strict=True))}

@@ -4,6 +4,7 @@ Rods are made on demand: a grid takes the memory of the axes only.
 """
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,8 +18,7 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
-"""Values of parameters without a column. A combination impossible with neutral values is impossible with
-any."""
+"""Values of parameters without a column. What is impossible with neutral values is so with any."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,15 +103,11 @@ class Points:
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
         """Parameters at flat indices, (n,), by name, each (n,)."""
         places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
-        return {
-            name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)
-        }
+        each = zip(self.names, self.columns, places, strict=True)
+        return {name: column[place] for name, column, place in each}
 
     def rod(self, index: int, **beside: float) -> Rod:
-        """Rod at a flat index; parameters without a column are those of `beside`, or NEUTRAL.
-
-        Raises Crushed.
-        """
+        """Rod at a flat index, other parameters from `beside`, or NEUTRAL. Raises Crushed."""
         parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 
@@ -126,3 +122,35 @@ class Points:
     def build_of(self, index: int) -> Build:
         """Law and profile of the rod at a flat index."""
         return self.builds[index * len(self.builds) // self.count] if self.builds else self.build
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterLine:
+    """Points that differ in one parameter only, in the order of the sweep."""
+
+    name: str
+    """The parameter that varies."""
+    parameters: dict[str, float]
+    """Values of the fixed parameters, by name."""
+    x: Array
+    """Values of the varying parameter, shape (n,)."""
+    at: np.ndarray
+    """Flat indices of the points, shape (n,)."""
+
+
+def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
+    """Lines over a parameter in the order of their first points, without points where the parameter is inf.
+
+    columns: every parameter at every point, (points,).
+    """
+    x = columns[name]
+    others = [other for other in columns if other != name]
+    table = np.stack([columns[other] for other in others], axis=-1)
+    _, first, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
+    by_line = np.argsort(line.ravel(), kind="stable")
+    ends = np.cumsum(np.bincount(line.ravel()))
+    for number in np.argsort(first):
+        at = by_line[ends[number - 1] if number else 0 : ends[number]]
+        at = at[np.isfinite(x[at])]
+        fixed = dict(zip(others, table[first[number]].tolist(), strict=True))
+        yield ParameterLine(name, fixed, x[at], at)

@@ -1,10 +1,16 @@
-"""Ranges (first, end) of flat indices of points or chains, and sets of such indices."""
+"""Ranges (first, end) of flat indices of points or chains, sets of such indices, and shards of a sweep."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...errors import InputError
+
+BLOCKS_A_SHARD = 64
+"""Number of blocks of neighbouring units in a shard. Many blocks make shards equal in cost; more blocks would
+separate neighbours in the file of the shard."""
 IndexRange = tuple[int, int]
 """(first index, index after the last)."""
 
@@ -34,3 +40,36 @@ class IndexSet:
         """Whether an index is in the set; for an array of indices, a boolean array."""
         place = np.searchsorted(self.firsts, indices, side="right") - 1
         return indices < self.ends[place]
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """Part `number` of `of` parts; 1/1 is the whole sweep."""
+
+    number: int = 1
+    of: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.of}"
+
+    def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
+        """Ranges of this shard within the ranges `todo`: all `units` are dealt to the shards in turn."""
+        if self.of == 1:
+            return list(todo)
+        block = max(1, units // (self.of * BLOCKS_A_SHARD))
+        mine: list[IndexRange] = []
+        for start, stop in todo:
+            turn = start // block
+            turn += (self.number - 1 - turn) % self.of
+            while turn * block < stop:
+                mine.append((max(start, turn * block), min(stop, (turn + 1) * block)))
+                turn += self.of
+        return mine
+
+
+def shard_of(text: str) -> Shard:
+    """Shard of a text such as "2/8"; raises InputError for any wrong form."""
+    number, _, of = text.partition("/")
+    if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
+        return Shard(int(number), int(of))
+    raise InputError(f"--shard {text[:40]} is not of the form i/n with 1 <= i <= n")

@@ -133,17 +133,11 @@ class _Outcomes:
         return found, False
 
 
-def skipping_points_without_rod(solver: Solver, points: Points, layout: Layout) -> Solver:
-    """A solver that skips points without a rod; the variables of skipped points get fill values."""
-    if points.coverage is None or not points.coverage.any():
-        return solver
-    return _SkippingSolver(solver, points.coverage, points.failures, layout).solver()
-
-
 @dataclass(frozen=True, slots=True)
-class _SkippingSolver:
-    """A solver for points with and without rods. coverage: as in `Points`, (points,). failures: messages for
-    points whose status does not say all.
+class SkippingSolver:
+    """A solver that skips points without a rod, which get fill values.
+
+    coverage: as in `Points`, (points,). failures: messages for points whose status does not say all.
     """
 
     inner: Solver

@@ -44,9 +44,7 @@ MAY_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecide
 
 @dataclass(frozen=True, slots=True)
 class ArmMotion:
-    """Motion of an arm at n points, each (n, ...): frequency in 1/tau2, force F, amplitude of the tip in
-    L.
-    """
+    """Motion of an arm at n points, (n, ...): frequency in 1/tau2, force F, amplitude of the tip in L."""
 
     frequency: Array
     F: Array | None = None
@@ -201,9 +199,7 @@ class ArmValidity:
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
-        """A parameter at a point, shape (), or at n points, (n,); None if the points do not have the
-        parameter.
-        """
+        """A parameter at a point, shape (), or at n points, (n,); None if the points lack the parameter."""
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])

@@ -12,8 +12,15 @@ from ...model.rod import Rod
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ...results.layouts.variables import Filled
-from .cycles import row_specials, unstored_specials, with_hopf_ends
-from .records import bautin_curve_record, criticality_record, curve_record, cycle_curve_record
+from .records import (
+    bautin_curve_record,
+    criticality_record,
+    curve_record,
+    cycle_curve_record,
+    row_specials,
+    unstored_specials,
+    with_hopf_ends,
+)
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
@@ -45,8 +52,7 @@ class DiagramCurves:
     """Special points with cycles, by number of row, for rows solved in this process."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """Returns the row unchanged, and keeps the special points unless MAX_KEPT_ROWS rows are kept
-        already."""
+        """Returns the row unchanged, and keeps its special points, at most those of MAX_KEPT_ROWS rows."""
         if len(self.special) < MAX_KEPT_ROWS:
             self.special[number] = row.special
         return row
@@ -84,9 +90,7 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file. results: results of all wanted units, shapes as in
-        `TracedHalf`.
-        """
+        """All curves as variables of the file. results: of all wanted units, shapes as in `TracedHalf`."""
         plane = self.plane
         if plane is None:
             return []
@@ -193,8 +197,7 @@ class DiagramCurves:
         all_values = np.append(values, value_in_plane)
         space = BautinSpace(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
         curves: list[BautinCurve] = []
-        starts = [on_curve(found, value_in_plane) for curve in criticalities for found in curve.points]
-        for start in starts:
+        for start in [on_curve(found, value_in_plane) for curve in criticalities for found in curve.points]:
             # A curve may return to the plane: its further points need no curve of their own.
             if not any(lies_on(space, start, curve) for curve in curves):
                 curves.append(bautin_curve(space, start))

@@ -19,8 +19,7 @@ from ...model.rod import Rod
 from ...results.layouts.spectrum import FORCE_CHANGES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import Filled
-from ...sweep.points.lines import lines_over
-from ...sweep.points.points import Points
+from ...sweep.points.points import Points, lines_over
 
 MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points per read of eigenvalues; limits memory for large files."""
@@ -77,8 +76,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """The lines over F among the points of a list, yielded separately."""
-    count = points.count
-    w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(count, -1)
+    w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_over(points.by_name, "F"):
         if len(line.x) > 1:
@@ -105,18 +103,15 @@ def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
         tried = (onset_between(rods, (F[i], F[j]), here[i], here[j]) for i, j in onsets.get(number, ()))
         found = [next(filter(None, tried), None)]
         for i, j in changes.get(number, ()):
-            unstable = max(_growing(here[k], lines.unstable[number, k]) for k in (i, j))
+            counted = lines.unstable[number, [i, j]]
+            among_stored = np.count_nonzero(here[[i, j]].real > 0, axis=-1)
+            unstable = int(np.where(counted >= 0, counted, among_stored).max())
             found.append(stability_change_between(rods, (F[i], F[j]), here[i], here[j], unstable))
         for change in filter(None, found):
             named = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
             named |= {"error": change.error / abs(change.F) if change.F else change.error}
             named |= {"growth_rate": change.growth_rate, "frequency": change.frequency}
             yield {f"change_{name}": value for name, value in named.items()}
-
-
-def _growing(w: Complex, counted: int) -> int:
-    """Number of growing modes at a point: as counted, or, if unknown, among the stored modes, (modes,)."""
-    return int(counted) if counted >= 0 else int(np.count_nonzero(w.real > 0))
 
 
 Steps = NDArray[np.int64]

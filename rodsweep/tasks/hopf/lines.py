@@ -107,17 +107,10 @@ def hopf_variables(
     names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
 ) -> tuple[Filled, ...]:
     """Hopf points of all lines, line after line, as variables of a file with these parameters."""
-    rows = [
-        _row(line, crossing)
-        for line, transitions in zip(lines, found, strict=True)
-        for crossing in (transitions.crossings if transitions else ())
-    ]
-    counts = {
-        "hopf_lines": len(lines),
-        "hopf_lines_proved": sum(
-            transitions is not None and transitions.proved_to_the_end for transitions in found
-        ),
-    }
+    known = [(line, each) for line, each in zip(lines, found, strict=True) if each is not None]
+    rows = [_row(line, crossing) for line, each in known for crossing in each.crossings]
+    proved = sum(each.proved_to_the_end for _, each in known)
+    counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
         (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))
         for v in hopf_points_of(names)

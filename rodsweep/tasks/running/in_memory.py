@@ -14,9 +14,8 @@ from ...results.file.provenance import now
 from ...results.file.view import View
 from ...solve.backend.availability import require_solvers
 from ...solve.exclusive import solving
-from ...sweep.points.shards import Shard
-from .job import Job
-from .plan import plan_of
+from ...sweep.points.ranges import Shard
+from .job import Job, plan_of
 
 
 @solving
@@ -37,8 +36,7 @@ def solved_view(job: Job) -> View:
             record = solver.record(index, solver.solve(index))
             for name, array in flat.items():
                 array[index] = record[name]
-    shape = job.points.shape
-    values = {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}
+    values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in flat.items()}
     return view_in_memory(job, plan, values, {"started": started, "finished": now()})
 
 

@@ -1,4 +1,4 @@
-"""The job of a config file: everything a run needs except PETSc and MPI."""
+"""The job of a config file, everything a run needs except PETSc and MPI; and the plan of its result file."""
 
 import os
 from dataclasses import dataclass, replace
@@ -11,23 +11,25 @@ from numpy.typing import NDArray
 from ...config import Config, load_config
 from ...config.document.reading import canonical
 from ...errors import InputError
+from ...results.file import provenance
+from ...results.file.creation import Plan
 from ...results.layouts import LAYOUTS, layout_of
 from ...results.layouts.arm import at_points, in_si, quantities_of
 from ...results.layouts.variables import Filled, Layout
 from ...sweep.points.flutter_forces import FlutterForces
 from ...sweep.points.grid import grid_size, points_of
 from ...sweep.points.points import Points
+from ...sweep.points.ranges import Shard
 from ...sweep.points.stretches import StretchResult
 from .. import TASKS
-from ..arm.points import sharing_equal_rods, skipping_points_without_rod
+from ..arm.points import SkippingSolver, sharing_equal_rods
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
 LARGEST_FILE = 2**63 - 1
 """Maximum size of a file in bytes, and the largest number of a point."""
 BYTES_A_VALUE = 40
-"""Memory per value of an axis, in bytes, while a run is set up: four arrays of numbers; 33 to 36 were
-measured."""
+"""Memory per value of an axis, in bytes, while a run is set up: four arrays; 33 to 36 were measured."""
 LARGEST_RECORD = 100_000_000
 """Maximum size of a point's results in bytes; the results are held in memory and written at once."""
 
@@ -62,7 +64,10 @@ class Job:
         if self.config.parameters.arm is None:
             return solver
         once = sharing_equal_rods(self._in_si(solver), self.points, self.layout)
-        return skipping_points_without_rod(once, self.points, self.layout)
+        coverage = self.points.coverage
+        if coverage is None or not coverage.any():
+            return once
+        return SkippingSolver(once, coverage, self.points.failures, self.layout).solver()
 
     def _in_si(self, solver: Solver) -> Solver:
         """The solver, with results in SI units and the validity of the model added to every record."""
@@ -105,10 +110,7 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
 
 
 def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None = None) -> Job:
-    """The job of a config, with the YAML text. A file of points is searched relative to the folder of `path`.
-
-    flutter: as in `points_of`.
-    """
+    """The job of a config and its YAML text; a file of points is relative to the folder of `path`."""
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_A_VALUE > memory():
         raise InputError(
@@ -130,3 +132,47 @@ def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None 
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)
     return Job(path, config, text, points, TASKS[config.task](config, points))
+
+
+def plan_without_solver(config: Config, points: Points) -> Plan:
+    """Plan of a config on given points, without attributes and flags."""
+    return _plan(TASKS[config.task](config, replace(points, build=config.build)), canonical(config))
+
+
+def _plan(task: Task, resolved: dict[str, Any]) -> Plan:
+    return Plan(
+        points=task.points,
+        layout=layout_of(resolved),
+        coordinates=task.coordinates(),
+        constants=task.constants,
+        afterwards=task.afterwards,
+        config=resolved,
+        attributes={},
+        flags=(),
+        chains=task.chains,
+        stretches=task.stretches,
+    )
+
+
+def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
+    """Plan of the file that a run of the job, with these BLAS kernels, creates or continues."""
+    from ...solve.backend import petsc
+
+    attributes = {
+        "Conventions": "CF-1.8",
+        "title": job.name,
+        "task": job.config.task,
+        "time_unit": "tau2 = gamma2 L^4/k3",
+        "config": job.text,
+        "petsc_options": petsc.options(),
+        "shard": str(shard) if shard.of > 1 else "",
+        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
+        provenance.KERNELS: kernels,
+    }
+    versions = {f"{name}_version": value for name, value in petsc.versions().items()}
+    return replace(
+        _plan(job.task, job.resolved),
+        quantities=job.quantities,
+        attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
+        flags=tuple((int(s), s.name) for s in solver.statuses),
+    )

@@ -31,7 +31,6 @@ MAX_NOTES = 1000
 """Maximum number of exceptions written to the log per rank; a larger number would repeat one bug."""
 FAILED = "failed"
 """Status, in every task, of a point with an unforeseen exception in the solver."""
-
 Note = Callable[[Sequence[int], Exception], None]
 """Called with the flat indices of the failed points and their exception."""
 UnitNote = Callable[[str, Exception], None]

@@ -4,7 +4,6 @@ The points of the file are the centres of cells. A cell is hatched if the model 
 if no rod covers the arm.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -72,20 +71,13 @@ def draw_arm_map(request: FigureRequest) -> str:
             handles = [*handles, *_map(subplot, panel, view, (x, y), place)]
         else:
             handles = [*handles, *_lines(subplot, panel, view, x, place)]
-    covers = [
-        _cover(subplot, view, panel, (x, y), place) for subplot, panel in zip(drawn, panels, strict=True)
-    ]
-    style.legend_below(figure, [*_unique_entries(handles), *covers[0]], columns=3)
+    covers = [_cover(plot, view, panel, (x, y), place) for plot, panel in zip(drawn, panels, strict=True)]
+    entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # the first of equal ones
+    style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     banded = [DRAG] if not y and DRAG in first else []
     figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
-    return request.write(
-        figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(map(word, axes))}"
-    )
-
-
-def _unique_entries(handles: Sequence[Artist]) -> list[Artist]:
-    """Entries of a legend without repetitions; of equal labels the first entry stays."""
-    return list({str(handle.get_label()): handle for handle in reversed(handles)}.values())[::-1]
+    labels = " and ".join(panel.label for panel in panels)
+    return request.write(figure, f"{labels} over {' and '.join(map(word, axes))}")
 
 
 def can_draw(request: FigureRequest) -> bool:
@@ -125,11 +117,7 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
         handles.append(Line2D([], [], color="k", lw=1.4, label=panel.zero_label))
     style.scale(axes, "x", x)
     style.scale(axes, "y", y)
-    subplot = axes.get_subplotspec()
-    if subplot is None or subplot.is_last_row():
-        axes.set_xlabel(x_label)
-    if subplot is None or subplot.is_first_col():
-        axes.set_ylabel(y_label)
+    style.label_outer(axes, x_label, y_label)
     return handles
 
 
@@ -147,32 +135,21 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     style.scale(axes, "x", x)
     if name == DRAG:
         axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
-    subplot = axes.get_subplotspec()
-    if subplot is None or subplot.is_last_row():
-        axes.set_xlabel(label)
-    axes.set_ylabel(
-        panel.lines_label if sum(isinstance(each, Line2D) for each in handles) > 1 else panel.label
-    )
+    several = sum(isinstance(each, Line2D) for each in handles) > 1
+    style.label_outer(axes, label, panel.lines_label if several else panel.label)
     return handles
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """Draws the range of a number over the drags of the file as a band; returns the legend entry.
-
-    values: on the grid of points. Drags without a number are left out.
-    """
+    """Draws the range of a number on a grid over the drags of a file as a band; returns the legend entry."""
     if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
     drag = view.over.index(DRAG)
     whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(place) if i != drag)]
     low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
     axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
-    return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {_drag_of(view)})")]
-
-
-def _drag_of(view: View) -> str:
-    """Name of the drag drawn as a line."""
-    return DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
+    line = DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
+    return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line})")]
 
 
 def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
@@ -204,9 +181,7 @@ def _fixed(view: View, drawn: list[str]) -> str:
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:
             continue
-        if (
-            np.size(values) > 1 and name not in view.over
-        ):  # varies with other quantities, as a load relative to flutter
+        if np.size(values) > 1 and name not in view.over:  # varies with others, as a load relative to flutter
             continue
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
         texts.append(quantity_text(view, name, float(np.min(values))) + more)

@@ -37,13 +37,7 @@ def _of_thresholds(view: View) -> list[Panel]:
         lines[EVENTS[event]], unit = in_typed(view, typed, view.variables[f"{load}_{event}"], si)
     flutter = lines[EVENTS["hopf"]]
     return [
-        Panel(
-            f"{load} at flutter ({unit})",
-            flutter,
-            lines,
-            lines_label=f"{load} ({unit})",
-            empty_label="no flutter",
-        ),
+        Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),
     ]
 

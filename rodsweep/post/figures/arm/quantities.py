@@ -17,10 +17,8 @@ from ...summary.arm.arm import word
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 """Space between a number and a unit, at which no line of a figure breaks."""
-
 SAME_NUMBER = 1e-9
-"""Largest relative difference between a stored parameter and the same parameter computed from the arm
-again."""
+"""Largest relative difference between a stored parameter and the parameter computed from the arm again."""
 
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
@@ -62,8 +60,7 @@ def replaced(view: View, number: int) -> dict[str, float]:
         given["drag"] = DRAGS[int(given["drag"])]
     arm = view.config.get("parameters", {}).get("arm") or {}
     own = SlenderArm(**given, **{name: arm[name] for name in OF_MATERIAL if arm.get(name) is not None})
-    columns = view.point_columns
-    at = {name: float(columns[name][number - 1]) for name in view.parameters}
+    at = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
     if own.load:
         at.pop("F", None)
     return {

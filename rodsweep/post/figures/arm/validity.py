@@ -1,6 +1,7 @@
 """Validity of the model in figures of a rod: hatched cells where it does not apply, and a note."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,33 +13,23 @@ from ....results.file.view import View
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
-HATCH = "////"
-VALIDITY_HATCH_COLOUR = "0.6"
-"""Grey of the hatch where the model does not apply."""
+HATCHED: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
+"""Look of cells in which the model does not apply."""
 
 
 def add_validity(figure: Figure, views: Sequence[View]) -> None:
     """Hatches a figure of arms if its axes allow, and adds a note where the model does not apply."""
-    outside = [_outside(view) for view in views if "model_applies" in view.variables]
+    judged = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
+    outside = [np.asarray(values == Validity.does_not_apply) for values in judged]
     number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
     if not number:
         return
-    along = _varied(views[0]) if len(views) == 1 else []
+    is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
+    along = [name for name in views[0].parameters if len(views[0].axes[name]) > 1] if is_alone else []
     hatched = bool(along) and _hatch(figure, views[0], along, outside[0])
     where = "" if number == count else f" at {number} of {count} points"
     note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
-    before = figure.get_suptitle()
-    figure.suptitle(f"{before}\n{note}".strip())
-
-
-def _outside(view: View) -> np.ndarray:
-    """Mask of the points at which the model does not apply."""
-    return np.asarray(view.variables["model_applies"] == Validity.does_not_apply)
-
-
-def _varied(view: View) -> list[str]:
-    """Parameters of a grid with several values; empty for a list, and for the rows of a diagram."""
-    return [name for name in view.parameters if len(view.axes[name]) > 1] if view.is_grid else []
+    figure.suptitle(f"{figure.get_suptitle()}\n{note}".strip())
 
 
 def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
@@ -72,15 +63,7 @@ def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
     low, high = sorted(limits)
     for i in np.flatnonzero(there):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(
-            left,
-            right,
-            fc="none",
-            ec=VALIDITY_HATCH_COLOUR,
-            hatch=HATCH,
-            lw=0,
-            zorder=0 if which == "x" else 3,
-        )
+        hatch(left, right, zorder=0 if which == "x" else 3, **HATCHED)
     axes.set(**{f"{which}lim": limits})
 
 
@@ -88,14 +71,6 @@ def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
     """Hatches cells of a map, (nx, ny)."""
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(there):
-        axes.fill_between(
-            edges[0][[i, i + 1]],
-            *edges[1][[j, j + 1]],
-            fc="none",
-            ec=VALIDITY_HATCH_COLOUR,
-            hatch=HATCH,
-            lw=0,
-            zorder=3,
-        )
+        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **HATCHED)
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])

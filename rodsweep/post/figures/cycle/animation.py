@@ -36,8 +36,7 @@ OLDEST_GHOST = 0.2
 def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     """Writes one period of up to three cycles side by side, each in its own time; returns a description."""
     selection = chosen_cycles(view, points, SHAPES)
-    cycles = selection.cycles
-    frames = len(cycles[0].values["shape_x"])
+    frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:
         raise InputError(
             f"{view.path} holds {frames} shapes of a cycle, too few for an animation; "

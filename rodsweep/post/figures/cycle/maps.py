@@ -3,8 +3,8 @@
 The points of the file are the centres of the cells. Only the line of Hopf points is interpolated.
 """
 
-from collections.abc import Sequence
-from itertools import cycle
+from collections.abc import Iterator, Sequence
+from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
@@ -20,18 +20,21 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....config.arm.axes import MOVES
 from ....results.file.view import View
+from ....sweep.points.points import ParameterLine
+from ...hopf_points import LocatedChange, StoredChanges
 from ..style import (
     LABELS,
     colour_cells,
     heading,
+    is_logarithmic,
+    label_outer,
     legend_below,
     parameter_text,
     require,
     scale,
 )
-from .amplitudes.hopf_lines import hopf_lines
 from .amplitudes.hopf_marks import HOPF_SYMBOL
-from .point_map import PointMap, cell_edges, point_map
+from .point_map import PointMap, cell_edges, in_its_scale, point_map
 from .selection import CYCLE_WORDS, outcomes, shared_and_own_of_arms
 from .units import units_over
 
@@ -49,24 +52,17 @@ OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
 PANEL_POINTS = 250
 """Width of a panel, in points of print."""
 MARKER_SIZES = 1.0, 4.0
-"""Smallest and largest size, in points, of the open marker of an unstable cycle; it takes half a cell if it
-can."""
+"""Smallest and largest size, in points, of the open marker of an unstable cycle, otherwise half a cell."""
 CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
 ROW_ENTRIES = 6
 """Largest number of legend entries in a single row."""
-QUANTITIES = (
-    ("period", "viridis", True),
-    ("tip_y_max", "plasma", False),
-)
+QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 """(variable, colour map, whether colours are logarithmic for values over more than a decade) by panel."""
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
-    """Draws the period and the largest y of the tip, each with the line of Hopf points.
-
-    narrow: whether the panels are stacked.
-    """
+    """Draws the period and the largest y of the tip, with Hopf points; narrow: whether panels are stacked."""
     points = point_map(view)
     words = outcomes(view)[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
@@ -102,9 +98,7 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
     """Figure with panels that share axes: side by side, or if narrow stacked."""
-    apart = ConstrainedLayoutEngine(
-        wspace=0.0 if narrow else 0.06
-    )  # room for the label of the first colour bar
+    apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # room for the first colour bar's label
     figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
     shape = (count, 1) if narrow else (1, count)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
@@ -115,11 +109,7 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
     for axes in panels:
         scale(axes, "x", points.x)
         scale(axes, "y", points.y)
-        place = axes.get_subplotspec()
-        if place is None or place.is_last_row():
-            axes.set_xlabel(LABELS[points.names[0]])
-        if place is None or place.is_first_col():
-            axes.set_ylabel(LABELS[points.names[1]])
+        label_outer(axes, *(LABELS[name] for name in points.names))
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
@@ -132,7 +122,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
             continue
         colour, hatch = STATUS_LOOKS.get(word) or next(further)
         look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
-        for row, (bottom, top) in zip(cells, _pairs(cell_edges(points.y)), strict=True):
+        for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
             axes.broken_barh(_runs(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
     return handles
@@ -147,11 +137,6 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
     size = float(np.clip(PANEL_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
     axes.plot(points.x[column], points.y[row], ms=size, **look)
     return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
-
-
-def _pairs(values: Array) -> list[tuple[float, float]]:
-    """Each value, shape (n,), with the next."""
-    return list(zip(values[:-1].tolist(), values[1:].tolist(), strict=True))
 
 
 def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
@@ -173,3 +158,36 @@ def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> li
         axes.plot(*line, path_effects=halo, **look)
     symbol = f" ${HOPF_SYMBOL}$" if "F" in points.names else ""
     return [Line2D([], [], label=f"Hopf points{symbol}", **look)] if lines else []
+
+
+def hopf_lines(points: PointMap, view: View) -> list[Array]:
+    """Contours of zero leading growth rate, each of shape (2, n): x, y.
+
+    The growth rate is interpolated linearly along each row, between points and Hopf points, and between rows
+    in the scale of y. A contour therefore passes through the located Hopf points of every row.
+    """
+    (x, x_back), (y, y_back) = (in_its_scale(values) for values in (points.x, points.y))
+    to_scale = np.log if is_logarithmic(points.x) else np.asarray
+    growth = view.variables["linear_growth_rate"].ravel()[points.at]
+    zeros = [to_scale(places) for places in _hopf_points(points, view)]
+    refined = np.unique(np.concatenate([x, *zeros]))
+    rows = []
+    for row, own in zip(growth, zeros, strict=True):
+        nodes, first = np.unique(np.concatenate([x, own]), return_index=True)
+        rows.append(np.interp(refined, nodes, np.concatenate([row, np.zeros_like(own)])[first]))
+    if not np.nanmin(rows) < 0 < np.nanmax(rows):
+        return []
+    # This figure is never drawn; matplotlib only computes the contours.
+    contours = Figure().subplots().contour(refined, y, np.ma.masked_invalid(rows), levels=[0.0])
+    lines = (line for line in contours.allsegs[0] if len(line) > 1)
+    return [np.array([x_back(line[:, 0]), y_back(line[:, 1])]) for line in lines]
+
+
+def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
+    """Yields the Hopf points of each row of a map, (n,)."""
+    name, other = points.names
+    stored = StoredChanges(view, name)
+    for value, at in zip(points.y, points.at, strict=True):
+        row = ParameterLine(name, points.shared | {other: float(value)}, points.x, at)
+        located = (change for change in stored.on(row) if isinstance(change, LocatedChange))
+        yield np.array([change.position for change in located if change.is_hopf])

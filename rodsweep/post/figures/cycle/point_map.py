@@ -36,10 +36,7 @@ def varied_parameters(view: View) -> list[str]:
 
 
 def point_map(view: View) -> PointMap:
-    """Points of a file as a map; raises InputError unless they form a full grid over two parameters.
-
-    The value inf has no place on an axis and is left out.
-    """
+    """Points of a file as a map, without values inf; raises InputError without a grid over two parameters."""
     varied = varied_parameters(view)
     if len(varied) != 2:
         raise InputError(f"{view.path}: a map is drawn over two parameters, and {_varying(varied)}")
@@ -58,9 +55,8 @@ def point_map(view: View) -> PointMap:
     without = [name for name, is_finite in zip(varied, finite, strict=True) if not is_finite.all()]
     left_out = f"; {' and '.join(without)} = inf has no place on an axis and is left out" if without else ""
     shared = {name: float(values[0]) for name, values in columns.items() if name not in varied}
-    return PointMap(
-        (varied[0], varied[1]), x[finite[0]], y[finite[1]], at[np.ix_(*finite[::-1])], shared, left_out
-    )
+    at = at[np.ix_(*finite[::-1])]
+    return PointMap((varied[0], varied[1]), x[finite[0]], y[finite[1]], at, shared, left_out)
 
 
 def is_map(view: View) -> bool:

@@ -147,10 +147,7 @@ def tip_path(axes: Axes, cycle: StoredCycle) -> None:
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
-    """Draws the follower force, along -e1 = -(cos theta, sin theta) at the tip, as an arrow toward the tip.
-
-    length: L in the units of x and y.
-    """
+    """Draws the follower force as an arrow toward the tip, along -(cos theta, sin theta); length: of L."""
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     along = -ARROW_LENGTH * length * e1
     return axes.quiver(

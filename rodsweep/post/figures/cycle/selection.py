@@ -111,10 +111,7 @@ def outcomes(view: View) -> NDArray[np.str_]:
 
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
-    """Cycles at the points chosen by the user, else the first cycles.
-
-    Raises InputError if the file lacks a needed variable, or a chosen point has no cycle.
-    """
+    """Cycles at the points chosen by the user, else the first cycles; InputError where the file has none."""
     _refuse_missing(view, needs)
     words = outcomes(view)
     _refuse_bad_points(view, points)
@@ -126,10 +123,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Se
 
 
 def chosen_traces(view: View, points: Sequence[int]) -> Selection:
-    """Motions of the points chosen by the user, else the first stored motions.
-
-    Raises InputError if the file has no motion, or a chosen point has none.
-    """
+    """Motions of the points chosen by the user, else the first stored ones; InputError without a motion."""
     _refuse_missing(view, TRACE)
     _refuse_bad_points(view, points)
     is_stored = np.isfinite(view.variables[TRACE[0]][..., -1].ravel())
@@ -161,7 +155,8 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     shared, own = shared_and_own_of_points(view, numbers)
     cycles = []
     for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
-        values = drawn_in.drawn(_values(view, number))
+        of_point = view.of_point(number - 1).items()
+        values = drawn_in.drawn({n: v for n, v in of_point if n not in (*view.parameters, "point")})
         period = float(values["period"])
         word = str(words[number - 1])
         cycles.append(StoredCycle(number, label, at, period, values, word, drawn_in))
@@ -183,12 +178,6 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
             raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
 
 
-def _values(view: View, number: int) -> dict[str, Array]:
-    """Variables of a point, in the shape at a point."""
-    of_point = view.of_point(number - 1).items()
-    return {name: values for name, values in of_point if name not in (*view.parameters, "point")}
-
-
 def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """(common parameters, parameters that distinguish each), as text."""
     shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
@@ -197,16 +186,11 @@ def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[st
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(common parameters of points, numbered from 1, parameters that distinguish each), as text.
-
-    For an arm the text has the arm's quantities.
-    """
+    """(common parameters, or an arm's quantities, of points from 1, those that distinguish each), as text."""
     if all(name in view.quantities for name in REQUIRED):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
-    return shared_and_own(
-        [{name: float(columns[name][number - 1]) for name in columns} for number in numbers]
-    )
+    return shared_and_own([{name: float(columns[name][n - 1]) for name in columns} for n in numbers])
 
 
 def shared_and_own_of_arms(

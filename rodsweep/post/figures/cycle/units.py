@@ -110,22 +110,15 @@ PLAIN_UNITS = CycleUnits()
 
 def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at points numbered from 1, with the same names at all points; dimensionless without an arm."""
-    at = np.array(numbers, int) - 1
-    (units,) = units_over([view], [at])
+    (units,) = units_over([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
     drawn = zip(units.length, units.time, units.energy, units.power, strict=True)
-    return [
-        CycleUnits(float(a), float(t), float(e), float(p), in_si=True, names=units.names)
-        for a, t, e, p in drawn
-    ]
+    return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in drawn]
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """Units of the points of each file, by index: factors (n,), with the same names in all files.
-
-    Dimensionless if any file has no arm.
-    """
+    """Units of the points of each file, by index: factors (n,), equal names. Plain if a file has no arm."""
     if not all(name in view.quantities for view in views for name in REQUIRED):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (

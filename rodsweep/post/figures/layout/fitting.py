@@ -16,8 +16,7 @@ from matplotlib.text import Text
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
-"""Smallest height of a panel, in units of the width; a flatter panel makes the figure grow, to keep curves
-legible."""
+"""Smallest height of a panel, in units of the width; for a flatter panel the figure grows."""
 MAP_ASPECT = 0.7
 """Smallest aspect ratio of a map, for which slopes matter along both axes."""
 STRIP_ASPECT = 0.25
@@ -108,7 +107,8 @@ def _break_texts(figure: Figure) -> bool:
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
         box = axes.get_window_extent()
-        rows = _rows(axes)
+        place = axes.get_subplotspec()
+        rows = 1 if place is None else ceil(place.get_gridspec().nrows / len(place.rowspan))
         centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
         across = min(centred, _pitch(axes, figure) - 2 * margin)
         down = max(figure.bbox.height / rows - 2 * margin, box.height)
@@ -121,12 +121,6 @@ def _break_texts(figure: Figure) -> bool:
             changed.append(break_lines(one.xaxis.label, across))
             changed.append(break_lines(one.yaxis.label, down, upright=True))
     return any(changed)
-
-
-def _rows(axes: Axes) -> int:
-    """Number of rows in the grid of a panel, in units of the rows that the panel spans."""
-    place = axes.get_subplotspec()
-    return 1 if place is None else ceil(place.get_gridspec().nrows / len(place.rowspan))
 
 
 def _pitch(axes: Axes, figure: Figure) -> float:
@@ -174,12 +168,6 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
     return new
 
 
-def _shape(axes: Axes) -> float:
-    """Height divided by width of a panel with equal scales, given by the data; 0 for other panels."""
-    scale = axes.get_aspect()
-    return 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
-
-
 def _spare_height(figure: Figure, min_aspect: float) -> float:
     """Height, in inches, by which the figure can shrink until a panel has the smallest height."""
     width, height = figure.get_size_inches()
@@ -192,7 +180,9 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
         ratios = np.asarray(place.get_gridspec().get_height_ratios())
         part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
-        shape = max(min_aspect, SLACK * _shape(axes))
+        scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
+        own = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
+        shape = max(min_aspect, SLACK * own)
         least = max(shape * room.width * width, label + MARGIN, MIN_HEIGHT)
         spare.append((room.height * height - least) / part)
     return min(spare)

@@ -10,8 +10,8 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ....sweep.points.lines import lines_over
-from ...hopf_points import BracketedChange, LocatedChange, StoredChanges
+from ....sweep.points.points import lines_over
+from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
 from .eigenvalues import spread
@@ -164,13 +164,6 @@ def threshold_text(threshold: LocatedChange) -> str:
     return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def edge_of_flutter(change: LocatedChange | BracketedChange) -> float:
-    """Force at the edge of the range in which the rod is known to be unstable, at a change of stability."""
-    if isinstance(change, LocatedChange):
-        return change.position
-    return change.high if change.kind == "hopf" else change.low
-
-
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     """Shades the range of the unstable rod, and draws lines at thresholds over F; returns the thresholds.
 
@@ -190,7 +183,15 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
     starts, ends = (
-        [edge_of_flutter(change) for change in found if change.kind == kind]
+        [
+            change.position
+            if isinstance(change, LocatedChange)
+            else change.high
+            if kind == "hopf"
+            else change.low
+            for change in found
+            if change.kind == kind
+        ]
         for kind in ("hopf", "restabilization")
     )
     if ends and (not starts or ends[0] < starts[0]):

@@ -11,13 +11,21 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ....arrays import Array
+from ....model.parameters import CRUSHING
 from ....results.file.view import View
-from ....results.layouts.phase_diagram import CLASSES
+from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS
+from ....results.layouts.variables import has_covering, number_of
 from ....wording import plural
 from ..lists import number_points, shared_parameters
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, parameter_text, require
 
+WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
+"""Words of each variable of a row, by number."""
+STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
+"""Kinds of crossings at which the stability of the straight rod may change."""
+ON_A_CHANGE = 1e-9
+"""Relative distance from a change below which a point lies on the change and belongs to neither side."""
 CLASS_COLOURS = {
     "missing": "white",
     "monotone": "#DCE9F5",
@@ -26,8 +34,7 @@ CLASS_COLOURS = {
     "undecided": "#666666",
     "crushed": "#BBBBBB",
 }
-"""Colours of classes: light to dark blue for stable rods, orange for unstable ones, distinct in grey as
-well."""
+"""Colours of classes: light to dark blue for stable rods, orange for unstable ones, distinct in grey."""
 STABLE_CLASS = {
     "onset": "oscillatory",
     "restabilization": "oscillatory",
@@ -79,11 +86,8 @@ def draw_class_bars(view: View) -> Figure:
 
 def class_entries(seen: set[str]) -> list[Patch]:
     """Legend entries of the drawn classes."""
-    return [
-        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word)
-        for word, colour in CLASS_COLOURS.items()
-        if word in seen
-    ]
+    shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
+    return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
@@ -113,8 +117,7 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
     values = view.point_columns[row]
     found: list[tuple[float, float, int]] = []
     for place in np.flatnonzero(np.isfinite(values)):
-        known = np.flatnonzero(kinds[place] > 0)
-        for this, following in pairwise(known):
+        for this, following in pairwise(np.flatnonzero(kinds[place] > 0)):
             word = _class_beyond(int(kinds[place, this]), int(after[place, this]))
             middle = (at[place, this] + at[place, following]) / 2
             found.append((float(middle), float(values[place]), numbers[word]))
@@ -171,3 +174,50 @@ def mark_thresholds_on_bars(
             x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
         )
     return handles
+
+
+def class_along_row(
+    view: View, variable: str, line: str, row: str, place: int, edges: Array
+) -> NDArray[np.intp]:
+    """Class of each pixel of a row, (n,), between the edges, (n + 1,); place: number of the row.
+
+    variable: `class` or `stable_states`. A pixel takes the class of the nearest computed point between the
+    same two changes of the row; without a point between the changes it is undecided.
+    """
+    x = view.variables[line]
+    classes = view.by_point(variable)[place]
+    changes = _changes(view, variable, line, place)
+    if variable == "class":
+        between, rows, found = classes_between_crossings(view, row)
+        own = rows == view.axes[row][place]
+        x = np.append(x, between[own])
+        classes = np.append(classes, found[own])
+    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > ON_A_CHANGE * np.abs(x)
+    pixels = (edges[1:] + edges[:-1]) / 2
+    piece_of_pixels = np.searchsorted(changes, pixels)
+    piece_of_points = np.searchsorted(changes, x)
+    found = np.full(len(pixels), number_of("undecided", WORDS[variable]), dtype=np.intp)
+    for piece in np.unique(piece_of_pixels):
+        own_pixels = piece_of_pixels == piece
+        own_points = decided & (piece_of_points == piece)
+        if own_points.any():
+            nearest = np.abs(x[own_points] - pixels[own_pixels][:, None]).argmin(axis=1)
+            found[own_pixels] = classes[own_points][nearest]
+    return found
+
+
+def _changes(view: View, variable: str, line: str, place: int) -> Array:
+    """Positions of the changes of a row, increasing, (m,)."""
+    names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
+    v = {name: view.by_point(name)[place] for name in names if name in view.variables}
+    at = v["crossing_at"]
+    kinds = v["crossing_kind"]
+    if variable == "class":
+        found = [at[kinds > 0]]
+    else:
+        found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
+    if line in CRUSHING and has_covering(view.config):  # elsewhere, or never, where arms vary
+        (other,) = set(CRUSHING) - {line}
+        found.append(view.point_columns[other][[place]])
+    changes = np.concatenate(found)
+    return np.unique(changes[np.isfinite(changes)])

@@ -31,8 +31,7 @@ CYCLE_MARKS = {
 }
 """Legend entry and marker, by kind, of special points of cycles on rows that lie on no curve."""
 ON_CURVE = 1e-3
-"""Largest distance of a point of a row from its curve, in units of the axis; chords of the curve are as far
-off."""
+"""Largest distance of a point of a row from its curve, in units of the axis, as chords of the curve have."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
 """Legend entry and colour of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
@@ -44,10 +43,7 @@ BESIDE_SIDES = "double eigenvalue", 1.0, ":"
 
 
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
-    """Draws the boundary curves and their folds; returns legend entries.
-
-    states: whether the diagram shows stable states, bounded by Hopf points only.
-    """
+    """Draws boundary curves and folds, or for `states` only Hopf points; returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
     handles = _sides(axes, view, line, row) if sides else []
@@ -103,17 +99,12 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         F = float(v["partial_beam_F"])
         k = float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
-        if not (_holds(v[line], x) and _holds(view.axes[row], y)):
+        if not (v[line][0] <= x <= v[line][-1] and view.axes[row][0] <= y <= view.axes[row][-1]):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
         handles.append(cross)
     return handles
-
-
-def _holds(values: Array, at: float) -> bool:
-    """Whether a value lies within an axis, (n,)."""
-    return bool(values[0] <= at <= values[-1])
 
 
 def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:

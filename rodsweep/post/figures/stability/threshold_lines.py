@@ -73,12 +73,8 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     handles = _kinds(tables)
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
         for forces, (_, _, _, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
-            _plot(
-                axes,
-                _abscissa(view, along),
-                forces,
-                {"marker": marker, "ms": 3, "lw": 1.2, "color": shade, "ls": line},
-            )
+            look = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade, "ls": line}
+            _plot(axes, _abscissa(view, along), forces, look)
         handles.append(Line2D([], [], color=shade, lw=2, label=style.name_in(view, views)))
     longest = max(views, key=lambda view: len(view.axes[along]))
     _label(axes, longest, along, tables)
@@ -99,8 +95,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
     drawn = []
     for panel, along, other in zip(panels, long, reversed(long), strict=True):
-        count = _some_lines(panel, view, along, other)
-        drawn.append(f"{count} of {len(view.axes[other])} values of {other}")
+        drawn.append(f"{_some_lines(panel, view, along, other)} of {len(view.axes[other])} values of {other}")
         if narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE)
     handles = [

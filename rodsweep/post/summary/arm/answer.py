@@ -171,8 +171,7 @@ def _solved(view: View, rods: np.ndarray) -> tuple[np.ndarray, list[str]]:
 
 def _with_status(view: View, *words: str) -> np.ndarray:
     """Mask of the points with one of these statuses, of the points' shape."""
-    values = [value for value, word in view.flags.items() if word in words]
-    return np.isin(view.variables["status"], values)
+    return np.isin(view.variables["status"], [value for value, word in view.flags.items() if word in words])
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
@@ -256,8 +255,7 @@ def _of_branches(view: View, rods: np.ndarray) -> list[str]:
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched", *unsolved]
     frequency = 1 / view.variables["period_si"][rods]
-    errors = frequency * view.variables["period_error"][rods]
-    rate = spanned(view, frequency, "Hz", errors=errors)
+    rate = spanned(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
     return [f"beats at {load_spanned(view, loads)}, at {rate}", *unsolved]
 
 

@@ -4,7 +4,6 @@ Loads and lengths are in the units typed by the user, frequencies in Hz, and all
 single unit.
 """
 
-import json
 import textwrap
 from collections.abc import Mapping, Sequence
 
@@ -74,8 +73,7 @@ def _largest(values: np.ndarray) -> float:
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
     """Quantities of an arm that vary among the points of a file, at every point, each (points,)."""
-    columns = quantities_at_points(view)
-    given = {name: column for name, column in columns.items() if name not in ARM_UNITS}
+    given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_UNITS}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
@@ -98,8 +96,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     unit = _unit(view, name)
-    si = ALL_QUANTITIES[name].unit
-    factor = written_in(1.0, unit, si) if unit else 1.0
+    factor = written_in(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:
@@ -117,8 +114,7 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     """Ranges of the variables stored in SI units, over the points in `done`, a mask of the points' shape."""
     if not view.quantities:
         return []
-    config = json.loads(view.attributes["config_resolved"])
-    si_variables = si_variables_of(LAYOUTS[view.task](config), config)
+    si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)
     shown = {
         own: v
         for own, v in si_variables.items()
@@ -137,11 +133,9 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
         errors = errors_in_si(view.variables, own, variable.name)[done]
         numbers = _numbers(factor * column, factor * errors)
         items.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
-    return (
-        ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in items))]
-        if items
-        else []
-    )
+    if not items:
+        return []
+    return ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in items))]
 
 
 def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
@@ -159,15 +153,8 @@ def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
 
 def wrapped(text: str) -> list[str]:
     """A text in indented lines of at most WIDTH characters, which do not break at no-break spaces."""
-    lines = textwrap.wrap(
-        text,
-        WIDTH,
-        initial_indent="  ",
-        subsequent_indent="  ",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-    return [line.replace("\xa0", " ") for line in lines]
+    lines = textwrap.wrap(text, WIDTH - 2, break_long_words=False, break_on_hyphens=False)
+    return ["  " + line.replace("\xa0", " ") for line in lines]
 
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
@@ -206,10 +193,7 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
-    """Line about thresholds of a kind in the arm's units; empty without an arm.
-
-    found: each threshold with the points of its line, (points,).
-    """
+    """Line about thresholds, each with the points of its line, (points,), in an arm's units, or empty."""
     if not view.quantities or not found:
         return []
     points = np.concatenate([points for _, points in found])

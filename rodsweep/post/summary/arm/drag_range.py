@@ -19,17 +19,15 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
     for name, values in numbers.items():
         spread = _largest_spread(values, arms)
         if np.isfinite(spread):
-            variations.append(f"{name} by {'up to ' * several}{_factor(spread)}")
+            by = f"{100 * (spread - 1):.2g} %" if spread < 2 else f"a factor of {spread:.3g}"
+            variations.append(f"{name} by {'up to ' * several}{by}")
     if not variations:
         return []
     return [f"the results of an arm vary over the {drags} drags of its range: {', '.join(variations)}"]
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
-    """Number of the arm at each point, (points,), equal where only the drag differs; or None.
-
-    None if the drag is not varied.
-    """
+    """Number of the arm at each point, (points,), equal where only the drag differs; None if none varies."""
     columns = given_columns(view)
     if columns.pop("drag", None) is None:
         return None
@@ -46,8 +44,3 @@ def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
         if len(own) > 1 and own.min() > 0:
             spreads.append(float(own.max() / own.min()))
     return float(np.nanmax(spreads)) if len(spreads) > 1 else np.nan
-
-
-def _factor(spread: float) -> str:
-    """A ratio as text: below 2 as an increase in percent, else as a factor."""
-    return f"{100 * (spread - 1):.2g} %" if spread < 2 else f"a factor of {spread:.3g}"

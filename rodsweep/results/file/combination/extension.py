@@ -28,7 +28,6 @@ from .identity import config_difference
 
 SAME_VALUE = 4 * np.finfo(float).eps
 """Largest relative difference of two values on an axis that counts as rounding."""
-
 Indices = NDArray[np.int64]
 """Flat indices of points, or places on an axis, (n,); -1 for no place."""
 
@@ -178,10 +177,7 @@ def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
 
 
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old point of a line, (n,), has the same points on the new axis.
-
-    count: number of values on the new axis.
-    """
+    """Whether the stretch of each old point, (n,), has the same points on an axis of `count` values."""
     at = np.arange(len(places))
     first = at // STRETCH_POINTS * STRETCH_POINTS
     same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)

@@ -15,7 +15,6 @@ import numpy as np
 from ....arrays import Array
 from ....config.axes import Axes
 from ....config.document.reading import config_of
-from ....config.values import Axis
 
 LONGEST_VALUE = 80
 """Largest number of characters of a value in a sentence."""
@@ -45,7 +44,8 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
         return config_difference(theirs["task"], ours["task"], "task")
     configs = config_of(theirs), config_of(ours)
     axes = [config.parameters.axes for config in configs]
-    same = {name for name in axes[0].keys() & axes[1].keys() if _same_axis(axes[0][name], axes[1][name])}
+    shared = axes[0].keys() & axes[1].keys()
+    same = {name for name in shared if np.array_equal(axes[0][name].array(), axes[1][name].array())}
     written = [
         {name: value for name, value in config["parameters"].items() if name not in same and name != "points"}
         for config in (theirs, ours)
@@ -66,17 +66,10 @@ def _kind(parameters: Axes) -> str:
     return "a list of points" if parameters.is_list else "a grid"
 
 
-def _same_axis(first: Axis, second: Axis) -> bool:
-    return np.array_equal(first.array(), second.array())
-
-
 def config_difference(
     theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
 ) -> str:
-    """First key in which two resolved configs differ, with both values; empty for equal configs.
-
-    places: names of the two sources in the sentence.
-    """
+    """First key in which configs of two named places differ, with both values; empty for equal configs."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:
             inner = f"{key}.{name}" if key else name

@@ -33,7 +33,6 @@ OF_ONE_FILE = (
 """Attributes that a joined file does not inherit."""
 ROUNDING_FACTOR = 1e3
 """Largest difference that counts as rounding, in units of the accuracy asked for."""
-
 Planner = Callable[[Config, Points], Plan]
 """Function that makes the plan of a config for given points, without attributes and flags."""
 
@@ -67,9 +66,10 @@ class JoinedFile:
             return
         stored = points_at(path, records["index"], self.plan.layout)
         for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
-            differs = ~_equal(stored[name], records[name])
-            if not differs.any():
-                continue
+            first = stored[name]
+            second = records[name]
+            same = (first == second) | (np.isnan(first) & np.isnan(second))
+            differs = ~same.reshape(len(same), -1).all(axis=1)
             for i in np.flatnonzero(differs):
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
@@ -96,12 +96,6 @@ class JoinedFile:
 def _place(points: Points, index: int) -> str:
     """Parameters of a point, in words."""
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
-
-
-def _equal(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Whether two variables, (n, ...), have equal bits or are both NaN, at each point, (n,)."""
-    same = (first == second) | (np.isnan(first) & np.isnan(second))
-    return same.reshape(len(same), -1).all(axis=1)
 
 
 def joined_file_of(sources: Sequence[Header], planner: Planner) -> JoinedFile:
@@ -193,8 +187,7 @@ def _axis(own: Axis, values: Array) -> Axis:
         spacings: tuple[Literal["linear", "log"], ...] = ("linear", "log") if values[0] > 0 else ("linear",)
         for spacing in spacings:
             start = float(values[0])
-            stop = float(values[-1])
-            axis = Axis(start=start, stop=stop, num=len(values), spacing=spacing)
+            axis = Axis(start=start, stop=float(values[-1]), num=len(values), spacing=spacing)
             if np.array_equal(axis.array(), values):
                 return axis
     return Axis(values=tuple(values.tolist()))

@@ -1,6 +1,5 @@
 """Cycles over a parameter: amplitudes of the tip as in the paper's Fig. 6, period and power."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -37,8 +36,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     """
     first = views[0]
     name = abscissa(first)
-    every = [np.arange(view.variables["status"].size) for view in views]
-    units = units_over(views, every)
+    units = units_over(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
     branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
     if len(branches) > len(BRANCH_LOOKS):
@@ -53,9 +51,8 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     shared, own = _names(branches, name)
     handles = _draw_branches(panels, branches, own, _file_words(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
-    marks = [
-        (point, colour) for branch, colour in zip(branches, colours, strict=False) for point in branch.hopf
-    ]
+    coloured = zip(branches, colours, strict=False)
+    marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
     handles += draw_laws(
         panels[1], [law for branch in branches for law in branch.laws], units[0].names[0] * units[0].in_si
@@ -104,9 +101,7 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
     """
     if len(views) == 1:
         return {views[0].path: ("", None)}
-    options = [
-        json.loads(view.attributes.get("config_resolved", "{}")).get("limit_cycle", {}) for view in views
-    ]
+    options = [view.config.get("limit_cycle", {}) for view in views]
     followed = all(
         chosen.get("start") == "neighbour" and chosen.get("along", LONGEST) in (name, LONGEST)
         for chosen in options
@@ -123,19 +118,15 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
     """Draws an arrow on each line in the direction of continuation."""
+    arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
         known = np.flatnonzero(np.isfinite(values))
         if len(known) < MIN_ARROW_POINTS:
             continue
         ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
         start, end = ends if upward else ends[::-1]
-        axes.annotate(
-            "",
-            (branch.x[end], values[end]),
-            (branch.x[start], values[start]),
-            arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14},
-            zorder=4,
-        )
+        tip, tail = (branch.x[end], values[end]), (branch.x[start], values[start])
+        axes.annotate("", tip, tail, arrowprops=arrow, zorder=4)
 
 
 def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:

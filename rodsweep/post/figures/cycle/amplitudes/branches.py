@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import View
-from .....sweep.points.lines import lines_over
+from .....sweep.points.points import lines_over
 from ....hopf_points import LocatedChange, StoredChanges
 from ..selection import CYCLE_WORDS, outcomes
 from ..units import PLAIN_UNITS, CycleUnits

@@ -49,21 +49,15 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
                 axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
         if len(places) == 1:
             equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
-            handles.append(
-                Line2D(
-                    [], [], color=colour, label=f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}", **DOTTED
-                )
-            )
+            label = f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}"
+            handles.append(Line2D([], [], color=colour, label=label, **DOTTED))
         elif places:
             handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
     return handles
 
 
 def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
-    """Draws the square-root laws as dashed curves; returns legend entries with formula and coefficients.
-
-    unit: unit of the coefficients; empty if it is L.
-    """
+    """Draws dashed square-root laws; returns legend entries with formula and coefficients in `unit`, or L."""
     handles = []
     for above in (True, False):
         on_side = [law for law in laws if law.above == above]

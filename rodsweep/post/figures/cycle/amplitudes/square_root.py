@@ -36,8 +36,7 @@ class SquareRootLaw:
     end: float
     """Last F at which the amplitude follows the law."""
     error: float
-    """Error of a, in L: twice the change by a third cycle, or by the extrapolation to F** without a third
-    cycle."""
+    """Error of a, in L: twice the change by a third cycle, or without one by the extrapolation to F**."""
 
     def curve(self, points: int = 100) -> tuple[Array, Array]:
         """(F, amplitude) from the Hopf point to the end, (points,) each; F is dense near the Hopf point."""
