@@ -69,6 +69,6 @@ def _inside(mesh: Elements, points: Array) -> Array:
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
-        share = np.clip((local + 1) / 2, ELEMENTS.inside, 1 - ELEMENTS.inside)
-        moved[inside] = mesh.edges[e] + mesh.lengths[e] * share
+        place = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
+        moved[inside] = np.clip(place, mesh.edges[e] + ELEMENTS.inside, mesh.edges[e + 1] - ELEMENTS.inside)
     return moved
