@@ -39,7 +39,7 @@ class LimitCycleOptions(Strict):
     transient: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Times from the start to the cycle at which the tip of the real motion is stored; 0 stores none."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
-    """Maximum number of periods; an unsettled point is then given up, or after 100 time steps per period."""
+    """Maximum number of periods; an unsettled point is then given up, or after 200 time steps per period."""
     time: Literal["tau2", "tau1"] = "tau2"
     """Unit of time; tau1 adds the period in units of tau1, and all else stays in tau2."""
 
