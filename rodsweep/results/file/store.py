@@ -161,16 +161,19 @@ class Store:
         additions: function from the open file to complete variables.
         """
         plan = self.plan
-        with disk_refusals(self.path, self._kept):
-            self._restore_if_gone()
+        self.restore()
         blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
         self._fold_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINTS, BACKUPS):
                 drop_files(self.journals, pattern)
 
-    def _restore_if_gone(self) -> None:
+    def restore(self) -> None:
         """Creates a moved or deleted file again; EnvironmentIncomplete if another file took its place."""
+        with disk_refusals(self.path, self._kept):
+            self._restore_if_gone()
+
+    def _restore_if_gone(self) -> None:
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():

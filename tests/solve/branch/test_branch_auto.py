@@ -19,7 +19,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point, point_at
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.following import BranchLimits, _at_range_end, _range_end
-from rodsweep.solve.branch.settling import due, refined
+from rodsweep.solve.branch.settling import measurement_due, refined
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -80,7 +80,7 @@ def branch_of_this(rod, kind, F):
             limits = BranchLimits([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500, NewtonWorkspace())
             edge = _range_end(here, limits, 0)
             return special, refined(_at_range_end(here, there, edge, limits), ACCURACY, edge)
-        here = refined(there, ACCURACY) if due(there) else there
+        here = refined(there, ACCURACY) if measurement_due(there) else there
 
 
 def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):

@@ -10,7 +10,7 @@ from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
-from rodsweep.discretization.at_jumps import carried, parted
+from rodsweep.discretization.at_jumps import carried, stresses_beside_jumps
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_on
 from rodsweep.discretization.plane import balance, balance_change
@@ -267,7 +267,7 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     form = on_mesh("swelling segments", F=40.0)
     x = 20.0 * np.random.default_rng(3).standard_normal(form.unknowns)
     S = form.stresses(x)
-    ((before, behind),) = parted(form.nodal, S)
+    ((before, behind),) = stresses_beside_jumps(form.nodal, S)
     (node,), (sides,) = form.nodal.jumps, form.nodal.sides
     both = list(zip(sides, (before, behind), strict=True))
     stresses = [stress(2, LocalSection(*side[:3]), *q) for side, q in both]
