@@ -200,6 +200,7 @@ def wrong_sentences(task, keywords):
     better = {name: value for name, value in keywords.items() if (name, value) != ("method", "integration")}
     fine = solved(task, better | {"accuracy": FINE[task]}) if task in FINE else view
     found = CHECKS[task](view, page, keywords, fine) + table_sentences(view, page, keywords)
+    found += failure_sentences(view, page)
     if view.quantities:
         found += arm_sentences(view, page, fine)
     wrong = [(line, why) for line, why in found if why]
@@ -221,6 +222,24 @@ def table_sentences(view, page, keywords):
             texts = (low, values.min()), (high, values.max())
             ends = ["" if text == "inf" and end == inf else as_stated(text, end) for text, end in texts]
             found.append((line, "; ".join(filter(None, (why, *ends)))))
+    return found
+
+
+FAILURE = re.compile(r"(\w+), as at ([^:]+): .+")
+
+
+def failure_sentences(view, page):
+    """The check of the example points of failures, which have this status; the solver says the reason."""
+    found = []
+    values = {word: value for value, word in view.flags.items()}
+    for line in page:
+        if not (match := FAILURE.fullmatch(line)):
+            continue
+        page.mark(line, match.span())
+        here = view.variables["status"].ravel() == values[match[1]]
+        for name, value in (pair.split(" = ") for pair in match[2].split(", ")):
+            here &= view.point_columns.get(name, float(value)) == float(value)
+        found.append((line, "" if here.any() else "no such point has this status"))
     return found
 
 
