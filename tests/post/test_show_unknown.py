@@ -190,5 +190,11 @@ def test_files_that_are_merged_keep_the_reasons_of_both():
     attributes = [{FAILURE_REASONS: text} for text in (one, f"{one}\n{other}")] + [{}]
     assert merged_history(attributes)[FAILURE_REASONS] == f"{one}\n{other}"
     assert FAILURE_REASONS not in merged_history([{}])
-    many = "\n".join(f"F={i}.0: failed {i}" for i in range(2 * MAX_FAILURE_REASONS))
+    assert (
+        united_reasons("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[FAILURE_REASONS].count(
+            "F="
+        )
+        == 1
+    )
+    many = "\n".join(f"F={i}.0: failed {'x' * i}" for i in range(2 * MAX_FAILURE_REASONS))
     assert len(united_reasons(many)[FAILURE_REASONS].splitlines()) == MAX_FAILURE_REASONS

@@ -36,7 +36,8 @@ def of_the_last_run(plan: Plan) -> dict[str, Any]:
 def reasons_of(contributions: Sequence[Contribution], before: Mapping[str, Any]) -> dict[str, str]:
     """Attribute with the reasons of failed points; before: attributes with the reasons of earlier runs."""
     found = "\n".join(failure for contribution in contributions for failure in contribution.failures)
-    return provenance.united_reasons(str(before.get(provenance.FAILURE_REASONS, "")), found)
+    # The newest examples first: an earlier one may be a point that has been computed anew.
+    return provenance.united_reasons(found, str(before.get(provenance.FAILURE_REASONS, "")))
 
 
 def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:

@@ -180,7 +180,7 @@ def _start(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def _start_eliminated(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`_start` of a minor from which another one is eliminated."""
+    """`_start` of theta^s or y^theta, from whose equation another minor is eliminated."""
     for i in range(STAGES):
         for lane in range(LANES):
             c = minor * LANES + lane

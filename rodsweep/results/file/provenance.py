@@ -1,6 +1,7 @@
 """Provenance of a result: versions, commit, hosts, times and BLAS kernels, as attributes of the file."""
 
 import platform
+import re
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
@@ -26,6 +27,8 @@ KERNELS = "blas_kernels"
 FAILURE_REASONS = "failure_reasons"
 """Attribute with an example point of each distinct reason for which points failed, in all runs, a line each:
 parameters, status and reason."""
+NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
+"""A number in a message; messages that differ only in numbers state one reason."""
 MAX_FAILURE_REASONS = 20
 """Largest number of reasons in a file."""
 KERNEL_NOT_RECORDED = "unknown"
@@ -62,12 +65,21 @@ def united_kernels(*several: Iterable[str]) -> str:
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
+def reason_of(line: str) -> str:
+    """The status and reason of a line `parameters: status reason`, its numbers left out."""
+    return NUMBER.sub("#", line.partition(": ")[2])
+
+
 def united_reasons(*several: str) -> dict[str, str]:
-    """The attribute FAILURE_REASONS of a file with the points of several, from their values; may be empty."""
-    lines = dict.fromkeys(line for reasons in several for line in reasons.splitlines())
-    return (
-        {FAILURE_REASONS: "\n".join(list(lines)[:MAX_FAILURE_REASONS])[:LONGEST_ATTRIBUTE]} if lines else {}
-    )
+    """The attribute FAILURE_REASONS of a file with the points of several, from their values; may be empty.
+
+    Of equal reasons the first is kept.
+    """
+    lines: dict[str, str] = {}
+    for line in "\n".join(several).splitlines():
+        lines.setdefault(reason_of(line), line)
+    kept = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:LONGEST_ATTRIBUTE]
+    return {FAILURE_REASONS: kept} if kept else {}
 
 
 def kernels_sentence(attribute: str) -> str:

@@ -1,18 +1,14 @@
 """Reasons why points failed, each with its first point, for the last lines of a run and for the file."""
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...results.file.provenance import MAX_FAILURE_REASONS
+from ...results.file.provenance import MAX_FAILURE_REASONS, reason_of
 from ...sweep.loop import Indices
 from ...sweep.points.stretches import StretchResult
-
-NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
-"""A number in a message; messages that differ only in numbers state one reason."""
 
 
 def parameters_in_words(values: Mapping[str, float]) -> str:
@@ -35,9 +31,8 @@ class FailureReasons:
         for at, outcome in _failed(index, result):
             if len(self.examples) >= MAX_FAILURE_REASONS:
                 return
-            reason = NUMBER.sub("#", outcome)
-            if reason not in self.examples:
-                self.examples[reason] = " ".join(f"{self.where(at)}: {outcome}".split())
+            line = " ".join(f"{self.where(at)}: {outcome}".split())
+            self.examples.setdefault(reason_of(line), line)
 
 
 def _failed(index: Indices, result: Any) -> Iterable[tuple[int, str]]:
