@@ -76,7 +76,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
-        found = transitions(Path(rod, "F"), 0.0, end, request.certify)
+        found = transitions(Path(rod, "F"), 0.0, end, request.certify, request.crossings)
         return judged(found, request.accuracy, request.certify, request.crossings)
 
     return solved(search, lambda cause: nothing_found(ThresholdStatus.failed, end, cause))
@@ -91,7 +91,7 @@ def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thr
 def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
     """The changes along a path with a status; the gravest problem determines the status."""
     status = ThresholdStatus.ok
-    if found.ended_early:
+    if found.ended_early and len(found.crossings) <= most:
         status = ThresholdStatus.ended_early
     elif not math.isnan(found.open_range[0]):
         status = ThresholdStatus.window_open

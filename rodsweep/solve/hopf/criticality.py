@@ -91,7 +91,8 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
-        found = _hopf_points(Path(replace(rod.linear, F=0.0), "F"), end, request.certify)
+        path = Path(replace(rod.linear, F=0.0), "F")
+        found = _hopf_points(path, end, request.certify, request.crossings)
         coefficients = tuple(
             _coefficients(rod, hopf, request) for hopf in found.crossings[: request.crossings]
         )
@@ -113,8 +114,8 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=COEFFICIENT.searches_kept)
-def _hopf_points(path: Path, end: float, certify: bool) -> Transitions:
-    return pair_crossings(path, 0.0, end, certify)
+def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
+    return pair_crossings(path, 0.0, end, certify, most)
 
 
 def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
@@ -145,7 +146,7 @@ def _judged(
         c.largest_error > request.accuracy for c in known
     )
     verdicts = {
-        CriticalityStatus.ended_early: found.ended_early,
+        CriticalityStatus.ended_early: found.ended_early and len(found.crossings) <= request.crossings,
         CriticalityStatus.coefficients_failed: bool(failures),
         CriticalityStatus.window_open: not math.isnan(found.open_range[0]),
         CriticalityStatus.list_full: len(found.crossings) > request.crossings,
