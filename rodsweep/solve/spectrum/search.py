@@ -35,8 +35,8 @@ class SearchSettings:
     resolved_share: float = 0.5
     """Fewest roots found on a mesh, in units of the requested modes, after which more eigenvalues are
     requested."""
-    max_meshes: int = 12
-    """Maximum number of attempts."""
+    max_meshes: int = 16
+    """Maximum number of attempts. Pulled rods with little rotational drag take most of them."""
     max_failures: int = 3
     """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
     no_progress: int = 2
