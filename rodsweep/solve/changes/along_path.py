@@ -182,9 +182,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
     )
 
 
-def _crossings(
-    problem: PathProblem, ends: tuple[float, float], certify: bool, most: float
-) -> AxisCrossings:
+def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
     """Crossings of a path: by the covering, or between counts for nonuniform arms, there up to `most`."""
     if isinstance(problem, UniformPath):
         return _covered(problem.path, *ends)

@@ -106,7 +106,7 @@ class CrossingSearch:
         self.place(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.found) > most:
-                intervals.stop_at(a, f"more than {most:g} crossings")
+                intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
                 continue
             try:
                 self._search(a, b, intervals)

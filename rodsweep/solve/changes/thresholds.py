@@ -38,8 +38,8 @@ class ThresholdStatus(PointStatus):
     failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,
-        "the search ends before the requested range, at a rod whose unstable modes could not be counted; the "
-        "list holds the changes up to this end, those beyond are not known; the message says why",
+        "the search ends before the requested range, at a rod whose unstable modes could not be counted, or "
+        "once the list is full; changes beyond this end are not known; the message says why",
     )
 
 
@@ -91,7 +91,7 @@ def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thr
 def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
     """The changes along a path with a status; the gravest problem determines the status."""
     status = ThresholdStatus.ok
-    if found.ended_early and len(found.crossings) <= most:
+    if found.ended_early:
         status = ThresholdStatus.ended_early
     elif not math.isnan(found.open_range[0]):
         status = ThresholdStatus.window_open

@@ -49,8 +49,8 @@ class CriticalityStatus(PointStatus):
     )
     ended_early = (
         9,
-        "the search ends before the requested force, at a rod whose unstable modes could not be counted; the "
-        "list holds the Hopf points up to this end, those beyond are not known; the message says why",
+        "the search ends before the requested force, at a rod whose unstable modes could not be counted, or "
+        "once the list is full; Hopf points beyond this end are not known; the message says why",
     )
 
 
@@ -146,7 +146,7 @@ def _judged(
         c.largest_error > request.accuracy for c in known
     )
     verdicts = {
-        CriticalityStatus.ended_early: found.ended_early and len(found.crossings) <= request.crossings,
+        CriticalityStatus.ended_early: found.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
         CriticalityStatus.window_open: not math.isnan(found.open_range[0]),
         CriticalityStatus.list_full: len(found.crossings) > request.crossings,
