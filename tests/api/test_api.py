@@ -20,8 +20,9 @@ from surveyed import only
 import rodsweep as rs
 from rodsweep.api import options
 from rodsweep.api.answers.picture import in_python
-from rodsweep.api.asking import job_from, tree_of, yaml_of
+from rodsweep.api.asking import job_from, tree_of
 from rodsweep.cli import commands
+from rodsweep.config.document.reading import yaml_of
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
