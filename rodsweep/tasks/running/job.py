@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +37,7 @@ LARGEST_RECORD = 100_000_000
 """Maximum size of a point's results in bytes; the results are held in memory and written at once."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Job:
     """A validated config with points and task."""
 
@@ -57,8 +58,9 @@ class Job:
         """The config's title, or else the name of the config's file."""
         return self.config.title or self.path.stem
 
-    @property
-    def resolved(self) -> dict:
+    @cached_property
+    def resolved(self) -> dict[str, Any]:
+        """The config with all defaults."""
         return canonical(self.config)
 
     @property
@@ -102,8 +104,9 @@ class Job:
             stretched=(stretches, together),
         )
 
-    @property
+    @cached_property
     def layout(self) -> Layout:
+        """Variables of the results."""
         return layout_of(self.resolved)
 
 
@@ -128,11 +131,12 @@ def job_of(
             f"{values * BYTES_A_VALUE / 1e9:.3g} GB, more than the {memory() / 1e9:.3g} GB of memory of this "
             "machine; use fewer values"
         )
+    count = grid_size(config)
     each = layout_of(canonical(config)).bytes_per_point
-    if grid_size(config) * each > LARGEST_FILE:
+    if count * each > LARGEST_FILE:
         raise InputError(
-            f"{path}: parameters make a grid of {grid_size(config):.6g} points, whose results take "
-            f"{grid_size(config) * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
+            f"{path}: parameters make a grid of {count:.6g} points, whose results take "
+            f"{count * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
             "fewer values"
         )
     if each > LARGEST_RECORD:
