@@ -225,7 +225,8 @@ def followed(accuracy: float) -> Answer:
     leader = followed_leader(path.at(forces[0] + 0.1), complex(near.real, abs(near.imag)), 1e-10)
     if leader is None:
         return None
-    return answer | {"leader": (leader.real, 1e-9 * abs(leader))}
+    w, _ = leader
+    return answer | {"leader": (w.real, 1e-9 * abs(w))}
 
 
 def changes_of(found: Thresholds) -> Answer:

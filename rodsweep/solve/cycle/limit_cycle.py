@@ -110,15 +110,15 @@ def _solve(
 ) -> Cycle:
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
-    form = StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
     if request.start == "hopf":
-        return _from_hopf(form, request, straight, stability, workspace)
+        return _from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
     found = None
     if neighbour is not None and along is not None:
+        form = StressForm(rod, neighbour.branch.orbit.form.mesh)
         with suppress(Unsolvable):
             found = followed_cycle(neighbour, form, along, request.accuracy, workspace)
     elif neighbour is None and not request.is_traced:
-        found = small_cycle(form, w, request, along, workspace)
+        found = small_cycle(_form_of_motion(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
         return _with_chain_state(cycle, found, neighbour, along, request.accuracy)
@@ -127,7 +127,7 @@ def _solve(
     if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
-    transient = Transient(form, stability, request, along, unstable, workspace)
+    transient = Transient(_form_of_motion(rod), stability, request, along, unstable, workspace)
     end = _from_motion(transient, request, neighbour)
     cycle = _after_motion(straight, transient, end, request)
     if decays:
@@ -137,6 +137,11 @@ def _solve(
         return cycle if end.around is None else _with_multipliers(cycle, end.around)
     cycle = _with_numbers(cycle, end.found, request)
     return _with_chain_state(cycle, end.found, None, along, request.accuracy)
+
+
+def _form_of_motion(rod: Rod) -> StressForm:
+    """The rod on the first mesh of its motion."""
+    return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
 
 
 def _after_motion(

@@ -7,7 +7,7 @@ limit by a rod near the limit. The exact leading eigenvalue decides, within the 
 from dataclasses import dataclass
 from math import isnan, nan
 
-from ...determinant.roots import ON_THE_AXIS, root_error
+from ...determinant.roots import ON_THE_AXIS
 from ...model.rod import Rod
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
@@ -71,11 +71,9 @@ def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest
 
     near: leading eigenvalue of a similar rod, followed to this rod if possible.
     """
-    followed = None
-    if near is not None and rod.standard:
-        followed = followed_leader(rod, near, request.accuracy)
+    followed = None if near is None else followed_leader(rod, near, request.accuracy)
     if followed is not None:
-        return StraightRod(followed, root_error(followed, rod.coefficients)[0])
+        return StraightRod(*followed)
     found = solve_spectrum(rod, request)
     if isnan(found.error_estimate[0]):
         return StraightRod(complex(nan, nan), nan, found.message)
