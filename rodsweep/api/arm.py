@@ -158,8 +158,8 @@ class Arm(SlenderArm):
             raise InputError(
                 f"{task} needs a load; give one by arm.replace(pressure='2 kPa'), or '1.2 of flutter'"
             )
-        data, messages = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
-        return Answer(repr(self), data, "; ".join(filter(None, (messages[0], self._plane))))
+        solved = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
+        return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
 
     @property
     def _plane(self) -> str:

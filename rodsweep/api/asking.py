@@ -9,7 +9,7 @@ import numpy as np
 
 from ..config.arm.section import ArmSection
 from ..config.document.call_arguments import in_sentences, unknown
-from ..config.document.reading import validated, with_files_read, yaml_of
+from ..config.document.reading import validated, with_files_read
 from ..config.document.refusals import nearest
 from ..config.material import MaterialSection
 from ..config.schema import Config
@@ -79,7 +79,7 @@ def known_load(arm: ArmKind) -> ArmKind:
 def job_from(tree: Tree) -> Job:
     """The validated job of a config tree; InputError, in the words of the command line, for bad input."""
     config = validated(with_files_read(tree, Path()))
-    job = job_of(Path(config.task), config, yaml_of(tree))
+    job = job_of(Path(config.task), config, tree)
     size = job.points.count * job.layout.bytes_per_point
     if size > memory():
         raise InputError(

@@ -1,8 +1,7 @@
-"""Results as xarray Datasets, equal for a file and for points solved in this process."""
+"""Result files as xarray Datasets, and Datasets in the form that figures and tables read."""
 
 import json
 import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,20 +14,11 @@ from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL, attribute_digests, variable_digest
-from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
-from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
+from ..results.file.validation import Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
-from ..results.layouts.variables import (
-    DIMENSIONS,
-    MISSING,
-    TYPED,
-    Filled,
-    Layout,
-    dimension_attributes,
-    flag_attributes,
-)
+from ..results.layouts.variables import DIMENSIONS, TYPED, Layout
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -63,16 +53,16 @@ def _opened(path: Path) -> xr.Dataset:
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
-    data = _ordered(data, header.layout, header.config)
+    data = ordered(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
             put_in(data[name].values, str(name), recent)
-        data = _sealed(data)
-    return _selectable(data)
+        data = sealed(data)
+    return selectable(data)
 
 
-def _selectable(data: xr.Dataset) -> xr.Dataset:
+def selectable(data: xr.Dataset) -> xr.Dataset:
     """Makes the quantities of an arm selectable along an axis, such as F by pressure."""
     for name in ALONG:
         if name in data.coords and data[name].dims == (ALONG[name],) and name not in data.xindexes:
@@ -80,7 +70,7 @@ def _selectable(data: xr.Dataset) -> xr.Dataset:
     return data
 
 
-def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
+def ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
     places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
@@ -92,21 +82,21 @@ def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dat
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
     """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
-    sealed = json.loads(header.attributes[SEAL])["variables"]
+    digests = json.loads(header.attributes[SEAL])["variables"]
     with reading(path):
         try:
             with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(reason_of(error)) from error
-        found = json.loads(_sealed(data).attrs[SEAL])["variables"]
-        for name, digest in sealed.items():
+        found = json.loads(sealed(data).attrs[SEAL])["variables"]
+        for name, digest in digests.items():
             if found.get(name) != digest:
                 raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
     return data
 
 
-def _sealed(data: xr.Dataset) -> xr.Dataset:
+def sealed(data: xr.Dataset) -> xr.Dataset:
     """Adds checksums. After xarray has written this Dataset to a file, readers recognise by the checksums
     that the file is complete."""
     variables = {
@@ -117,36 +107,6 @@ def _sealed(data: xr.Dataset) -> xr.Dataset:
     }
     digests = {"attributes": attribute_digests(data.attrs), "variables": variables}
     return data.assign_attrs({SEAL: json.dumps(digests)})
-
-
-def dataset_of(
-    plan: Plan, values: Mapping[str, np.ndarray], filled: tuple[Filled, ...], attributes: Mapping[str, Any]
-) -> xr.Dataset:
-    """The Dataset of solved points, as read from a file of `plan`.
-
-    values: variables of the layout, shape (points, own dimensions). filled: additional variables of the whole
-    file.
-    """
-    coordinates = _coordinates(plan)
-    variables = {}
-    for variable in plan.layout.variables:
-        dimensions = (*plan.dimensions, *variable.extra)
-        variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
-    for variable, array in filled:
-        data = array.astype(variable.dtype)
-        variables[variable.name] = (variable.extra, data, variable.attributes)
-        for name, extent in zip(variable.extra, data.shape, strict=True):
-            coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), dimension_attributes(name)))
-    variables["status"][2].update(flag_attributes(((MISSING, "missing"), *plan.flags)))
-    resolved = json.dumps(plan.config)
-    header = {
-        "program": PROGRAM,
-        "format": FORMAT,
-        "fingerprint": plan.fingerprint,
-        "config_resolved": resolved,
-    }
-    whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
-    return _selectable(_sealed(_ordered(whole, plan.layout, plan.config)))
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
@@ -172,20 +132,3 @@ def view_of(data: xr.Dataset, path: Path) -> View:
     variables = {str(name): array.values for name, array in data.variables.items()}
     typed = {str(name): str(v.attrs[TYPED]) for name, v in data.variables.items() if TYPED in v.attrs}
     return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.over, typed)
-
-
-def _coordinates(plan: Plan) -> dict[str, Any]:
-    """Coordinates of the points and of the other dimensions."""
-    points = plan.points
-    found: dict[str, Any] = {}
-    if not points.axes:
-        rows = np.arange(1, points.count + 1, dtype="<i4")
-        found["point"] = (("point",), rows, dimension_attributes("point"))
-    for name, column in () if points.over else points.by_name.items():
-        found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
-    for variable, values in plan.quantities:
-        found[variable.name] = (variable.extra, values, variable.attributes)
-    for name, extent in plan.layout.extents.items():
-        coordinate = plan.coordinates.get(name, np.arange(1, extent + 1))
-        found[name] = ((name,), coordinate, dimension_attributes(name))
-    return found

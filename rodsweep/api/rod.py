@@ -177,8 +177,8 @@ class SoftRod:
         names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
         tree = tree_of(task, values | self._given_material | options)
-        data, messages = solve_here(job_from(tree), progress=progress)
-        return Answer(repr(self), data, messages[0])
+        solved = solve_here(job_from(tree), progress=progress)
+        return Answer(repr(self), solved, solved.messages[0])
 
     def __repr__(self) -> str:
         values = [f"{name}={value:.15g}" for name, value in self._values.items()]

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from ..errors import InputError
 from ..results.file.creation import Plan
@@ -17,16 +16,15 @@ from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
-from ..sweep.points.ranges import Shard
 from ..sweep.progress import ProgressReporter, Silent, in_notebook
 from ..sweep.stop import NoClaims, RankListener, StopRequest
 from ..tasks.protocol import AllPoints, Arrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
-from ..tasks.running.in_memory import blas, blas_kernels, view_in_memory
-from ..tasks.running.job import Job, plan_of
+from ..tasks.running.in_memory import blas, view_in_memory
+from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen import Note, guarded
 from ..watch import part, reporting_to
-from .dataset import dataset_of
+from .solved import SolvedPoints
 
 Display = ProgressReporter | Silent
 _warm: set[str] = set()
@@ -34,10 +32,8 @@ _warm: set[str] = set()
 
 
 @solving
-def solve_here(
-    job: Job, note: Note | None = None, progress: bool | None = None
-) -> tuple[xr.Dataset, list[str]]:
-    """(Dataset of all points, message of each point solved on its own).
+def solve_here(job: Job, note: Note | None = None, progress: bool | None = None) -> SolvedPoints:
+    """All points of a job.
 
     note: called with an exception that no solver foresees; the point then fails. Without `note` the exception
     is raised. progress: whether to display progress. Raises InputError and EnvironmentIncomplete if this
@@ -49,7 +45,7 @@ def solve_here(
     started = now()
     if note is not None:
         solver = guarded(solver, job.layout, note)
-    plan = plan_of(job, solver, Shard(), blas_kernels())
+    plan = plan_in_memory(job, solver.statuses)
     if job.config.task not in _warm:
         solver.warm_up()
         _warm.add(job.config.task)
@@ -65,10 +61,31 @@ def solve_here(
             raise
         finally:
             shown.close()
-        attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
-        attributes |= united_reasons("\n".join(reasons))
         filled = (*plan.constants(), *joint, *plan.afterwards(values))
-    return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
+    return SolvedPoints(
+        job=job,
+        plan=plan,
+        statuses=solver.statuses,
+        values=values,
+        filled=filled,
+        history=_history(started, reasons),
+        messages=messages,
+    )
+
+
+def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
+    """Attributes of a solve that ends now; reasons: why points failed."""
+    from ..solve.backend import petsc
+
+    return {
+        "petsc_options": petsc.options(),
+        "ranks": 1,
+        "hosts": socket.gethostname(),
+        "started": started,
+        "stopped": "",
+        **united_reasons("\n".join(reasons)),
+        "finished": now(),
+    }
 
 
 def _solved(

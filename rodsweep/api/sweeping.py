@@ -59,7 +59,7 @@ def sweep(
     if ranks is not None:
         refuse_unfit(tree)
         return _on_ranks(task, tree, ranks, strict, display(progress, None, task))
-    return solve_here(job_from(tree), None if strict else _warn, progress)[0]
+    return solve_here(job_from(tree), None if strict else _warn, progress).dataset
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:

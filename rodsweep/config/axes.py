@@ -1,6 +1,7 @@
 """The section `parameters` of a config: one axis per parameter, an arm, or a file of points."""
 
 import math
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model, model_validator
@@ -71,7 +72,7 @@ class Axes(LinearAxes):
         axes = self.arm.grid_axes() | self.given_axes
         return {name: axes[name] for name in self.of_arm if name in axes}
 
-    @property
+    @cached_property
     def given_axes(self) -> dict[str, Axis]:
         """Axes given by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, Axis)}

@@ -21,6 +21,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 _one = RLock()
+_signals = tuple(map(int, signal.valid_signals()))
+"""Numbers of all signals. Listing them takes longer than holding them."""
 
 
 def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
@@ -76,7 +78,7 @@ class HeldSignals:
         if current_thread() is not main_thread():
             return self
         try:
-            for number in signal.valid_signals():
+            for number in _signals:
                 handler = signal.getsignal(number)
                 if callable(handler):
                     self._handlers[number] = handler

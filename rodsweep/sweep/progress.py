@@ -3,6 +3,7 @@
 import os
 import sys
 import time
+from functools import cache
 from typing import Any
 
 from rich.console import Console
@@ -27,8 +28,9 @@ def on_terminal() -> bool:
     return under_mpi and os.path.realpath(launcher).startswith(("/dev/pts/", "/dev/tty"))
 
 
+@cache
 def in_notebook() -> bool:
-    """Whether the output appears in a cell of a notebook."""
+    """Whether the output of this process appears in cells of a notebook."""
     return Console().is_jupyter
 
 

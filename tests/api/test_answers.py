@@ -8,6 +8,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.solved import StoredResult
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.tables.contents import NAMES
 
@@ -114,7 +115,7 @@ def test_what_a_rod_has_not_is_nan_or_none_and_not_printed():
 def test_a_count_that_is_not_known_is_none_and_named_below():
     whole = rs.Rod(**ROD).spectrum().whole.copy(deep=True)
     whole["unstable_count"][...] = -1
-    answer = rs.Answer("rod", whole, "")
+    answer = rs.Answer("rod", StoredResult(whole), "")
     assert answer.unstable_count is None
     assert repr(answer).startswith("number of unstable modes not known: ")
     assert repr(answer.table()).endswith("\n\nnone: unstable_count")

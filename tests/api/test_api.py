@@ -19,9 +19,10 @@ from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import options
-from rodsweep.api.answers.picture import in_python
-from rodsweep.api.asking import job_from, tree_of, yaml_of
+from rodsweep.api.answers.picture import SolvedShapes, in_python
+from rodsweep.api.asking import job_from, tree_of
 from rodsweep.cli import commands
+from rodsweep.config.document.reading import yaml_of
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
@@ -411,10 +412,19 @@ def test_an_answer_is_drawn():
 def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_have():
     cycle = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4)
     assert "shape_x" not in cycle.data
-    assert rs.plot(cycle).shown.startswith("shapes through the cycle")
+    picture = rs.plot(cycle)
+    assert picture.shown.startswith("shapes through the cycle")
+    assert [*picture.choices["shapes"].solved] == [(1,)]
     assert rs.plot(cycle, what="energy").shown.startswith("energy, injection and dissipation")
     with pytest.raises(rs.InputError, match="no cycle that could be drawn; its points are: straight"):
         rs.plot(rs.Rod(F=5, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4))
+
+
+def test_a_picture_solves_shapes_once_however_often_it_is_drawn():
+    asked = []
+    shapes = SolvedShapes(lambda view, numbers: asked.append(numbers) or view)
+    assert shapes("file", [1, 2]) == shapes("file", (1, 2)) == "file"
+    assert asked == [[1, 2]]
 
 
 def test_a_branch_and_the_criticality_of_one_rod_are_drawn():

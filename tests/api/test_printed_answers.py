@@ -13,6 +13,7 @@ from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
 
 import rodsweep as rs
 from rodsweep.api.answers.frames import frame_of
+from rodsweep.api.solved import StoredResult
 from rodsweep.cli.checking import describe_job
 from rodsweep.post.headline.one_rod import Digits
 from rodsweep.post.headline.sentences import HEADLINES
@@ -140,7 +141,7 @@ def test_an_answer_that_failed_begins_with_the_meaning_of_its_status():
     for name in ("growth_rate", "frequency", "error_estimate"):
         whole[name][...] = np.nan
     whole["unstable_count"][...] = -1
-    answer = rs.Answer("rod", whole, "no factorization")
+    answer = rs.Answer("rod", StoredResult(whole), "no factorization")
     first, second, *_ = repr(answer).splitlines()
     assert first.startswith(f"spectrum: {answer.sentence[:60]}")
     assert "rod, spectrum: failed" in repr(answer)

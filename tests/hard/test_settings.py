@@ -222,10 +222,10 @@ def followed(accuracy: float) -> Answer:
         here = replace(found, eigenvalues=found.eigenvalues[i], error_estimate=found.error_estimate[i])
         answer |= eigenvalues_of(here, f"F = {F}")
     near = complex(found.eigenvalues[0, 0])
-    leader = followed_leader(path.at(forces[0] + 0.1), complex(near.real, abs(near.imag)), 1e-10)
+    leader = followed_leader(path.at(forces[0] + 0.1), np.array([complex(near.real, abs(near.imag))]), 1e-10)
     if leader is None:
         return None
-    return answer | {"leader": (leader.real, 1e-9 * abs(leader))}
+    return answer | {"leader": (leader.w.real, 1e-9 * abs(leader.w))}
 
 
 def changes_of(found: Thresholds) -> Answer:

@@ -1,11 +1,9 @@
 """Result of a task for one rod: variables as attributes, lists as pandas DataFrames."""
 
-import json
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
+from functools import cache, cached_property
 from math import prod
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -17,7 +15,7 @@ from ...post.tables import Tables
 from ...post.tables.columns import Column, column_of
 from ...post.tables.contents import POINTS
 from ...results.layouts import layout_of
-from ..dataset import view_of
+from ..solved import Result
 from .frames import frame_of, series_of
 from .printing import Printed, brief_html, brief_text, first_lines, whole_html, whole_text
 
@@ -50,25 +48,37 @@ class Answer:
     has the rod's parameters as dimensions of length 1, as in the file of a sweep.
     """
 
-    def __init__(self, rod: str, whole: xr.Dataset, message: str):
+    def __init__(self, rod: str, result: Result, message: str):
         self.rod = rod
-        self.whole = whole
         self.message = message
-        self.config: dict[str, Any] = json.loads(whole.attrs["config_resolved"])
+        self._result = result
+
+    @property
+    def whole(self) -> xr.Dataset:
+        """The Dataset with the rod's parameters as dimensions of length 1."""
+        return self._result.dataset
+
+    @cached_property
+    def data(self) -> xr.Dataset:
+        """The Dataset of the rod."""
+        points = ("point",) if "point" in self.whole.dims else layout_of(self.config).parameters
+        return self.whole.isel(dict.fromkeys(points, 0))
+
+    @cached_property
+    def config(self) -> dict[str, Any]:
         """The complete config of this answer, defaults included."""
-        points = ("point",) if "point" in whole.dims else layout_of(self.config).parameters
-        self.data = whole.isel(dict.fromkeys(points, 0))
-        self._tables = Tables(view_of(whole, Path(rod)))
+        return self._tables.view.config
+
+    @cached_property
+    def _tables(self) -> Tables:
+        return Tables(self._result.view)
 
     @property
     def status(self) -> StrEnum:
         """Outcome of the solve as a word. All possible words of the task are the members of its class."""
-        flags = self.data["status"].attrs
-        values = [int(value) for value in np.atleast_1d(flags["flag_values"])]
-        words = str(flags["flag_meanings"]).split()
-        return _statuses(str(self.data.attrs["task"]), tuple(words))(
-            words[values.index(int(self.data["status"]))]
-        )
+        view = self._tables.view
+        words = _statuses(view.task, tuple(view.flags.values()))
+        return words(view.flags[int(view.variables["status"].item())])
 
     @property
     def sentence(self) -> str:
@@ -92,19 +102,19 @@ class Answer:
         return self._tables.contents.tables[1:]
 
     def __getattr__(self, name: str) -> Any:
-        tables: Tables | None = self.__dict__.get("_tables")
-        if tables is None or name.startswith("__"):
+        if name.startswith("_"):
             raise AttributeError(name)
+        tables = self._tables
         if name in self.lists:
             columns = tables.items(name)
             return frame_of(columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None)
         for variable in tables.contents.of_points:
             if variable.name == name:
-                return _scalar(column_of(variable, np.ravel(self.whole[name].values)))
+                return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
         for each, variables in tables.contents.lists.items():
             if name in (*(v.name for v in variables), *tables.contents.dimensions(each)):
                 return self._along(each, name)
-        if name == "eigenvalues" and EIGENVALUE[0] in self.data:
+        if name == "eigenvalues" and EIGENVALUE[0] in tables.view.variables:
             return self.growth_rate + 1j * self.frequency
         if name in self.data.variables:  # a coordinate, or a number of the whole file
             values = self.data[name].values

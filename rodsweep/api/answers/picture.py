@@ -15,7 +15,7 @@ from ...config.document.call_arguments import in_sentences, unknown
 from ...config.values import short
 from ...errors import InputError
 from ...post.figures import draw
-from ...post.figures.request import KINDS, ROOTS, Drawing, Look
+from ...post.figures.request import KINDS, ROOTS, Drawing, Look, Shapes
 from ...post.figures.sections import choices_of, section
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
@@ -81,6 +81,22 @@ def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedShapes:
+    """Shapes of the cycles of a figure, which are solved once however often the figure is drawn."""
+
+    solve: Shapes = with_shapes
+    solved: dict[tuple[int, ...], View] = field(default_factory=dict)
+    """The file with shapes, by the numbers of its points."""
+
+    def __call__(self, view: View, numbers: Sequence[int]) -> View:
+        """The figure's file with the shapes of the cycles at the given points, numbered from 1."""
+        key = tuple(numbers)
+        if key not in self.solved:
+            self.solved[key] = self.solve(view, numbers)
+        return self.solved[key]
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +168,7 @@ def plot(
     values = choices_of(at)
     views = [section(view_for(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
-    choices |= {"look": Look(**look), "shapes": with_shapes}
+    choices |= {"look": Look(**look), "shapes": SolvedShapes()}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]

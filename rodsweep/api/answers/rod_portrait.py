@@ -110,10 +110,9 @@ def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> Ro
     answers: dict[str, Answer] = {}
 
     def solve(job: Job) -> View:
-        data, messages = solve_here(job, progress=progress)
-        view = view_of(data, Path(job.name))
-        answers[job.text] = Answer(rod, data, messages[0])
-        return view
+        solved = solve_here(job, progress=progress)
+        answers[job.text] = Answer(rod, solved, solved.messages[0])
+        return view_of(solved.dataset, Path(job.name))
 
     results = rod_results(request, solve)
     return RodPortrait(rod, results, answers)

@@ -94,8 +94,8 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
         t = math.exp(log_t[i])
         A2 = ((ahead[i] - behind[i]) / (2 * h)) ** 2 / (gamma2 * c2)
         B2 = F * F * alpha * c3 / gamma2
-        split = max(split, _squared_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
-        whole = max(whole, _squared_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
+        split = max(split, squared_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
+        whole = max(whole, squared_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
         if i > 0:
             bend += (u[i] - u[i - 1]) * (c3 + local[2, i - 1]) / 2
         here = ((t - alpha) * nu) ** 2 / (alpha * c2) * bend
@@ -107,7 +107,7 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
 
 
 @compiled
-def _squared_norm(A2: float, B2: float, e: float, drag: float) -> float:
+def squared_norm(A2: float, B2: float, e: float, drag: float) -> float:
     """The squared norm of [[A, B], [e/sqrt(drag), 0]]; inf where there is no drag."""
     if e == 0:
         return A2 + B2

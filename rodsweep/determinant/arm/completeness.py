@@ -81,6 +81,13 @@ def is_whole(known: Complex) -> Array:
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
 
+def last_point(line: float, hull: Hull, known: Complex) -> float:
+    """The largest |w| of a proof with the most points, from eigenvalues, (n,); inf if it is not tried."""
+    points = right_of_hull(line, hull.a, hull.c, POWERS[0])
+    tried = len(points) > 0 and points[-1] <= FARTHEST * np.abs(known).max()
+    return float(points[-1]) if tried else math.inf
+
+
 @compiled
 def proves(found: Remainder) -> bool:
     """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue

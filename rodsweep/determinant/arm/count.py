@@ -129,7 +129,8 @@ def count_right_of(
     nodes = 0
     total = 0.0
     try:
-        node_at(corner, divided)  # makes the elements for the largest |w|, which serve most others
+        # Elements for the largest |w| first: they serve most others.
+        determinant.level(size_of_count(line, determinant, hull), LEVELS_ABOVE)
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, divided)
             total += change
@@ -153,6 +154,12 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     except FloatingPointError:
         return False
     return True
+
+
+def size_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+    """The largest |w| at which a count right of a line evaluates D."""
+    corner = _corner(line, hull)
+    return abs(corner) + FIRST_RADIUS * determinant.length(corner)
 
 
 def _corner(line: float, hull: Hull) -> complex:

@@ -23,7 +23,7 @@ Extremes along the arm are looked up at points between the breaks, with `MARGIN`
 
 from collections.abc import Iterator, Sequence
 from functools import cache
-from math import inf, isfinite, sqrt
+from math import inf, isfinite, log, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,7 +32,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
-from .averaged_weight import TRIALS, averaged_regions
+from .averaged_weight import TRIALS, averaged_regions, squared_norm
 
 POINTS = 25
 """Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
@@ -193,12 +193,27 @@ def _constant(arms: Arms) -> Iterator[Hull]:
         return
     if not gamma3.all():
         return
-    alphas = _constants(g / nu)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        squares = (g - alphas[:, None] * nu) ** 2 / (gamma3 * alphas[:, None] * c2)
-    rigid = np.where(alphas[:, None] == 1, 0.0, inf)  # where c2 = 0 is g = nu
-    turns = np.where(c2 > 0, squares, rigid).max(axis=1)
-    yield Hull(sqrt(float(np.maximum(alphas * push, turns).min())), 0.0)
+    square = _least_square(_constants(g / nu), np.array(arms.local).reshape(6, -1), push)
+    yield Hull(sqrt(square), 0.0)
+
+
+@compiled
+def _least_square(alphas: Array, local: Array, push: float) -> float:
+    """The least squared norm of the matrix for a constant alpha, of those to try, (n,).
+
+    local: coefficients at all points, (6, points). push: the largest F^2 c3/gamma2.
+    """
+    least = inf
+    for alpha in alphas:
+        largest = alpha * push
+        for i in range(local.shape[1]):
+            nu, c2, _, _, gamma3, g = local[:, i]
+            if c2 > 0:
+                largest = max(largest, (g - alpha * nu) ** 2 / (gamma3 * alpha * c2))
+            elif alpha != 1:  # where c2 = 0 is g = nu
+                largest = inf
+        least = min(least, largest)
+    return least
 
 
 def _constants(ratio: Array) -> Array:
@@ -212,8 +227,8 @@ def _following(arms: Arms) -> Iterator[Hull]:
     """The regions for alpha = g/(nu + ...); no region unless g > 0 and alpha has no jumps."""
     if not (arms.local.g > 0).all() or not (arms.local.c2 > 0).all() or not arms.continuous:
         return
-    for factor in MIDDLES:
-        yield Hull(_norm(arms, factor), 0.0)
+    for square in _squares_following(arms.F.ravel(), arms.lengths, np.array(arms.local), _chebyshev()[0]):
+        yield Hull(sqrt(square), 0.0)
 
 
 def _averaged(arms: Arms) -> Iterator[Hull]:
@@ -228,21 +243,31 @@ def _averaged(arms: Arms) -> Iterator[Hull]:
         yield Hull(float(a[best]), float(c[best]))
 
 
-def _norm(arms: Arms, factor: float) -> float:
-    """The largest norm of the matrix along arms."""
-    nu, c2, c3, gamma2, gamma3, g = arms.local
-    F = arms.F
-    level = factor * np.abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
-    alpha = g / (nu + level)
-    slope = np.log(alpha) @ _chebyshev()[0].T * 2 / arms.lengths[:, None]
-    A = slope / np.sqrt(gamma2 * c2)
-    B = F * np.sqrt(alpha * c3 / gamma2)
-    e = g * level / (nu + level)  # g - alpha nu, which is 0 where gamma3 is
-    C = np.where(e == 0, 0.0, e / np.sqrt(np.where(e == 0, 1.0, gamma3 * alpha * c2)))
-    total = A**2 + B**2 + C**2
-    product = B * C
-    largest = (total + np.sqrt(np.maximum(total**2 - 4 * product**2, 0.0))) / 2
-    return sqrt(float(largest.max()))
+@compiled
+def _squares_following(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
+    """The largest squared norm of the matrix along arms for each of `MIDDLES`.
+
+    F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, POINTS). derivative: (POINTS, POINTS).
+    """
+    found = np.zeros(len(MIDDLES))
+    level = np.empty(POINTS)
+    log_alpha = np.empty(POINTS)
+    for m in range(len(MIDDLES)):
+        for arm in range(len(F)):
+            for piece in range(len(lengths)):
+                for i in range(POINTS):
+                    nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
+                    level[i] = MIDDLES[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    log_alpha[i] = log(g / (nu + level[i]))
+                for i in range(POINTS):
+                    nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
+                    alpha = g / (nu + level[i])
+                    slope = (derivative[i] * log_alpha).sum() * 2 / lengths[piece]
+                    A2 = slope * slope / (gamma2 * c2)
+                    B2 = F[arm] * F[arm] * alpha * c3 / gamma2
+                    e = alpha * level[i]  # g - alpha nu
+                    found[m] = max(found[m], squared_norm(A2, B2, e, gamma3 * alpha * c2))
+    return found
 
 
 @cache
@@ -262,17 +287,32 @@ def _by_clamp(arms: Arms) -> Iterator[Hull]:
     lengths = arms.lengths[:, None]
     along = c3 @ _chebyshev()[1].T * lengths / 2  # integrals of c3 from the start of each piece
     below = np.cumsum(along[..., -1:], axis=1) - along[..., -1:]
-    weights = (_chebyshev()[1][-1] * lengths / 2 * (below + along)).ravel()
-    nu = nu.ravel()
-    c2 = c2.ravel()
-    pull = (arms.F * arms.local.c2).ravel()
-    alphas = _constants(g / arms.local.nu)[:, None] if c2.all() else np.ones((1, 1))
-    with np.errstate(invalid="ignore"):
-        squares = np.where(c2 > 0, ((1 - alphas) * nu + pull) ** 2 / (alphas * c2), 0.0)  # g = nu + pull
-    integrals = (squares * weights).reshape(len(alphas), len(arms.F), -1).sum(axis=-1).max(axis=-1)
+    weights = _chebyshev()[1][-1] * lengths / 2 * (below + along)
+    alphas = _constants(g / nu) if c2.all() else np.ones(1)
+    along_arms = np.array([nu, c2, arms.F * c2, weights]).reshape(4, len(arms.F), -1)
+    integrals = _largest_integrals(alphas, along_arms)
     push = float((arms.F**2 * c3 / gamma2).max())
-    c = MARGIN * np.sqrt(np.maximum(integrals, 0.0)) / 2
-    a = np.sqrt(alphas[:, 0] * push)
+    c = MARGIN * np.sqrt(integrals) / 2
+    a = np.sqrt(alphas * push)
     best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
     if c[best] < LARGEST_SHARE:
         yield Hull(float(a[best]), float(c[best]))
+
+
+@compiled
+def _largest_integrals(alphas: Array, along_arms: Array) -> Array:
+    """The largest 4 c^2 of n arms for each constant alpha to try, (trials,).
+
+    along_arms: nu, c2, F c2 and weights of the integral along the arm, (4, n, points).
+    """
+    found = np.zeros(len(alphas))
+    for k in range(len(alphas)):
+        alpha = alphas[k]
+        for arm in range(along_arms.shape[1]):
+            total = 0.0
+            for i in range(along_arms.shape[2]):
+                nu, c2, pull, weight = along_arms[:, arm, i]
+                if c2 > 0:
+                    total += ((1 - alpha) * nu + pull) ** 2 / (alpha * c2) * weight  # g = nu + pull
+            found[k] = max(found[k], total)
+    return found

@@ -5,6 +5,7 @@ The algorithm is that of `rodsweep.determinant.roots`, with D from propagators.
 
 import cmath
 import math
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,10 @@ Mask = NDArray[np.bool_]
 ROUNDING_OF_CHAIN = 16 * ROUND_OFF
 """Relative error of an eigenvalue from the products of propagators, where minors in the middle of an arm are
 large against those at its tip; of 1000 eigenvalues of stepped arms against 19 digits it was 4e-15 at most."""
+
+MOST_ABOVE = 16.0
+"""Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four times
+as many as the roots need, and errors from rounding grow with their number."""
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
@@ -93,27 +98,29 @@ def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, co
     return middle + (root - D_w) / second, middle - (root + D_w) / second
 
 
-def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float) -> Roots:
+def roots(
+    raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float, largest: float = 0.0
+) -> Roots:
     """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
 
-    raw: eigenvalues of a mesh, complex, shape (n,). most_waves: largest |q| that the mesh resolves. Rounding
-    makes infinite eigenvalues finite; these lie outside the hull, beyond the mesh or far from every root.
+    raw: eigenvalues of a mesh, complex, shape (n,). most_waves: largest |q| that the mesh resolves. largest:
+    |w| at which D will be needed afterwards. Rounding makes infinite eigenvalues finite; these lie outside
+    the hull, beyond the mesh or far from every root.
     """
     first = np.where(np.abs(raw.imag) <= REAL_BELOW * np.abs(raw), raw.real + 0j, raw)
     first[~np.isfinite(raw)] = np.inf
     inside = np.array([_inside(w, hull) for w in first.tolist()], dtype=bool)
-    candidates = [w for w in first[inside].tolist() if determinant.wave_number(w) <= most_waves]
-    determinant.level(max(map(abs, candidates), default=0.0))  # its elements serve most of the others
-    error: Array = np.full(len(raw), math.inf)
-    length: Array = np.ones(len(raw))
     wave: Array = np.full(len(raw), math.inf)
     for i in np.flatnonzero(inside).tolist():
-        guess = complex(first[i])
-        wave[i] = determinant.wave_number(guess)
-        if wave[i] <= most_waves:
-            error[i] = root_error(guess, determinant)
-            length[i] = determinant.length(guess)
-    near = inside & (wave <= most_waves) & (error <= CLOSE_ROOTS * length)
+        wave[i] = determinant.wave_number(complex(first[i]))
+    resolved = inside & (wave <= most_waves)
+    _make_elements(determinant, max(map(abs, first[resolved].tolist()), default=0.0), largest)
+    error: Array = np.full(len(raw), math.inf)
+    length: Array = np.ones(len(raw))
+    for i in np.flatnonzero(resolved).tolist():
+        error[i] = root_error(complex(first[i]), determinant)
+        length[i] = determinant.length(complex(first[i]))
+    near = resolved & (error <= CLOSE_ROOTS * length)
     chosen = np.flatnonzero(near)
     start = first[chosen]
     error = error[chosen]
@@ -133,6 +140,14 @@ def roots(raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: flo
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen[kept], w, error, displacement, wave, axis, int(ahead))
+
+
+def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
+    """Makes elements for all |w| up to a size; those for the largest |w| serve them too, if it is near."""
+    if size < largest <= MOST_ABOVE * size:
+        with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
+            determinant.level(largest)
+    determinant.level(size)
 
 
 def _inside(w: complex, hull: Hull) -> bool:

@@ -146,6 +146,7 @@ def cpu_name() -> str:
     return platform.processor() or platform.machine()
 
 
+@cache
 def _version(name: str) -> str:
     try:
         return version(name)

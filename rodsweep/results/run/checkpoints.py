@@ -19,7 +19,7 @@ CHECKPOINTS = "chain-*"
 """Pattern of the names of checkpoints, unfinished files after a kill included."""
 UNIT_RESULTS = "unit-*"
 """Pattern of the names of results of units, unfinished files after a kill included."""
-CHECKPOINT_HEAD = b"rodsweep checkpoint 5\n"
+CHECKPOINT_HEAD = b"rodsweep checkpoint 6\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 1\n"

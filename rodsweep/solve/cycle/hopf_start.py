@@ -86,7 +86,7 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
     near: leading eigenvalue of a similar rod, from which the search starts.
     """
-    found = straight_rod(rod, near, LEADING)
+    found = straight_rod(rod, None if near is None else np.array([near]), LEADING)
     if isnan(found.error):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
     return found.w

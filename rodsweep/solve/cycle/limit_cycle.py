@@ -30,7 +30,7 @@ from .neighbour import Neighbour, followed_cycle
 from .second_state import second_state
 from .small_motion import decay, small_cycle
 from .status import CycleStatus
-from .straight_rod import StraightRod, straight_rod
+from .straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
 from .transient.motion_mesh import MOTION_MESH, motion_mesh
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
@@ -72,7 +72,7 @@ def solve_cycle(
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
-        stability = straight_rod(rod, start.leading if start else None)
+        stability = straight_rod(rod, start.eigenvalues if start else None)
         cycle = _solve(rod, request, stability, start, along, memory)
         return _with_second_state(rod, _checked_by_spectrum(cycle, stability), stability)
 
@@ -110,24 +110,24 @@ def _solve(
 ) -> Cycle:
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
-    form = StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
     if request.start == "hopf":
-        return _from_hopf(form, request, straight, stability, workspace)
+        return _from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
     found = None
     if neighbour is not None and along is not None:
+        form = StressForm(rod, neighbour.branch.orbit.form.mesh)
         with suppress(Unsolvable):
             found = followed_cycle(neighbour, form, along, request.accuracy, workspace)
     elif neighbour is None and not request.is_traced:
-        found = small_cycle(form, w, request, along, workspace)
+        found = small_cycle(_form_of_motion(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
-        return _with_chain_state(cycle, found, neighbour, along, request.accuracy)
+        return _with_chain_state(cycle, found, neighbour, along, request.accuracy, stability)
     by_mode = neighbour is None and request.tip is None
     decays = decay(rod, w, request.amplitude) if by_mode else ""
     if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
-    transient = Transient(form, stability, request, along, unstable, workspace)
+    transient = Transient(_form_of_motion(rod), stability, request, along, unstable, workspace)
     end = _from_motion(transient, request, neighbour)
     cycle = _after_motion(straight, transient, end, request)
     if decays:
@@ -136,7 +136,12 @@ def _solve(
     if end.found is None:
         return cycle if end.around is None else _with_multipliers(cycle, end.around)
     cycle = _with_numbers(cycle, end.found, request)
-    return _with_chain_state(cycle, end.found, None, along, request.accuracy)
+    return _with_chain_state(cycle, end.found, None, along, request.accuracy, stability)
+
+
+def _form_of_motion(rod: Rod) -> StressForm:
+    """The rod on the first mesh of its motion."""
+    return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
 
 
 def _after_motion(
@@ -161,13 +166,18 @@ def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> M
 
 
 def _with_chain_state(
-    cycle: Cycle, found: RefinedCycle, before: Neighbour | None, along: str | None, accuracy: float
+    cycle: Cycle,
+    found: RefinedCycle,
+    before: Neighbour | None,
+    along: str | None,
+    accuracy: float,
+    stability: StraightRod,
 ) -> Cycle:
     """The cycle with the data from which the next point of a chain starts; unchanged outside a chain."""
     if along is None:
         return cycle
-    leading = complex(cycle.linear_growth_rate, cycle.linear_frequency)
-    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, leading))
+    eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
+    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, eigenvalues))
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:

@@ -6,13 +6,13 @@ Newton's method is divided, on a coarser mesh. Mesh and calibrated errors pass a
 Everything follows from the neighbour alone, so that an interrupted chain resumes with the same content.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf, nan
 from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Complex
 from ...discretization.stress.form import StressForm
 from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
@@ -49,8 +49,8 @@ class NeighbourSettings:
 NEIGHBOUR = NeighbourSettings()
 
 
-UNKNOWN_EIGENVALUE = complex(nan, nan)
-"""Leading eigenvalue where it is not known."""
+UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
+"""Eigenvalues where they are not known."""
 Arrays = dict[str, Array]
 
 
@@ -58,14 +58,14 @@ Arrays = dict[str, Array]
 class Neighbour:
     """Data from which the next point of a chain starts: predictor of the cycle, and mesh.
 
-    calibration: errors of the mesh, perhaps outdated. leading: leading eigenvalue of the straight rod in
-    1/tau2, Im >= 0; NaN if not known.
+    calibration: errors of the mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2
+    with Im >= 0, (n,), the leading one first; NaN if not known.
     """
 
     branch: CyclePredictor
     next_mesh: OrbitMesh
     calibration: Calibration
-    leading: complex = UNKNOWN_EIGENVALUE
+    eigenvalues: Complex = field(default_factory=UNKNOWN_EIGENVALUES.copy)
 
     @classmethod
     def of(
@@ -74,11 +74,11 @@ class Neighbour:
         before: "Neighbour | None",
         name: str,
         accuracy: float,
-        leading: complex = UNKNOWN_EIGENVALUE,
+        eigenvalues: Complex = UNKNOWN_EIGENVALUES,
     ) -> "Neighbour":
         """Data of a cycle that was solved with its tangent. before: data of the previous point."""
         branch = predictor_from(found.fine, before.branch if before else None, name)
-        return cls(branch, *_next_mesh(found, before, name, accuracy), leading)
+        return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
 
     def arrays(self) -> Arrays:
         """All data as named arrays: orbit (N,), data (m, N + 1), places and orders (m,), and numbers."""
@@ -95,7 +95,7 @@ class Neighbour:
             "orders": branch.orders,
             "data": branch.data,
             "next_mesh": self.next_mesh.numbers,
-            "leading": np.array(self.leading),
+            "eigenvalues": self.eigenvalues,
         } | self.calibration.arrays()
 
     @classmethod
@@ -109,7 +109,7 @@ class Neighbour:
         form = StressForm(rod, mesh.grid)
         orbit = Orbit(form, symmetry, mesh.intervals, mesh.stages, arrays["orbit"])
         branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
-        return cls(branch, next_mesh, Calibration.from_arrays(arrays), complex(arrays["leading"]))
+        return cls(branch, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex))
 
 
 def _next_mesh(

@@ -9,10 +9,12 @@ from functools import cached_property
 from math import isfinite, sqrt
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import none_is_missing
+from ...determinant.arm.completeness import last_point, none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
-from ...determinant.arm.count import is_countable
+from ...determinant.arm.count import is_countable, size_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
@@ -107,12 +109,16 @@ class UniformProblem(TransverseProblem):
 
 
 class ArmProblem(TransverseProblem):
-    """The problem of an arm that varies along its length."""
+    """The problem of an arm that varies along its length.
+
+    to_prove: number of leading modes whose list will be proved complete, 0 without a proof.
+    """
 
     is_count_slow = True
 
-    def __init__(self, rod: Rod):
+    def __init__(self, rod: Rod, to_prove: int = 0):
         self.rod = rod
+        self._to_prove = to_prove
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
@@ -128,7 +134,16 @@ class ArmProblem(TransverseProblem):
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Eigenvalues of a mesh, (n,), refined to roots of D."""
-        return roots_of_arm(raw, self._determinant, self._hull, most_waves)
+        largest = self._largest_of_proof(raw[np.isfinite(raw)])
+        return roots_of_arm(raw, self._determinant, self._hull, most_waves, largest)
+
+    def _largest_of_proof(self, raw: Complex) -> float:
+        """The largest |w| of D that the proof will need, from eigenvalues of a mesh, (n,); 0 if unknown."""
+        if not self._to_prove or not self.bounded or len(raw) < self._to_prove:
+            return 0.0
+        line = min(float(np.sort(raw.real)[-self._to_prove]), 0.0)
+        size = last_point(line, self._hull, raw)
+        return size if isfinite(size) else size_of_count(line, self._determinant, self._hull)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
         known = () if found is None else (found.w, found.error)
@@ -142,6 +157,6 @@ class ArmProblem(TransverseProblem):
         return none_is_missing(line, found.w, found.error, self._determinant, self._hull)
 
 
-def problem_of(rod: Rod) -> TransverseProblem:
-    """The problem of a rod: uniform, or an arm."""
-    return UniformProblem(rod) if rod.standard else ArmProblem(rod)
+def problem_of(rod: Rod, to_prove: int = 0) -> TransverseProblem:
+    """The problem of a rod: uniform, or an arm; to_prove: see `ArmProblem`."""
+    return UniformProblem(rod) if rod.standard else ArmProblem(rod, to_prove)

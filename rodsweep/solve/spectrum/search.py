@@ -103,7 +103,7 @@ class Search:
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
-        self.problem = problem_of(rod)
+        self.problem = problem_of(rod, request.modes if request.certify else 0)
         self.request = request
         self.modes = request.modes
         self.with_vectors = request.vector_nodes > 0

@@ -1,7 +1,8 @@
 """Solves the points of a job in sequence in this process, and keeps the results in memory."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,14 @@ from threadpoolctl import ThreadpoolController
 from ...results.file.creation import Plan
 from ...results.file.provenance import now
 from ...results.file.view import View
+from ...results.layouts.variables import MISSING, Filled, dimension_attributes, flag_attributes
 from ...solve.backend.availability import require_solvers
 from ...solve.exclusive import solving
 from ...sweep.points.ranges import Shard
 from .job import Job, plan_of
+
+Stored = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
+"""Dimensions, values and attributes of a variable of a file."""
 
 
 @solving
@@ -37,31 +42,66 @@ def solved_view(job: Job) -> View:
             for name, array in flat.items():
                 array[index] = record[name]
     values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in flat.items()}
-    return view_in_memory(job, plan, values, {"started": started, "finished": now()})
+    view = view_in_memory(job, plan, values)
+    return replace(
+        view, attributes=view.attributes | plan.attributes | {"started": started, "finished": now()}
+    )
 
 
 def view_in_memory(
-    job: Job, plan: Plan, values: Mapping[str, np.ndarray], origin: Mapping[str, Any] | None = None
+    job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled] = ()
 ) -> View:
-    """Solved points in the form in which `show` reads a file.
+    """Solved points in the form in which `show` reads a file, with the attributes `task` and
+    `config_resolved` only.
 
-    values: variables of the layout, shape (points, own dimensions). origin: further attributes.
+    values: variables of the layout, shape (points, own dimensions). filled: further variables.
     """
-    columns: dict[str, np.ndarray] = dict(job.points.axes) or {"point": job.points.columns[0]}
-    columns |= {name: np.arange(1, extent + 1) for name, extent in plan.layout.extents.items()}
-    columns |= plan.coordinates
-    columns |= {variable.name: array for variable, array in plan.quantities}
-    resolved = {"config_resolved": json.dumps(plan.config)}
+    coordinates, variables = stored(plan, values, filled)
     return View(
         Path(job.name),
-        resolved | plan.attributes | dict(origin or {}),
-        columns | dict(values),
+        {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
+        {name: array for name, (_, array, _) in (coordinates | variables).items()},
         plan.layout.parameters,
-        dict(plan.flags),
+        {MISSING: "missing", **dict(plan.flags)},
         journalled=0,
         over=plan.layout.over,
         typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
     )
+
+
+def stored(
+    plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled]
+) -> tuple[dict[str, Stored], dict[str, Stored]]:
+    """(coordinates, variables) of the file of a plan with the given values, as for `view_in_memory`."""
+    coordinates = _coordinates(plan)
+    variables: dict[str, Stored] = {}
+    for variable in plan.layout.variables:
+        dimensions = (*plan.dimensions, *variable.extra)
+        variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
+    for variable, array in filled:
+        data = array.astype(variable.dtype)
+        variables[variable.name] = (variable.extra, data, variable.attributes)
+        for name, extent in zip(variable.extra, data.shape, strict=True):
+            coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), dimension_attributes(name)))
+    variables["status"][2].update(flag_attributes(((MISSING, "missing"), *plan.flags)))
+    return coordinates, variables
+
+
+def _coordinates(plan: Plan) -> dict[str, Stored]:
+    """Coordinates of the points and of the other dimensions."""
+    points = plan.points
+    found: dict[str, Stored] = {}
+    if not points.axes:
+        rows = np.arange(1, points.count + 1, dtype="<i4")
+        found["point"] = (("point",), rows, dimension_attributes("point"))
+    for name, column in () if points.over else points.by_name.items():
+        found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
+    for variable, values in plan.quantities:
+        found[variable.name] = (variable.extra, values, variable.attributes)
+    for name, extent in plan.layout.extents.items():
+        coordinate = plan.coordinates.get(name, np.arange(1, extent + 1))
+        found[name] = ((name,), coordinate, dimension_attributes(name))
+    return found
 
 
 @cache

@@ -1,7 +1,9 @@
 """The job of a config file, everything a run needs except PETSc and MPI; and the plan of its result file."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config import Config, load_config
-from ...config.document.reading import canonical
+from ...config.document.reading import canonical, yaml_of
 from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...results.layouts import LAYOUTS, layout_of
 from ...results.layouts.arm import at_points, in_si, quantities_of
 from ...results.layouts.variables import Filled, Layout
+from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
 from ...sweep.points.grid import grid_size, points_of
 from ...sweep.points.points import Points
@@ -34,23 +37,30 @@ LARGEST_RECORD = 100_000_000
 """Maximum size of a point's results in bytes; the results are held in memory and written at once."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Job:
     """A validated config with points and task."""
 
     path: Path
     config: Config
-    text: str
+    source: str | dict[str, Any]
+    """The config as the user wrote it: the text of a YAML file, or the tree of keys of a call in Python."""
     points: Points
     task: Task
+
+    @property
+    def text(self) -> str:
+        """YAML text of the config as the user wrote it."""
+        return self.source if isinstance(self.source, str) else yaml_of(self.source)
 
     @property
     def name(self) -> str:
         """The config's title, or else the name of the config's file."""
         return self.config.title or self.path.stem
 
-    @property
-    def resolved(self) -> dict:
+    @cached_property
+    def resolved(self) -> dict[str, Any]:
+        """The config with all defaults."""
         return canonical(self.config)
 
     @property
@@ -94,8 +104,9 @@ class Job:
             stretched=(stretches, together),
         )
 
-    @property
+    @cached_property
     def layout(self) -> Layout:
+        """Variables of the results."""
         return layout_of(self.resolved)
 
 
@@ -109,8 +120,10 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
     return job_of(path, *load_config(path, overrides))
 
 
-def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None = None) -> Job:
-    """The job of a config and its YAML text; a file of points is relative to the folder of `path`."""
+def job_of(
+    path: Path, config: Config, source: str | dict[str, Any], flutter: FlutterForces | None = None
+) -> Job:
+    """The job of a config and its source; a file of points is relative to the folder of `path`."""
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_A_VALUE > memory():
         raise InputError(
@@ -118,11 +131,12 @@ def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None 
             f"{values * BYTES_A_VALUE / 1e9:.3g} GB, more than the {memory() / 1e9:.3g} GB of memory of this "
             "machine; use fewer values"
         )
+    count = grid_size(config)
     each = layout_of(canonical(config)).bytes_per_point
-    if grid_size(config) * each > LARGEST_FILE:
+    if count * each > LARGEST_FILE:
         raise InputError(
-            f"{path}: parameters make a grid of {grid_size(config):.6g} points, whose results take "
-            f"{grid_size(config) * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
+            f"{path}: parameters make a grid of {count:.6g} points, whose results take "
+            f"{count * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
             "fewer values"
         )
     if each > LARGEST_RECORD:
@@ -131,7 +145,7 @@ def job_of(path: Path, config: Config, text: str, flutter: FlutterForces | None 
             f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)
-    return Job(path, config, text, points, TASKS[config.task](config, points))
+    return Job(path, config, source, points, TASKS[config.task](config, points))
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
@@ -154,8 +168,23 @@ def _plan(task: Task, resolved: dict[str, Any]) -> Plan:
     )
 
 
+def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
+    """Plan of the results of a job, without the attributes of a file."""
+    return replace(
+        _plan(job.task, job.resolved),
+        quantities=job.quantities,
+        flags=tuple((int(s), s.name) for s in statuses),
+    )
+
+
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
     """Plan of the file that a run of the job, with these BLAS kernels, creates or continues."""
+    attributes = attributes_of(job, solver.statuses, kernels) | {"shard": str(shard) if shard.of > 1 else ""}
+    return replace(plan_in_memory(job, solver.statuses), attributes=attributes)
+
+
+def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
+    """Attributes of a file with all points of a job, computed by these BLAS kernels."""
     from ...solve.backend import petsc
 
     attributes = {
@@ -165,14 +194,9 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         "time_unit": "tau2 = gamma2 L^4/k3",
         "config": job.text,
         "petsc_options": petsc.options(),
-        "shard": str(shard) if shard.of > 1 else "",
-        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
+        "shard": "",
+        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in statuses),
         provenance.KERNELS: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
-    return replace(
-        _plan(job.task, job.resolved),
-        quantities=job.quantities,
-        attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
-        flags=tuple((int(s), s.name) for s in solver.statuses),
-    )
+    return attributes | job.config.parameters.numbers | versions | provenance.provenance()

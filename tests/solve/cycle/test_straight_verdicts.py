@@ -2,17 +2,20 @@
 
 from math import inf, nan
 
+import numpy as np
 import pytest
 from rods import rod_of
 from surveyed import few
 
+from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import limit_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.second_state import SecondState
-from rodsweep.solve.cycle.straight_rod import StraightRod, straight_rod
+from rodsweep.solve.cycle.straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
 from rodsweep.solve.hopf.normal_form import accurate_normal_form
+from rodsweep.solve.spectrum.followed_leader import followed_leader
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 BESIDE = Rod(F=28.201858565493147, k1=inf, k2=100.0, gamma3=1e-3, gamma1=100.0)
@@ -54,8 +57,40 @@ def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
     leading = straight_rod(rod)
     w = solve_spectrum(rod, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
     assert leading.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
-    assert straight_rod(rod, straight_rod(near).w).w == pytest.approx(leading.w, rel=1e-12)
+    assert straight_rod(rod, np.array([straight_rod(near).w])).w == pytest.approx(leading.w, rel=1e-12)
     assert leading.stable is False and straight_rod(Rod(F=27.0, k1=1e4, k2=1e2, gamma3=1e-2)).stable is True
+
+
+@pytest.mark.parametrize(
+    ("rod", "end", "followed"),
+    [
+        (Rod(F=14.0, k1=1e4, k2=1e3, gamma3=1e-2, taper=0.5), 17.0, 1.0),
+        (Rod(F=40.0, k1=1e4, k2=1e3, gamma3=1e-2, taper=0.5), 50.0, 1.0),  # a second pair grows from 43.5 on
+        (Rod(F=1.0, k1=1e3, k2=1e3, gamma3=1e-2, taper=0.7), 30.0, 0.5),  # real, then a pair
+        (Rod(F=20.0, k1=200.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")), 40.0, 1.0),
+    ],
+)
+def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
+    near = eigenvalues_to_follow(rod, straight_rod(rod))
+    steps = 12
+    count = 0
+    for F in np.linspace(rod.F, end, steps + 1)[1:].tolist():
+        here = rod.changed(F=F)
+        found = straight_rod(here, near)
+        w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
+        assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
+        count += len(found.followed) > 0
+        near = eigenvalues_to_follow(here, found)
+    assert count >= followed * steps
+
+
+@pytest.mark.parametrize("taper", [0.5, 1.0])
+def test_an_eigenvalue_that_does_not_lead_is_not_followed(taper):
+    rod = Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-2, taper=taper)
+    w = solve_spectrum(rod, SpectrumRequest(6, 1e-9, True)).eigenvalues
+    upper = w[w.imag >= 0]
+    assert followed_leader(rod, upper, 1e-9).w == pytest.approx(upper[0], rel=1e-12)
+    assert followed_leader(rod, upper[1:], 1e-9) is None
 
 
 def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():

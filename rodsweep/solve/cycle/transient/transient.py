@@ -225,7 +225,7 @@ class Transient:
         """
         if self.beam.rod == self.form.rod:
             return rate
-        return straight_rod(self.beam.rod, self.straight.w).growth_rate(rate)
+        return straight_rod(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _relaxed(self, z: Array) -> Array:
         """State to which the stretch of the start z relaxes; the relaxation counts in a stored path."""
