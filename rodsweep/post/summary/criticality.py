@@ -1,6 +1,6 @@
 """Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and their errors."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -9,11 +9,11 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
+from .errors import errors_of
 from .ranges import number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
 from .thresholds import ended_early, not_known, not_known_beyond, not_stored
 
-Number = Callable[[Mapping[str, np.ndarray], int], tuple[float, float]]
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
 NAMED_RODS = 8
@@ -41,7 +41,9 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])
-    a, b = (_relative(v, name, done) for name in ("amplitude_coefficient", "frequency_slope"))
+    a, b = (
+        (v[name][done], errors_of(v, name)[done]) for name in ("amplitude_coefficient", "frequency_slope")
+    )
     F = span(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
     lines += [
         f"first Hopf point: {_counts(first)}; F = {F}, a = {span(*(table[:, 0] for table in a))} L",
@@ -56,12 +58,6 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     which = "stored" if (v["crossing_count"][done] > known.sum(axis=-1)).any() else "all"
     every = f"{which} Hopf points: {_counts(side)}; a = {span(*a)} L, b = {span(*b)} L^2/(k3 tau2)"
     return SummaryLines(lines, trust, [every])
-
-
-def _relative(v: Mapping[str, np.ndarray], name: str, done: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(coefficient of all Hopf points, its absolute error), each (points, crossings)."""
-    values = v[name][done]
-    return values, np.abs(values) * v[f"{name}_error"][done]
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
@@ -80,41 +76,26 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
     """Table of the Hopf points of a single rod, a column for each; None without any. v: flat variables."""
     at = np.flatnonzero(v["crossing_kind"] > 0)
-    columns = [[cell for i in at for cell in number_and_error(*each(v, int(i)))] for each in NUMBERS.values()]
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
+    rows = []
+    for name, words in NUMBERS.items():
+        numbers = zip(v[name][at].tolist(), errors_of(v, name)[at].tolist(), strict=True)
+        rows.append((words, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
-    rows = zip(NUMBERS, columns, strict=True)
-    return TextTable(headings, tuple((words, *cells) for words, cells in rows)) if len(at) else None
+    return TextTable(headings, tuple(rows)) if len(at) else None
 
 
-def _with_absolute(name: str) -> Number:
-    """Number of a crossing with its absolute error."""
-    error = "crossing_error" if name == "crossing_F" else f"{name}_error"
-    return lambda v, i: (float(v[name][i]), float(v[error][i]))
-
-
-def _with_relative(name: str, part: str = "") -> Number:
-    """Number of a normal form, whose stored error is relative to the modulus of the coefficient."""
-
-    def number(v: Mapping[str, np.ndarray], i: int) -> tuple[float, float]:
-        parts = [v[f"{name}_{each}"][i] for each in ("real", "imag")] if part else [v[name][i]]
-        value = v[f"{name}_{part}" if part else name][i]
-        return float(value), float(np.linalg.norm(parts) * v[f"{name}_error"][i])
-
-    return number
-
-
-NUMBERS: dict[str, Number] = {
-    "F, k3/L^2": _with_absolute("crossing_F"),
-    f"frequency, {ANGULAR}": _with_absolute("crossing_frequency"),
-    "Re c, 1/(tau2 L^2)": _with_relative("landau", "real"),
-    "Im c, 1/(tau2 L^2)": _with_relative("landau", "imag"),
-    "Re dw/dF, L^2/(k3 tau2)": _with_relative("growth_slope", "real"),
-    "Im dw/dF, L^2/(k3 tau2)": _with_relative("growth_slope", "imag"),
-    "a, L": _with_relative("amplitude_coefficient"),
-    "b, L^2/(k3 tau2)": _with_relative("frequency_slope"),
+NUMBERS = {
+    "crossing_F": "F, k3/L^2",
+    "crossing_frequency": f"frequency, {ANGULAR}",
+    "landau_real": "Re c, 1/(tau2 L^2)",
+    "landau_imag": "Im c, 1/(tau2 L^2)",
+    "growth_slope_real": "Re dw/dF, L^2/(k3 tau2)",
+    "growth_slope_imag": "Im dw/dF, L^2/(k3 tau2)",
+    "amplitude_coefficient": "a, L",
+    "frequency_slope": "b, L^2/(k3 tau2)",
 }
-"""Functions to (number, absolute error) of a Hopf point, by words and unit."""
+"""Words and unit of the numbers of a Hopf point, by variable."""
 
 
 def _words(v: Mapping[str, np.ndarray], i: int) -> str:
