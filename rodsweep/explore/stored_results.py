@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..api.dataset import view_of
 from ..arrays import Array
 from ..model.parameters import PARAMETERS
-from ..post.branch_curves import curves_of
+from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from .scales import SCALES
 from .solving.branches import drawn_branches, straight_pieces
@@ -149,7 +149,7 @@ class StoredResults:
         if _word(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
-        drawn = drawn_branches(curves_of(view_of(self.data, self.path), rod))
+        drawn = drawn_branches(RodBranches(view_of(self.data, self.path), rod).curves)
         drawn["pieces"] += straight_pieces(point, stop)
         return drawn | self._found()
 

@@ -17,7 +17,7 @@ from ...api.dataset import view_of
 from ...api.sweeping import sweep
 from ...config.axes import DEFAULTS
 from ...errors import InputError
-from ...post.branch_curves import curves_of
+from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches, straight_pieces
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
@@ -123,7 +123,7 @@ def branch(state: PageState) -> Found:
     known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force(), progress=False)
-    found = drawn_branches(curves_of(view_of(answer.whole, Path(answer.rod)), 0))
+    found = drawn_branches(RodBranches(view_of(answer.whole, Path(answer.rod))).curves)
     found["pieces"] += straight_pieces(answer.data, state.largest_force())
     return found | {"status": str(answer.status), "sentence": answer.sentence}
 

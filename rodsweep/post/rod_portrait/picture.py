@@ -11,13 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...results.file.view import View
-from ..branch_curves import count_incomplete_branches, curves_of
 from ..figures import style
 from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, clamp, force_arrow
 from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
-from ..summary.branch import coexistence, two_cycles
 from .paragraph import paragraph, status_meaning
 from .results import RodResults
 from .units import draw_in
@@ -99,22 +97,18 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
     """Draws the branches and ranges with two stable states; returns legend entries."""
-    view = results.branch
-    curves = [] if view is None else curves_of(view, 0)
-    if view is None or not curves:
+    rod = results.branches
+    if rod is None or not rod.curves:
         lower.set_axis_off()
         _say(upper, results.missing.get("branch", "no branch of cycles begins in this range"), LINE_WIDTH)
         return []
     handles: list[Artist] = [
-        *stability_entries(curves),
-        *draw_curves(upper, lower, curves, COLOURS).values(),
+        *stability_entries(rod.curves),
+        *draw_curves(upper, lower, rod.curves, COLOURS).values(),
     ]
-    draw_straight_rod(upper, view, 0, curves)
-    if not count_incomplete_branches(view, 0):
-        for ranges, (colour, word) in (
-            (coexistence(view, 0), BESIDE_STRAIGHT),
-            (two_cycles(view, 0), TWO_CYCLES),
-        ):
+    draw_straight_rod(upper, rod)
+    if not rod.hidden:
+        for ranges, (colour, word) in ((rod.coexistence, BESIDE_STRAIGHT), (rod.two_cycles, TWO_CYCLES)):
             bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
             handles += bands[:1]
     handles += _mark_cycles(upper, lower, results)
