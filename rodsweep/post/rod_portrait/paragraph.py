@@ -5,17 +5,16 @@ from math import isfinite
 
 import numpy as np
 
-from ...results.file.view import View
 from ...results.layouts.arm import VALIDITY
+from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
-from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..summary.arm.answer import plane_lines, validity_sentence
 from ..summary.branch import SPECIAL_WORDS
 from ..summary.criticality import SIDES
 from ..summary.ranges import rounded
-from ..summary.thresholds import ended_early
+from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
 SAME_FORCE = 1e-6
@@ -99,7 +98,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     elif v["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
-        range_ = f" up to {end}" if ended_early(view).all() else ""
+        range_ = f" up to {end}" if view.with_status(ENDED_EARLY).all() else ""
         proof = "proved complete" if v["certified"] else "not proved complete"
         yield f"This list of thresholds{range_} is {proof}."
 
@@ -183,7 +182,7 @@ def _cycles(results: RodResults) -> Iterator[str]:
     clauses = []
     for F, view in results.cycles:
         v = view.of_point(0)
-        word = str(outcomes(view)[0])
+        word = str(view.outcomes[0])
         if word not in CYCLE_WORDS:
             clauses.append(f"at {units.force_at(F)} no cycle is drawn ({word.replace('_', ' ')})")
             continue
@@ -207,11 +206,5 @@ def _missing(results: RodResults) -> Iterator[str]:
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
     for task in SEARCHES:
-        if (view := results.views.get(task)) and (word := str(outcomes(view)[0])) != SUCCEEDED:
-            yield f"About {task}, {word.replace('_', ' ')}: {status_meaning(view, word)}."
-
-
-def status_meaning(view: View, word: str) -> str:
-    """Meaning of a status, as the view's attributes give it."""
-    lines = str(view.attributes.get("status_sentences", "")).splitlines()
-    return dict(line.split(": ", 1) for line in lines if ": " in line).get(word, word)
+        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCEEDED:
+            yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."

@@ -12,7 +12,7 @@ from .arm.arm import crossings_of_arm
 from .errors import errors_of
 from .ranges import number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
-from .thresholds import ended_early, not_known, not_known_beyond, not_stored
+from .thresholds import ENDED_EARLY, not_known, not_known_beyond, not_stored
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
@@ -37,7 +37,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    unknown = int(((v["crossing_count"] < 0) | (ended_early(view) & ~with_hopf))[done].sum())
+    unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
     lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])

@@ -43,7 +43,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     found = np.isfinite(F)
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~ended_early(view).ravel()
+    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.with_status(ENDED_EARLY).ravel()
     unknown = not_known(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
@@ -56,15 +56,10 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
 
 
-def ended_early(view: View) -> np.ndarray:
-    """Mask of the points whose search ended before the requested F, of the points' shape."""
-    early = [value for value, word in view.flags.items() if word == ENDED_EARLY]
-    return np.isin(view.variables["status"], early)
-
-
 def not_known_beyond(view: View, F: float) -> str:
     """Clause on the forces beyond the end of the search of a single rod, if this search ended early."""
-    return f"; not known beyond F = {F:.6g}, where the search ended early" if ended_early(view).all() else ""
+    clause = f"; not known beyond F = {F:.6g}, where the search ended early"
+    return clause if view.with_status(ENDED_EARLY).all() else ""
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:

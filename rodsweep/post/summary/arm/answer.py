@@ -163,15 +163,10 @@ def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
 
 def _solved(view: View, rods: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """(mask of the points whose search ended with a result, line about the others, if there are any)."""
-    failed = rods & _with_status(view, FAILED)
+    failed = rods & view.with_status(FAILED)
     if not failed.any():
         return rods, []
     return rods & ~failed, [f"not known{_share(failed, rods)}: the search failed"]
-
-
-def _with_status(view: View, *words: str) -> np.ndarray:
-    """Mask of the points with one of these statuses, of the points' shape."""
-    return np.isin(view.variables["status"], [value for value, word in view.flags.items() if word in words])
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
@@ -198,9 +193,9 @@ def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
-    cycles = rods & _with_status(view, "cycle")
+    cycles = rods & view.with_status("cycle")
     if not cycles.any():  # where some arms beat, the line with all outcomes counts the others
-        masks = {words: rods & _with_status(view, status) for status, words in NO_CYCLE.items()}
+        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE.items()}
         return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
@@ -218,9 +213,9 @@ def _decided(view: View, rods: np.ndarray) -> list[str]:
     arms = arms_of_drags(view)
     if arms is None:
         return []
-    if (rods & ~_with_status(view, "cycle", "straight")).any():
+    if (rods & ~view.with_status("cycle", "straight")).any():
         return []
-    beats = _with_status(view, "cycle").ravel()
+    beats = view.with_status("cycle").ravel()
     of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)
