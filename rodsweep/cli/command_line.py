@@ -9,6 +9,7 @@ import click
 from .. import __version__
 from ..config.values import printable
 from ..errors import InputError
+from ..wording import counted
 from .arm_options import arm_options
 from .file_names import beside, followed, result_file
 from .launchers import rank_variables
@@ -72,11 +73,16 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
-    from .merging import merge_files
+    from ..results.file.combination.merge import merge as merge_files
+    from ..tasks.running.job import plan_without_solver
     from .run.running import CONTINUE
 
     output = result_file(output)
-    merged = merge_files(output, tuple(map(followed, shards)))
+    merged = merge_files(output, tuple(map(followed, shards)), plan_without_solver)
+    sources = counted(len(shards), "file")
+    click.echo(f"{output}: {merged.points} points from {sources}, {merged.missing} missing")
+    if merged.kernels:
+        click.echo(f"{output}: {merged.kernels}")
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(CONTINUE)
