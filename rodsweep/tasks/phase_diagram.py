@@ -26,6 +26,7 @@ class PhaseDiagramTask(ProvedTask):
     config: PhaseDiagramConfig
 
     not_proved: ClassVar[str] = "crossings may be missed"
+    counted_along: ClassVar[str] = "line"
 
     @property
     def line(self) -> np.ndarray:
@@ -70,9 +71,6 @@ class PhaseDiagramTask(ProvedTask):
     def searched(self) -> dict[str, np.ndarray]:
         """Ends of the rows, (2,)."""
         return {self.config.plane[0]: self.line[[0, -1]]}
-
-    def certificate(self) -> tuple[bool, str]:
-        return self.certificate_of_lines()
 
     def parts(self) -> list[Part]:
         """Parts of a linear task; with cycles, the nonlinear motion too."""

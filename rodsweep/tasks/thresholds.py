@@ -27,6 +27,7 @@ class ThresholdsTask(ProvedTask):
     config: ThresholdsConfig
 
     not_proved: ClassVar[str] = "crossings may be missed"
+    counted_along: ClassVar[str] = "line"
 
     def headline(self) -> str:
         until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
@@ -42,9 +43,6 @@ class ThresholdsTask(ProvedTask):
     def searched(self) -> dict[str, np.ndarray]:
         """The largest force, (1,)."""
         return {"F": np.array([self.config.thresholds.F_max])}
-
-    def certificate(self) -> tuple[bool, str]:
-        return self.certificate_of_lines()
 
     def cost(self) -> Estimate:
         if not self.config.standard:
