@@ -132,8 +132,7 @@ class View:
     @property
     def sentences(self) -> dict[str, str]:
         """Meaning of every status, by its word."""
-        lines = str(self.attributes.get("status_sentences", "")).splitlines()
-        return dict(line.split(": ", 1) for line in lines if ": " in line)
+        return sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:
         """A variable with all points along its first dimension, (points, ...)."""
@@ -153,6 +152,12 @@ class View:
         if self.is_grid:
             columns = [table.ravel() for table in np.meshgrid(*columns, indexing="ij")]
         return dict(zip(self.parameters, columns, strict=True))
+
+
+def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
+    """Meaning of every status, by its word, from the attributes of a file."""
+    lines = str(attributes.get("status_sentences", "")).splitlines()
+    return dict(line.split(": ", 1) for line in lines if ": " in line)
 
 
 def read_view(path: Path) -> View:
