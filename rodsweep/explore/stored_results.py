@@ -16,7 +16,7 @@ from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import sentences_in
 from .scales import SCALES
-from .solving.branches import drawn_branches, straight_pieces
+from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, words_of
 from .state import PageState
 
@@ -150,9 +150,7 @@ class StoredResults:
         if words_of(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
-        drawn = drawn_branches(RodBranches(view_of(self.data, self.path), rod).curves)
-        drawn["pieces"] += straight_pieces(point, stop)
-        return drawn | self._found()
+        return drawn_branches(RodBranches(view_of(self.data, self.path), rod), stop) | self._found()
 
     def _found(self) -> Found:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}

@@ -5,7 +5,7 @@ branch has a special point. A cycle with a multiplier on the circle, within the 
 stability of all cycles between the same two special points, if equal.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from itertools import combinations, pairwise
 from math import nan
@@ -159,20 +159,28 @@ class RodBranches:
 
         Both are empty if the special points of some branch are not stored.
         """
+        pieces = [] if self.hidden else self.straight_pieces(ends)
+        stable, unstable = (union((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0))
+        return stable, unstable
+
+    def straight_pieces(self, ends: Range) -> list[tuple[float, float, int]]:
+        """(from, to, stability) of the straight rod between Hopf points: 1 stable, 0 unstable, -1 unknown."""
         v = self._v
-        if self.hidden:
-            return [], []
         hopf = v["special_kind"] == HOPF
         at, first = np.unique(v["special_at"][hopf], return_index=True)
         after = v["special_unstable_after"][hopf][first]
         edges = [ends[0], *(float(a) for a in at), max(ends[1], *at) if len(at) else ends[1]]
         counts = [int(v["unstable_at_start"]), *(int(count) for count in after)]
-        stable: list[Range] = []
-        unstable: list[Range] = []
-        for count, low, high in zip(counts, edges[:-1], edges[1:], strict=True):
-            if count >= 0:
-                (unstable if count else stable).append((low, high))
-        return union(stable), union(unstable)
+        return [
+            (low, high, -1 if count < 0 else int(count == 0))
+            for (low, high), count in zip(pairwise(edges), counts, strict=True)
+        ]
+
+
+def runs_of(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
+    """Yields (vertices, stability) of each run of equal stability among the pieces of a curve, (n - 1,)."""
+    starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
+    yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
 
 
 def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch:

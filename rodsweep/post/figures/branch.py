@@ -14,7 +14,7 @@ from matplotlib.ticker import NullFormatter
 from ...model.parameters import CRUSHING
 from ...results.layouts.variables import MISSING
 from ...wording import counted, has_or_have, some_of
-from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter
+from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter, runs_of
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -131,12 +131,8 @@ def _pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve, x and y of shape (n,), with a line style for each stability of its pieces, (n - 1,)."""
-    changes = np.flatnonzero(np.diff(stable)) + 1
-    for run in np.split(np.arange(len(stable)), changes):
-        if len(run):
-            vertices = slice(run[0], run[-1] + 2)
-            line = LINES[int(stable[run[0]])][0]
-            axes.plot(x[vertices], y[vertices], ls=line, marker=marker, color=colour, lw=1.4)
+    for vertices, kind in runs_of(stable):
+        axes.plot(x[vertices], y[vertices], ls=LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 
 def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
