@@ -10,7 +10,7 @@ from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
-from ..summary.arm.answer import plane_lines, validity_sentence
+from ..summary.arm.validity import plane_lines, validity_sentence
 from ..summary.branch import SPECIAL_WORDS
 from ..summary.criticality import SIDES
 from ..summary.ranges import rounded

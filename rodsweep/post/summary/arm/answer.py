@@ -3,7 +3,7 @@
 Numbers are in the units typed by the user, frequencies in Hz.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
@@ -11,11 +11,12 @@ from ....config.arm.axes import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_OF, UNITS
 from ....results.file.view import View
-from ....results.layouts.arm import EFFECTS, NOT_KNOWN, VALIDITY
+from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import counted, some_of
 from .arm import errors_in_si, in_own_unit, load_of, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
+from .validity import plane_lines, validity_sentence
 
 Lines = list[str]
 ANSWER_DIGITS = 3
@@ -31,25 +32,11 @@ NO_CYCLE = {
     FAILED: "is not known: the integration failed",
 }
 """Words about arms without a stable cycle, by status."""
-OTHER_PLANE = (
-    "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
-    "other plane, at a lower load: exchange width and height to see it"
-)
-"""Warning about a rectangular section of greater height than width."""
 
 
 def arm_answer(view: View, done: np.ndarray) -> Lines:
     """Lines about the points in `done`, a mask of the points' shape; empty without an arm."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
-
-
-def plane_lines(quantities: Mapping[str, np.ndarray]) -> Lines:
-    """Warning if some rectangular section flutters first in the plane that is not computed; else empty.
-
-    quantities: quantities of an arm, in SI units, each a number or (n,).
-    """
-    height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
-    return [OTHER_PLANE] if np.max(height) > np.min(width) else []
 
 
 def _applied(view: View, done: np.ndarray) -> Lines:
@@ -66,32 +53,6 @@ def _applied(view: View, done: np.ndarray) -> Lines:
         return [caveat, *(f"where it applies: {line}" for line in ANSWERS[view.task](view, inside))]
     answer = ANSWERS[view.task](view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
-
-
-def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
-    """Sentence on the validity of the model at points, with the largest neglected effect.
-
-    validity: the variables of VALIDITY, (n,). when: condition of the validity, as a clause.
-    """
-    applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
-    unknown = applies == NOT_KNOWN
-    if unknown.all():
-        where = f" at all {len(applies)} points" if len(applies) > 1 else ""
-        return f"whether the model applies is not known{where}{when}: a motion may have been missed"
-    rest = f"; not known at {some_of(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
-    worst = Validity(int(applies.max()))
-    affected = applies == worst
-    at = f" at {some_of(int(affected.sum()), len(applies), 'point')}"
-    if affected.all():
-        at = "" if len(applies) == 1 else f" at all {len(applies)} points"
-    if worst == Validity.applies:
-        everywhere = " at all points" if len(applies) > 1 else ""
-        return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
-    verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
-    place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
-    name = EFFECTS[int(effect[place])].replace("_", " ")
-    size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {size} times its limit{rest}"
 
 
 def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
