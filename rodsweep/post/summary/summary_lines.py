@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.variables import has_covering
+from ...results.layouts.rods import has_covering
 from ...wording import counted
 from .ranges import span
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
+from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...results.layouts.variables import ANGULAR, has_covering
+from ...results.layouts.variables import ANGULAR
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span

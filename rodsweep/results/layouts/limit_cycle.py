@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from .rods import has_covering, optional_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR,
@@ -18,11 +19,8 @@ from .variables import (
     Layout,
     Variable,
     along,
-    has_covering,
     integer,
-    optional_in,
     real,
-    with_meaning,
     word,
 )
 
