@@ -8,7 +8,7 @@ import numpy as np
 from ..config.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
-from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram_of_arms, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
 from .parts import ProvedTask
@@ -82,10 +82,9 @@ class PhaseDiagramTask(ProvedTask):
 
     def cost(self) -> Estimate:
         options = self.config.phase_diagram
-        rows = self.points.count
-        lines = estimate_lines(rows, options.certify)
-        if not self.config.standard:
-            lines = estimate_diagram_of_arms(rows, options.curves, options.criticality)
+        of_arms = not self.config.standard
+        asked = options.certify, of_arms, options.curves, options.criticality
+        lines = estimate_diagram(self.points.count, *asked)
         if not options.cycles:
             return lines
         reach = (float(self.line[0]), float(self.line[-1]))

@@ -8,7 +8,7 @@ import numpy as np
 from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
-from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
+from ..sweep.cost_estimate import Estimate, estimate_lines
 from .parts import ProvedTask, before_crushed, each_point
 from .protocol import Part, Solver
 
@@ -45,9 +45,8 @@ class ThresholdsTask(ProvedTask):
         return {"F": np.array([self.config.thresholds.F_max])}
 
     def cost(self) -> Estimate:
-        if not self.config.standard:
-            return estimate_lines_of_arms(self.points.count)
-        return estimate_lines(self.points.count, self.config.thresholds.certify)
+        of_arms = not self.config.standard
+        return estimate_lines(self.points.count, self.config.thresholds.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
