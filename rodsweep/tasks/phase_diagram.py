@@ -98,14 +98,32 @@ class PhaseDiagramTask(ProvedTask):
 
         options = self.config.phase_diagram
         request = self.row_request()
-        if options.cycles:
-            return self._with_cycles(request)
-        return Solver(
+        workspace = NewtonWorkspace()
+        curves = DiagramCurves(self, workspace)
+        of_rows = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod(index), request),
-            record=lambda index, result: record(result, self.config.plane[0], options.crossings),
-            together=DiagramCurves(self, NewtonWorkspace()) if options.curves else None,
+            record=lambda index, result: record(result, request.name, request.crossings),
+            together=curves if options.curves else None,
+        )
+        if not options.cycles:
+            return of_rows
+        from ..solve.branch.branches import warm_up as warm_up_branches
+        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
+
+        def solve(index: int) -> CoexistenceRow:
+            row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
+            return curves.keep(index, row)
+
+        return replace(
+            of_rows,
+            statuses=tuple(CoexistenceStatus),
+            warm_up=warm_up_branches,
+            solve=solve,
+            record=lambda index, result: (
+                of_rows.record(index, result.row) | cycles_record(result, request.name)
+            ),
         )
 
     def rod(self, index: int) -> Rod:
@@ -124,29 +142,6 @@ class PhaseDiagramTask(ProvedTask):
             certify=options.certify,
             crossings=options.crossings,
             cycle_accuracy=options.cycle_accuracy,
-        )
-
-    def _with_cycles(self, request: "RowRequest") -> Solver:
-        """Solver of rows with cycles."""
-        from ..solve.branch.branches import warm_up
-        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
-        from ..solve.orbit.matrix.workspace import NewtonWorkspace
-
-        workspace = NewtonWorkspace()
-        curves = DiagramCurves(self, workspace)
-
-        def solve(index: int) -> CoexistenceRow:
-            row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
-            return curves.keep(index, row)
-
-        return Solver(
-            statuses=tuple(CoexistenceStatus),
-            warm_up=warm_up,
-            solve=solve,
-            record=lambda index, result: (
-                record(result.row, request.name, request.crossings) | cycles_record(result, request.name)
-            ),
-            together=curves if self.config.phase_diagram.curves else None,
         )
 
 
