@@ -239,10 +239,8 @@ class Page:
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:
             return
-        scales = SCALES[self.state.tab]
-        load = self.state.load
-        second = self.state.second
-        self.change({load: scales[load].text(event.x), second: scales[second].text(event.y)})
+        at = {self.state.load: event.x, self.state.second: event.y}
+        self.change({name: SCALES[self.state.tab][name].text(value) for name, value in at.items()})
 
     def _move_load(self, event: Tap) -> None:
         """Moves the load to the x of a click."""

@@ -27,11 +27,11 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         none = "its Hopf points are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
-        flat = {name: values.ravel() for name, values in v.items()}
-        lines = list(_hopf_lines(flat)) or [none]
-        lines[0] += not_known_beyond(view, float(flat["F_end"][0]))
+        of_rod = view.of_point(0)
+        lines = list(_hopf_lines(of_rod)) or [none]
+        lines[0] += not_known_beyond(view, float(of_rod["F_end"]))
         trust = [_searched(view, done)]
-        return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(flat))
+        return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(of_rod))
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)
@@ -61,7 +61,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields a line about every Hopf point of the single rod of a file; v: its variables, flat."""
+    """Yields a line about every Hopf point of the single rod of a file; v: its variables."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
@@ -74,7 +74,7 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of a single rod, a column for each; None without any. v: flat variables."""
+    """Table of the Hopf points of a single rod, a column for each; None without any. v: its variables."""
     at = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     rows = []
