@@ -46,9 +46,7 @@ def main() -> None:
     """Runs the command line; every error is reported as one sentence on standard error."""
     code = 0
     message = ""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # a file's name may be any bytes
+    _prepare_streams()
     if not speaks() and "run" not in sys.argv[1:2]:
         sys.exit(0)  # under a launcher one rank prints or draws; the others have nothing to do
     try:
@@ -82,6 +80,21 @@ def main() -> None:
             click.echo(f"rodsweep: {_one_line(message)}", err=True)
     _drop_what_cannot_be_written()
     sys.exit(code)
+
+
+def _prepare_streams() -> None:
+    """Opens /dev/null for standard streams that were closed before the start, as `>&-` does.
+
+    The next file opened would take the number of such a stream, and messages of C libraries would go into it.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file's name may be any bytes
+    if os.environ.get("COLUMNS") == "0":  # some launchers say so where there is no window
+        del os.environ["COLUMNS"]
 
 
 def _drop_what_cannot_be_written() -> None:

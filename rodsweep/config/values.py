@@ -199,6 +199,8 @@ def _range(value: dict) -> Axis:
     start = as_number(value["start"])
     stop = as_number(value["stop"])
     num = value["num"]
+    if isinstance(num, float) and num.is_integer():  # such as 1e3
+        num = int(num)
     spacing = value.get("spacing", "linear")
     if spacing not in ("linear", "log"):
         raise ValueError(f"spacing = {short(spacing)} is neither linear nor log")

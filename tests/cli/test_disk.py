@@ -1,9 +1,11 @@
 """Disks that refuse: each ends with one sentence and status 3, loses nothing, and the run goes on later."""
 
 import os
+import shlex
 import subprocess
 from contextlib import contextmanager
 
+import h5py
 import pytest
 from contents import content, same
 from ranks import PATIENCE
@@ -69,6 +71,17 @@ def test_full_disk_under_a_log_of_both_streams_ends_with_3(command, word):
         argv = command.argv(word, "c.yaml")
         run = subprocess.run(argv, cwd=command.directory, stdout=full, stderr=full, check=False)
     assert run.returncode == 3
+
+
+def test_closed_streams_and_a_window_of_no_columns_change_nothing(command):
+    """The result file must not take the number of a closed stream, into which C libraries write."""
+    command.write("c.yaml", CONFIG.replace("1500", "2"))
+    argv = shlex.join(map(str, command.argv("run", "c.yaml")))
+    run = subprocess.run(f"{argv} <&- >&- 2>&-", shell=True, cwd=command.directory, check=False)
+    assert run.returncode == 0
+    with h5py.File(command.directory / "c.h5") as file:
+        assert (file["status"][...] == 0).all()
+    assert command("show", "c.h5", COLUMNS="0").returncode == 0
 
 
 def test_directory_without_permission_is_refused(command):

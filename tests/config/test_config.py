@@ -14,7 +14,7 @@ GOOD = """
 title: test
 task: spectrum
 parameters:
-  F: {start: 0, stop: 30, num: 4}
+  F: {start: 0, stop: 30, num: 4.0e0}
   k1: 1e4
   k2: [100, 1.0e4, inf]
   gamma3: {start: 1e-4, stop: 1e-2, num: 3, spacing: log}
