@@ -5,6 +5,7 @@
 `tests/test_docs.py` compares the stored pages with these.
 """
 
+import inspect
 import re
 import sys
 from pathlib import Path
@@ -84,7 +85,8 @@ def section(name: str, command: click.Command) -> str:
     usage = " ".join([f"rodsweep {name}", *(["[OPTIONS]"] if options else []), *map(typed, arguments)])
     rows = "".join(f"| {words(each)} | {described(each)} |\n" for each in options)
     table = f"\n| option | meaning |\n| --- | --- |\n{rows}" if rows else ""
-    return f"\n## rodsweep {name}\n\n{command.help}\n\n```text\n{usage}\n```\n{table}"
+    help_text = inspect.cleandoc(command.help or "")  # Python 3.13 takes the indent off itself
+    return f"\n## rodsweep {name}\n\n{help_text}\n\n```text\n{usage}\n```\n{table}"
 
 
 def typed(argument: click.Argument) -> str:

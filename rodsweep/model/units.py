@@ -161,4 +161,5 @@ def compact(value: float, unit: str) -> tuple[float, str]:
     if not value or not math.isfinite(value):
         return 1.0, unit
     readable = registry().Quantity(value, unit).to_compact()
-    return float(readable.magnitude) / value, f"{readable.units:~}"
+    # Releases of pint differ in the sign for micro.
+    return float(readable.magnitude) / value, f"{readable.units:~}".replace("\u03bc", "\u00b5")

@@ -30,7 +30,7 @@ NO_NUMBER = ["abc", '"3"', "''", "1e", "0x", "--1", "1,5", "+", ".", "yes"]
 NO_RANGE = [
     "{start: 0, stop: 1}", "{start: 0, stop: 1, num: 0}", "{start: 0, stop: 1, num: -3}",
     "{start: 0, stop: 1, num: 2.0}", "{start: 0, stop: 1, num: true}", '{start: 0, stop: 1, num: "3"}',
-    "{start: 0, stop: 1, num: null}", "{start: 0, stop: 1, num: .inf}", "{start: 0, stop: 1, num: 1e3}",
+    "{start: 0, stop: 1, num: null}", "{start: 0, stop: 1, num: .inf}", "{start: 0, stop: 1, num: 1.5e0}",
     "{start: 0, stop: 1, num: 1000000000000}", "{start: 0, stop: 1, num: 9223372036854775808}",
     "{start: 0, stop: 1, num: 1" + "0" * 900 + "}", "{start: 0, stop: 1, num: [3]}",
     "{start: 2, stop: 1, num: 3}", "{start: 1, stop: 1, num: 3}", "{start: 1, stop: 2, num: 1}",

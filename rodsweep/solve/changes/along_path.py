@@ -92,15 +92,18 @@ class AxisCrossings:
         return (end, stop) if self.path.inverse else (start, end)
 
 
-def transitions(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
+def transitions(
+    path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
+) -> Transitions:
     """All changes from the value `start` of the path's parameter up to `stop`.
 
-    The search ends early before a place that cannot be solved. Raises Unsolvable if it has no part without
-    such a place, or if no a-priori bound applies.
+    The search ends early before a place that cannot be solved, and of an arm that varies along its length
+    once more than `most` crossings are found. Raises Unsolvable if it has no part without such a place, or if
+    no a-priori bound applies.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
-    found = _crossings(problem, low, high, certify)
+    found = _crossings(problem, (low, high), certify, most)
     tracer = Tracer(problem, certify)
     edges = problem.edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
@@ -128,7 +131,9 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
 
 
-def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
+def pair_crossings(
+    path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
+) -> Transitions:
     """Crossings of the axis by pairs only, without any spectrum: this takes half the time.
 
     proved: the covering is complete and every count agrees. Ends early and raises Unsolvable as `transitions`
@@ -136,7 +141,7 @@ def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) 
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
-    found = _crossings(problem, low, high, certify)
+    found = _crossings(problem, (low, high), certify, most)
     counts = Counts(problem, found.gaps, certify)
     ends = found.searched(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.at)
@@ -177,12 +182,12 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
     )
 
 
-def _crossings(problem: PathProblem, low: float, high: float, certify: bool) -> AxisCrossings:
-    """Crossings of a path: by the covering, or between counts for nonuniform arms."""
+def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
+    """Crossings of a path: by the covering, or between counts for nonuniform arms, there up to `most`."""
     if isinstance(problem, UniformPath):
-        return _covered(problem.path, low, high)
+        return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
-    found, reach = search.crossings(problem.edges(low, high))
+    found, reach = search.crossings(problem.edges(*ends), most)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
     return AxisCrossings(problem.path, found, gaps, reach)

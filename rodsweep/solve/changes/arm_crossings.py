@@ -96,14 +96,18 @@ class CrossingSearch:
             self.places[p] = AxisPlace(p, found.eigenvalues, slopes, found.unstable_count)
         return self.places[p]
 
-    def crossings(self, edges: list[float]) -> tuple[list[Crossing], Reach]:
+    def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], Reach]:
         """All crossings from the first of `edges` up to the reach of the search, in increasing order of p.
 
-        Raises Unsolvable if the search does not reach beyond the first edge.
+        The search ends behind the first crossing beyond `most`: where dozens of modes grow, each further one
+        costs more than all before. Raises Unsolvable if the search does not reach beyond the first edge.
         """
         intervals = SearchedIntervals(edges)
         self.place(edges[0])
         for a, b in intervals:
+            if sum(p < a for p in self.found) > most:
+                intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
+                continue
             try:
                 self._search(a, b, intervals)
             except Unsolvable as why:

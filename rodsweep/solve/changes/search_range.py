@@ -62,6 +62,12 @@ class SearchedIntervals:
         """Adds the parts of the present interval that are still to be searched, in increasing order."""
         self._left += intervals[::-1]
 
+    def stop_at(self, p: float, reason: str) -> None:
+        """Ends the search at a place up to which everything is searched."""
+        self._left.clear()
+        self._halvings = SEARCH_RANGE.last_halvings
+        self.reach = Reach(p, reason)
+
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
         """Ends the search in the present interval, which cannot be searched to its end."""
         self._left.clear()

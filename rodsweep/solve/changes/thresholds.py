@@ -38,8 +38,8 @@ class ThresholdStatus(PointStatus):
     failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,
-        "the search ends before the requested range, at a rod whose unstable modes could not be counted; the "
-        "list holds the changes up to this end, those beyond are not known; the message says why",
+        "the search ends before the requested range, at a rod whose unstable modes could not be counted, or "
+        "once the list is full; changes beyond this end are not known; the message says why",
     )
 
 
@@ -76,7 +76,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
-        found = transitions(Path(rod, "F"), 0.0, end, request.certify)
+        found = transitions(Path(rod, "F"), 0.0, end, request.certify, request.crossings)
         return judged(found, request.accuracy, request.certify, request.crossings)
 
     return solved(search, lambda cause: nothing_found(ThresholdStatus.failed, end, cause))

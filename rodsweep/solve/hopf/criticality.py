@@ -49,8 +49,8 @@ class CriticalityStatus(PointStatus):
     )
     ended_early = (
         9,
-        "the search ends before the requested force, at a rod whose unstable modes could not be counted; the "
-        "list holds the Hopf points up to this end, those beyond are not known; the message says why",
+        "the search ends before the requested force, at a rod whose unstable modes could not be counted, or "
+        "once the list is full; Hopf points beyond this end are not known; the message says why",
     )
 
 
@@ -91,7 +91,8 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
-        found = _hopf_points(Path(replace(rod.linear, F=0.0), "F"), end, request.certify)
+        path = Path(replace(rod.linear, F=0.0), "F")
+        found = _hopf_points(path, end, request.certify, request.crossings)
         coefficients = tuple(
             _coefficients(rod, hopf, request) for hopf in found.crossings[: request.crossings]
         )
@@ -113,8 +114,8 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=COEFFICIENT.searches_kept)
-def _hopf_points(path: Path, end: float, certify: bool) -> Transitions:
-    return pair_crossings(path, 0.0, end, certify)
+def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
+    return pair_crossings(path, 0.0, end, certify, most)
 
 
 def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:

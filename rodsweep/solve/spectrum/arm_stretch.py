@@ -226,7 +226,8 @@ class FollowedArms:
     """Leading eigenvalues along a path, followed once from point to point; any p between is reached from the
     nearest point.
 
-    After a point at which following ends, a new interval starts.
+    Points are followed as far as a p is asked for. After a point at which following ends, a new interval
+    starts.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
@@ -234,18 +235,23 @@ class FollowedArms:
         self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
         self.intervals: list[Interval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
-        place = 0
-        patience = 1
-        while place < len(p):
+        self._p = p
+        self._place = 0
+        self._patience = 1
+
+    def _follow_to(self, p: float) -> None:
+        """Follows the points up to p, or up to the first one beyond."""
+        while self._place < len(self._p) and (self._place == 0 or self._p[self._place] < p):
             before = self.intervals[-1] if self.intervals else None
-            found = _interval(path, p[place:], self.request, before)
+            found = _interval(self.path, self._p[self._place :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
-            place += max(len(found.p) - 1, 1) if found is not None else patience
-            patience = 1 if found is not None else 2 * patience
+            self._place += max(len(found.p) - 1, 1) if found is not None else self._patience
+            self._patience = 1 if found is not None else 2 * self._patience
 
     def family(self, p: float) -> ArmFamily | None:
         """The family of arms that contains p."""
+        self._follow_to(p)
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
@@ -257,6 +263,7 @@ class FollowedArms:
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The leading eigenvalues at p; None unless followed, accurate and proved complete."""
+        self._follow_to(p)
         judged = self._judged.setdefault(p, [])
         if not any(modes <= one.asked for one in judged):
             judged += self._judge(p, modes)
@@ -265,6 +272,7 @@ class FollowedArms:
 
     def roots(self, p: float) -> KnownRoots | None:
         """Eigenvalues followed to p, which need not be all; None if following fails."""
+        self._follow_to(p)
         for one in self.intervals:
             if one.p.min() <= p <= one.p.max():
                 here, _ = self._from_nearest(one, p, self.request.modes)

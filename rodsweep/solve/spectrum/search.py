@@ -32,8 +32,11 @@ class SearchSettings:
     enough_unproved: int = 50
     """Number of growing modes after which no more are solved for if no count is possible: each doubling costs
     several times as much, and nothing is proved in the end."""
-    max_meshes: int = 12
-    """Maximum number of attempts."""
+    resolved_share: float = 0.5
+    """Fewest roots found on a mesh, in units of the requested modes, after which more eigenvalues are
+    requested."""
+    max_meshes: int = 16
+    """Maximum number of attempts. Pulled rods with little rotational drag take most of them."""
     max_failures: int = 3
     """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
     no_progress: int = 2
@@ -135,10 +138,12 @@ class Search:
     def judged(self, found: Candidates) -> JudgedCandidates | None:
         """The candidates if complete; otherwise None, after a change of the next attempt."""
         if len(found.roots.w) < self.modes:
-            # Too few converged, or converged to no root, or SLEPc failed: request more, on a finer mesh.
+            # Too few converged, or converged to no root, or SLEPc failed: a finer mesh.
             self.failures += bool(found.failure)
             self.why = found.failure or self.why
-            self.wanted = self.wanted + self.modes
+            # Where hardly any is a root the mesh is too coarse: further eigenvalues would be no roots either.
+            if len(found.roots.w) >= SEARCH.resolved_share * self.modes:
+                self.wanted += self.modes
             self.mesh = self.problem.finer(self.mesh)
             return None
         if self.wants_the_axis(found):

@@ -47,6 +47,9 @@ class KrylovSettings:
     start_width: float = 3.3
     """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip,
     which every mode moves, as smooth as the wanted modes. It saves two steps of eleven."""
+    start_rotation: float = 0.1
+    """Rotation of the first Krylov vector in units of its displacement. Without rotation only rounding errors
+    reach the modes of rotation alone, of rods in which neither of the two excites the other."""
     uniform_solvers_kept: int = 24
     """Number of solvers kept for later points of equal resolution, if their memory allows; a sweep uses
     few."""
@@ -128,6 +131,7 @@ class ShiftInvertSolver(ABC):
         first = np.zeros(n)
         distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.start_width
         first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
+        first[pattern.nodes : 2 * pattern.nodes] = KRYLOV.start_rotation * first[: pattern.nodes]
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)

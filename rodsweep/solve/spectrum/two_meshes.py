@@ -32,6 +32,9 @@ class TwoMeshSettings:
     """Number of eigenvalues first requested beyond the wanted modes."""
     unchanged: float = 1e-9
     """Relative change below which the leading eigenvalues count as unchanged."""
+    unchanged_by_rounding: float = 3e-11
+    """The same in units of the shift and F^2: a hundred times `rounding`, which differs between releases of
+    SLEPc and between processors."""
     mesh_error_factor: float = 3.0
     """Safety factor on the difference of two meshes."""
     rounding: float = 3e-13
@@ -71,8 +74,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             break
         found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
-            scale = abs(problem.shift) + rod.F**2
-            here = _spectrum(problem, request, mesh, found, _errors(found.w, before.w, scale))
+            here = _spectrum(problem, request, mesh, found, _errors(found.w, before.w, _scale(problem)))
             if here.status == SpectrumStatus.ok:
                 return here
             best = (
@@ -83,6 +85,11 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
         raise Unsolvable("no mesh within the limit gives the requested number of eigenvalues")
     # If rounding dominates, the error of either mesh may exceed the difference of both.
     return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
+
+
+def _scale(problem: TransverseProblem) -> float:
+    """Rates to which the matrix is rounded, in 1/tau2."""
+    return abs(problem.shift) + problem.rod.F**2
 
 
 class _Found(NamedTuple):
@@ -106,7 +113,8 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
-        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged, atol=0):
+        by_rounding = TWO_MESHES.unchanged_by_rounding * _scale(problem)
+        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged, atol=by_rounding):
             return _Found(raw[order], order)
         if 2 * wanted > mesh.unknowns // TWO_MESHES.unknowns_a_mode:
             return _Found(raw[:0], order[:0])
@@ -123,7 +131,7 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of sorted eigenvalues, (k,), from the eigenvalues of a coarser mesh, (l,), in any
     order.
 
-    scale: rates to which the matrix is rounded, in 1/tau2. Two meshes may agree on one eigenvalue by chance,
+    scale: `_scale`. Two meshes may agree on one eigenvalue by chance,
     so each eigenvalue gets the largest relative error of itself and its neighbours. Near a double eigenvalue
     rounding errors and the difference of the meshes grow.
     """

@@ -159,6 +159,19 @@ def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
     assert intervals.reach == (1.6875, "no")
 
 
+def test_a_full_list_ends_the_search_and_holds_the_same_changes():
+    """A slender cone has dozens of crossings, each of which takes longer than all before."""
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.2)
+    whole = solve_thresholds(rod, ThresholdsRequest(60.0, 1e-10, True, 16))
+    found = solve_thresholds(rod, ThresholdsRequest(60.0, 1e-10, True, 2))
+    assert (whole.status, whole.end) == (ThresholdStatus.ok, 60.0)
+    assert found.status == ThresholdStatus.ended_early
+    assert found.crossings[2].at < found.end < 60.0
+    assert "more than 2 crossings" in found.message
+    known = [crossing.at for crossing in whole.crossings if crossing.at <= found.end]
+    np.testing.assert_allclose([crossing.at for crossing in found.crossings], known, rtol=1e-11)
+
+
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
     """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
     counted, whole = [], arm_stretch._counted
