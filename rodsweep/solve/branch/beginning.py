@@ -151,16 +151,26 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
     workspace: memory of the branch's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    for amplitude in BEGINNING.first_amplitudes:
-        try:
-            return _cycle_of(hopf, min(amplitude, BEGINNING.amplitude_share * a), accuracy, workspace)
-        except Unsolvable as error:
-            why = error
+    finest = REFINEMENT.first_accuracy
+    # On a mesh for a coarse accuracy the cycle may be missing, because the mesh's own Hopf point lies beyond.
+    for aim in (accuracy, finest) if accuracy > finest else (finest,):
+        for amplitude in BEGINNING.first_amplitudes:
+            try:
+                return _cycle_of(
+                    hopf, min(amplitude, BEGINNING.amplitude_share * a), aim, accuracy, workspace
+                )
+            except Unsolvable as error:
+                why = error
     raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
 
 
-def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
-    """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable."""
+def _cycle_of(
+    hopf: HopfBirth, amplitude: float, aim: float, accuracy: float, workspace: NewtonWorkspace
+) -> ArcPoint:
+    """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable.
+
+    aim: accuracy for which the first mesh is chosen.
+    """
     start = predicted_cycle(hopf, amplitude)
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
@@ -174,7 +184,6 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
     least_ratio, largest_ratio = BEGINNING.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
-    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection
