@@ -296,3 +296,12 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
     orbit = beginning(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
     assert float(orbit.form.tip(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
+
+
+def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
+    """Another maximum of y(t) becomes the largest at a corner, which a figure locates from both sides."""
+    rod = Rod(F=0.0, k1=419.6, k2=23447.0, gamma3=0.1237, gamma1=0.645)
+    request = BranchRequest("F", 0.0, 124.34, 3e-4, certify=False, cycles=100, special=10)
+    (branch,) = solve_branches(rod, request, NewtonWorkspace()).curves
+    sizes = [point.measures.tip_y_max for point in branch.points[-4:]]
+    assert np.diff(sizes) == pytest.approx([-0.0083, 0.011, 0.026], abs=1e-3)
