@@ -151,27 +151,28 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
     workspace: memory of the branch's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    finest = REFINEMENT.first_accuracy
-    # On a mesh for a coarse accuracy the cycle may be missing, because the mesh's own Hopf point lies beyond.
-    for aim in (accuracy, finest) if accuracy > finest else (finest,):
-        for amplitude in BEGINNING.first_amplitudes:
+    usual = max(accuracy, REFINEMENT.first_accuracy)
+    # A coarse mesh may have no cycle here, because the mesh's own Hopf point lies beyond.
+    for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
+        for share in BEGINNING.first_amplitudes:
+            amplitude = min(share, BEGINNING.amplitude_share * a)
             try:
-                return _cycle_of(
-                    hopf, min(amplitude, BEGINNING.amplitude_share * a), aim, accuracy, workspace
-                )
+                return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
                 why = error
     raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
 
 
 def _cycle_of(
-    hopf: HopfBirth, amplitude: float, aim: float, accuracy: float, workspace: NewtonWorkspace
+    hopf: HopfBirth, amplitude: float, aim: float, finer: bool, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
     """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable.
 
-    aim: accuracy for which the first mesh is chosen.
+    aim: accuracy for which the first mesh is chosen. finer: whether the predicted cycle has a mesh for it too.
     """
     start = predicted_cycle(hopf, amplitude)
+    if finer:
+        start = wanted_mesh(start, aim, stages_for(aim)).carry(start)
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
