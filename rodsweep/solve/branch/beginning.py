@@ -168,7 +168,7 @@ def _cycle_of(
 ) -> ArcPoint:
     """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable.
 
-    aim: accuracy for which the first mesh is chosen. finer: whether the predicted cycle has a mesh for it too.
+    aim: accuracy for which the first mesh is chosen. finer: whether the prediction has such a mesh too.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
