@@ -23,7 +23,7 @@ from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import BinaryIO, NoReturn
+from typing import Any, BinaryIO, NoReturn
 
 SOLVERS = ("petsc4py", "slepc4py")
 MEASURED = ["-m", "rodsweep.cli.measured"]
@@ -156,8 +156,8 @@ def die_after(points: int | None) -> None:
 
     append, done = Journal.append, []
 
-    def append_and_die(self: Journal, index: int, values: dict) -> None:
-        append(self, index, values)
+    def append_and_die(self: Journal, index: int, *given: Any) -> None:
+        append(self, index, *given)
         done.append(index)
         if len(done) == points:
             os.kill(os.getpid(), signal.SIGKILL)

@@ -27,7 +27,6 @@ from .contribution import (
     RunEnd,
     history_of,
     of_the_last_run,
-    reasons_of,
 )
 from .joint import JointDue, JointWork
 from .options import RunOptions
@@ -129,8 +128,6 @@ class _Run:
         if count:
             history = history_of(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.started, "stopped": self.stop.name}
-            self.store.restore()  # the file may have been moved meanwhile
-            history |= reasons_of(contributions, self.store.attributes())
             self.store.fold(of_the_last_run(self.plan) | history | started)
         if not self._lacks_curves(total(self.store.missing())):
             return JointDue(False)

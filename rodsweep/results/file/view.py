@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED
 from .content import is_users
-from .recent import journalled_points, put_in, unfolded
+from .recent import journalled_points, journalled_reasons, put_in, unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
@@ -179,4 +179,5 @@ def _view(path: Path) -> View:
         stored = (name for name in ALL_QUANTITIES if name in file)
         typed = {name: str(file[name].attrs[TYPED]) for name in stored if TYPED in file[name].attrs}
     layout = header.layout
-    return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
+    attributes = header.attributes | journalled_reasons(header)
+    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
