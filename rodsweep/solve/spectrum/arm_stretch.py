@@ -167,6 +167,7 @@ def _followed(
             n = min(n, max(ARM_STRETCH.points_growth * len(before.p), ARM_STRETCH.fewest_points))
     while first is not None and made is None and n >= ARM_STRETCH.fewest_points:
         made = arms_between(path, p[:n], first, request.modes)
+        # On half the interval the propagators need a lower degree.
         n = n if made is not None else n // 2
     if first is None or made is None:
         return None
@@ -259,6 +260,8 @@ class FollowedArms:
             found = _interval(self.path, self._p[self._place :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
+            # Intervals share their end points. Where following fails it often fails at the next points too,
+            # so every further failure skips twice as many.
             self._place += max(len(found.p) - 1, 1) if found is not None else self._patience
             self._patience = 1 if found is not None else 2 * self._patience
 
