@@ -26,6 +26,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.kept import forget_all
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
@@ -287,6 +288,12 @@ def on_mesh(accuracy: float) -> Answer:
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
 
 
+def longitudinal(accuracy: float) -> Answer:
+    """Longitudinal eigenvalues of a cone, whose accuracy is a setting itself."""
+    w, error = longitudinal_modes(Rod(F=8.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.3), 5)
+    return {f"w{i}": (float(value), float(error[i] * abs(value))) for i, value in enumerate(w)}
+
+
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
     beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
@@ -404,6 +411,7 @@ CHANGES = Case(curves_of_changes, 1e-8, 1e-10)
 CONE_MODES = Case(modes_of_a_cone, 1e-6, 1e-8)
 MESH = Case(on_mesh, 1.0, 1.0)
 SMALL_DRAG = Case(small_drag, 1e-6, 1e-8)
+LONGITUDINAL = Case(longitudinal, 1.0, 1.0)
 HELD = Case(held_tip, 1.0, 1.0)
 CASES = {
     "SETTLING": BRANCH,
@@ -471,6 +479,8 @@ CASES = {
     "PENCIL_NORM": SPECTRA,
     "ELEMENTS": SPECTRA,
     "ARM_RESOLUTION": SPECTRA,
+    "ARM_ELEMENTS": SPECTRA,
+    "HULL": SPECTRA,
     "STRETCH": FOLLOWED,
     "COUNT": THRESHOLDS,
     "COVERING": THRESHOLDS,
@@ -483,6 +493,10 @@ CASES = {
     "SEARCH_RANGE": CONE,
     "HELD_TIP": HELD,
     "ARM_PATH": CONE,
+    "ARM_STRETCH": CONE,
+    "ARM_FAMILY": CONE,
+    "ARM_DOUBLES": CONE,
+    "LONGITUDINAL_MODES": LONGITUDINAL,
     "CHANGE_BOUNDARIES": CHANGES,
     "CHANGE_CURVES": CHANGES,
     "BOUNDARY_STEPS": CHANGES,

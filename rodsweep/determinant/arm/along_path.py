@@ -9,6 +9,7 @@ decides convergence.
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from ..newton import FAILED, JACOBIAN_STEP, LAST_NEWTON_STEP, MAX_NEWTON_STEPS, Zero
 from ..parameter_path import Path
@@ -21,15 +22,24 @@ from .roots import refined, root_error
 CENTRAL = ((1, 0.5), (-1, -0.5))
 FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Central and forward difference of second order: (offset in steps, weight times step) of each value."""
-NOISE_OF_DOUBLES = 5.0
-"""Rounding error of D at a double eigenvalue, in units of its noise: 4.7 at most at 44 double eigenvalues of
-stepped arms, against 19 digits."""
-OTHER_LEVELS = (1, 4, 16)
-"""Elements for these multiples of |w| are compared to estimate rounding errors at a double eigenvalue."""
-SAFE_SPREAD = 3.0
-"""Safety factor on the spread of four values."""
-MAX_SHORTENINGS = 20
-"""Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmDoubleSettings:
+    """Settings for double eigenvalues of arms along a path and for differences by the parameter."""
+
+    noise: float = 5.0
+    """Rounding error of D at a double eigenvalue, in units of its noise: 4.7 at most at 44 double eigenvalues
+    of stepped arms, against 19 digits."""
+    compared_levels: tuple[int, ...] = (1, 4, 16)
+    """Elements for these multiples of |w| are compared to estimate rounding errors at a double eigenvalue."""
+    spread_factor: float = 3.0
+    """Safety factor on the spread of four values."""
+    max_shortenings: int = 20
+    """Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
+
+
+ARM_DOUBLES = ArmDoubleSettings()
 
 
 class ArmAlongPath:
@@ -91,9 +101,9 @@ class ArmAlongPath:
                 return FAILED
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
-            blur = NOISE_OF_DOUBLES * noise + ROUND_OFF * abs(p * D_p)
+            blur = ARM_DOUBLES.noise * noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
-            e_x = (blur * abs(D_wp) + NOISE_OF_DOUBLES * noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
+            e_x = (blur * abs(D_wp) + ARM_DOUBLES.noise * noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
             x += in_x
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:
@@ -113,9 +123,12 @@ class ArmAlongPath:
         Minors that are large in the middle of an arm have rounding errors that the noise of D does not show.
         """
         arm = self.determinant(p)
-        values = [self._value(x, p), *(arm.value_at_level(x, factor) for factor in OTHER_LEVELS)]
+        values = [
+            self._value(x, p),
+            *(arm.value_at_level(x, factor) for factor in ARM_DOUBLES.compared_levels),
+        ]
         D = [value.D.real * math.exp(value.S - S) for value in values]
-        return SAFE_SPREAD * (max(D) - min(D))
+        return ARM_DOUBLES.spread_factor * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> Value:
         """D and D_w at real w = x."""
@@ -139,7 +152,7 @@ class ArmAlongPath:
         step = min(JACOBIAN_STEP * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
             return FORWARD, step
-        for _ in range(MAX_SHORTENINGS):
+        for _ in range(ARM_DOUBLES.max_shortenings):
             if self._exists(p + step) and self._exists(p - step):
                 break
             step /= 4

@@ -8,6 +8,7 @@ end of an element.
 
 import cmath
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -24,27 +25,37 @@ from .collocation import STAGES
 from .propagators import element_propagators, gauss_method, tail_of
 from .value import chain_value
 
-LONGEST = 3.2
-"""Largest |q1 +- q2| h of an element, the exponents of minors: twelve stages integrate exp(3.2) to 1e-19, and
-rounding errors are those of elements half as long."""
-TO_THE_TIP = 0.5
-"""Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
-RESOLVED = 1e-9
-"""Relative tail of the coefficients' Legendre series above which an element is halved. The error of a Gauss
-method is about the square of the tail."""
-MAX_HALVINGS = 12
-MIN_LEVEL = 2
-"""The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
-REUSED = 4
-"""Number of levels above the own one whose elements are used if they exist: to make elements costs as much as
-some thirty evaluations on twice as many."""
-MAX_ELEMENTS = 4000
-KEPT = 16
-"""Arms whose propagators are kept."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmElementSettings:
+    """Settings for the elements of an arm and for the propagators that are kept."""
+
+    longest: float = 3.2
+    """Largest |q1 +- q2| h of an element, the exponents of minors: twelve stages integrate exp(3.2) to 1e-19,
+    and rounding errors are those of elements half as long."""
+    to_apex: float = 0.5
+    """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
+    largest_tail: float = 1e-9
+    """Relative tail of the coefficients' Legendre series above which an element is halved. The error of a
+    Gauss method is about the square of the tail."""
+    max_halvings: int = 12
+    """Maximum number of halvings of an element, down to 2e-4 of the first length."""
+    min_level: int = 2
+    """The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
+    levels_above: int = 4
+    """Number of levels above the own one whose elements are used if they exist: making elements costs as
+    much as some thirty evaluations on twice as many."""
+    max_elements: int = 4000
+    """Maximum number of elements of an arm; an arm that needs more counts as unresolved."""
+
+
+ARM_ELEMENTS = ArmElementSettings()
+ARMS_KEPT = 16
+"""Arms whose propagators are kept: a bound of memory, which changes no number."""
 
 
 class ArmDeterminant:
-    """D(w) of one arm. Methods raise FloatingPointError if `MAX_ELEMENTS` elements do not resolve the arm."""
+    """D(w) of one arm. Methods raise FloatingPointError if `max_elements` do not resolve it."""
 
     def __init__(self, rod: Rod):
         self.rod = rod
@@ -75,13 +86,16 @@ class ArmDeterminant:
         """Change of w that changes an exponent of D, integrated along the arm, by about one."""
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
 
-    def level(self, size: float, above: int = REUSED) -> tuple[float, Array]:
+    def level(self, size: float, above: int | None = None) -> tuple[float, Array]:
         """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists.
 
-        above: number of levels above the own one that serve in its place if they exist.
+        above: number of levels above the own one that serve in its place if they exist;
+        `ARM_ELEMENTS.levels_above` unless given.
         """
-        level = MIN_LEVEL
-        if size > 4.0**MIN_LEVEL:
+        if above is None:
+            above = ARM_ELEMENTS.levels_above
+        level = ARM_ELEMENTS.min_level
+        if size > 4.0**ARM_ELEMENTS.min_level:
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)
         for existing in range(level, level + above + 1):
             if existing in self._levels:
@@ -121,27 +135,28 @@ def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorEleme
     """Elements that resolve every arm of a list, all of one build, for |w| <= W."""
     edges = _edges(rods, samples, W)
     points, _, _ = gauss_method(STAGES)
-    for _ in range(MAX_HALVINGS):
-        if not len(edges) <= MAX_ELEMENTS:
+    for _ in range(ARM_ELEMENTS.max_halvings):
+        if not len(edges) <= ARM_ELEMENTS.max_elements:
             break
         lengths = np.diff(edges)
         local = Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points)
-        coarse = tail_of(local).max(axis=0) > RESOLVED
+        coarse = tail_of(local).max(axis=0) > ARM_ELEMENTS.largest_tail
         if not coarse.any():
             return PropagatorElements(lengths, local)
         middles = (edges[:-1] + edges[1:])[coarse] / 2
         edges = np.sort(np.append(edges, middles))
-    raise FloatingPointError(f"{MAX_ELEMENTS} elements are too few to resolve this arm at |w| = {W:g}")
+    most = ARM_ELEMENTS.max_elements
+    raise FloatingPointError(f"{most} elements are too few to resolve this arm at |w| = {W:g}")
 
 
 def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
     """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
     F, tapers = (np.array([getattr(rod, name) for rod in rods]) for name in ("F", "taper"))
-    density: Array = bound_of_waves(W, F[:, None], samples.local).max(axis=0) / LONGEST
+    density: Array = bound_of_waves(W, F[:, None], samples.local).max(axis=0) / ARM_ELEMENTS.longest
     for taper in (tapers.min(), tapers.max()):
         if taper != 1:
             apex = 1 / (1 - taper)
-            density = np.maximum(density, 1 / (TO_THE_TIP * np.abs(apex - samples.points)))
+            density = np.maximum(density, 1 / (ARM_ELEMENTS.to_apex * np.abs(apex - samples.points)))
     edges = [np.zeros(1)]
     breaks = rods[0].build.breaks
     shares = density.reshape(len(breaks) - 1, -1)
@@ -193,7 +208,7 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
     return number, rate
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=ARMS_KEPT)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """D of the arm `rod`, cached."""
     return ArmDeterminant(rod)

@@ -6,6 +6,7 @@ interpolation, with its derivative by p. Its last coefficients show the error.
 """
 
 import math
+from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -24,17 +25,32 @@ from .value import ROOT_NOISE, ROOT_RESIDUAL, chain_along, chain_value
 
 LINEAR = math.inf
 """Scale of equal spacing."""
-TRIALS = ((12, LINEAR), (17, LINEAR), (24, LINEAR), (24, 0.05), (34, 0.05))
-"""Trials for an interval: the number of arms, and the scale of their spacing in units of the interval. For 21
-of 24 random paths from 0 to three times a load the first trial is enough. The stretch of compressed rubber
-has branch points at complex forces of the size of its stiffness; beside them a spacing that grows needs fewer
-arms."""
 CONVERGED = 1e-15
 """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
 ROUNDING = 2 * CONVERGED
 """Relative error of eigenvalues and crossings from it, as from changes of w and p by as much."""
-MOST_ENTRIES = 500_000
-"""Largest number of entries of the propagators of a family: more take longer than arms one by one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmFamilySettings:
+    """Settings for the arms from which a family is interpolated."""
+
+    numbers: tuple[int, ...] = (12, 17, 24, 24, 34)
+    """Number of arms of each trial. For 21 of 24 random paths from 0 to three times a load the first trial is
+    enough."""
+    scales: tuple[float, ...] = (LINEAR, LINEAR, LINEAR, 0.05, 0.05)
+    """Scale of the spacing of each trial's arms, in units of the interval. The stretch of compressed rubber
+    has branch points at complex forces of the size of its stiffness; beside them a spacing that grows needs
+    fewer arms."""
+    most_entries: int = 500_000
+    """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
+
+    def trials(self) -> list[tuple[int, float]]:
+        """(number of arms, scale) of each trial, in order."""
+        return list(zip(self.numbers, self.scales, strict=True))
+
+
+ARM_FAMILY = ArmFamilySettings()
 
 
 class ArmFamily(NamedTuple):
@@ -56,7 +72,7 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
 
     Raises ValueError where the model has no arm, FloatingPointError where no elements resolve one.
     """
-    for number, share in TRIALS:
+    for number, share in ARM_FAMILY.trials():
         scale = share * (high - low)
         arms = [path.at(value) for value in _places(low, high, scale, number).tolist()]
         samples = samples_of(arms)
@@ -64,7 +80,7 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
         if not _resolves(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * MAX_TERMS * ENTRIES > MOST_ENTRIES:
+        if len(found.lengths) * MAX_TERMS * ENTRIES > ARM_FAMILY.most_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _converged(values, CONVERGED):
@@ -78,7 +94,7 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
 
     Raises ValueError where the model has no arm.
     """
-    for number, share in TRIALS[::-1]:
+    for number, share in reversed(ARM_FAMILY.trials()):
         p = _places(low, high, share * (high - low), number)
         if _resolves(samples_of([path.at(value) for value in p.tolist()])):
             return True

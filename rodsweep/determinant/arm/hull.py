@@ -18,10 +18,11 @@ a convex region bounded by a parabola. Of several alpha the one with the smalles
 = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
 `rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are looked up at points between the breaks, with `MARGIN` for what lies between them.
+Extremes along the arm are looked up at points between the breaks, with `HULL.margin` for those between.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
 from math import inf, isfinite, log, sqrt
 from typing import Any, NamedTuple
@@ -34,22 +35,30 @@ from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from .averaged_weight import TRIALS, averaged_regions, squared_norm
 
-POINTS = 25
-"""Chebyshev points of each smooth piece, at which coefficients are looked up and alpha is differentiated."""
-MARGIN = 1.05
-"""Factor on a, for extremes between the points and for rounding."""
-INSIDE = 1e-9
-"""Distance of the first and last point from the ends of a piece, in units of the piece's length."""
-LARGEST_SHARE = 0.9
-"""Largest c: the region grows beyond use where c approaches 1."""
-WIDE_SHARE = 0.15
-"""Smallest c of a region that counts as wide for every a."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HullSettings:
+    """Settings for the points and weights from which a region is computed."""
+
+    points: int = 25
+    """Chebyshev points of each smooth piece, where coefficients are looked up and alpha is differentiated."""
+    margin: float = 0.05
+    """Relative excess of a, for extremes between the points and for rounding."""
+    inside: float = 1e-9
+    """Distance of the first and last point from the ends of a piece, in units of the piece's length."""
+    least_remainder: float = 0.1
+    """Least 1 - c: the region grows beyond use where c approaches 1."""
+    wide: float = 0.15
+    """Smallest c of a region that counts as wide for every a."""
+    weights: int = 41
+    """Number of constant weights alpha to try, between the smallest and the largest g/nu."""
+
+
+HULL = HullSettings()
 MIDDLES = (0.0, 0.5, 1.0)
-"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
-WEIGHTS = 41
-"""Number of constant weights alpha to try, between the smallest and the largest g/nu."""
+"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha. Compiled functions read it."""
 DIRECTIONS = 48
-"""Number of normals of the region to try for the distance of a point."""
+"""Number of normals of the region to try for the distance of a point. Compiled functions read it."""
 
 
 class Hull(NamedTuple):
@@ -113,7 +122,7 @@ class Hulls(NamedTuple):
 def hulls_along(rods: Sequence[Rod], places: Array) -> Hulls:
     """The regions for all arms between places of a path, (k,), from the arms at them.
 
-    Extremes along the path are, as those along an arm, looked up at points, with `MARGIN` between them.
+    Extremes along the path are, as those along an arm, looked up at points, with `HULL.margin` between them.
     """
     arms = _arms(rods)
     hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
@@ -132,16 +141,16 @@ def hull_at(hulls: Hulls, p: float) -> Hull:
 def _hull(arms: "Arms") -> Hull:
     candidates = [*_constant(arms), *_following(arms), *_averaged(arms), *_by_clamp(arms)]
     best = min(candidates, key=lambda hull: _size(*hull), default=UNKNOWN)
-    return Hull(MARGIN * best.a, best.c) if isfinite(best.a) else UNKNOWN
+    return Hull((1 + HULL.margin) * best.a, best.c) if isfinite(best.a) else UNKNOWN
 
 
 def _size(a: Any, c: Any) -> Any:
     """A measure of regions, numbers or arrays: its least is the region that is taken."""
-    return a**2 * (1 + (c / WIDE_SHARE) ** 4)
+    return a**2 * (1 + (c / HULL.wide) ** 4)
 
 
 class Arms(NamedTuple):
-    """n arms: F, (n, 1, 1); lengths of the smooth pieces, (pieces,); coefficients, (n, pieces, POINTS).
+    """n arms: F, (n, 1, 1); lengths of the smooth pieces, (pieces,); coefficients, (n, pieces, points).
 
     The points of a piece are its Chebyshev points, with increasing u. averaged: `averaged_regions` of each,
     (n, trials, 2), inf for an arm that allows none, without trials for arms without jumps.
@@ -155,12 +164,12 @@ class Arms(NamedTuple):
 
 
 def _arms(rods: Sequence[Rod]) -> Arms:
-    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1)) * (1 - 2 * HULL.inside)
     build = rods[0].build
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
     F = np.array([rod.F for rod in rods])[:, None, None]
-    lengths = lengths * (1 - 2 * INSIDE)
+    lengths = lengths * (1 - 2 * HULL.inside)
     local = Rod.local_of_all(rods, u)
     averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
     return Arms(F, lengths, local, build.continuous, averaged)
@@ -169,7 +178,7 @@ def _arms(rods: Sequence[Rod]) -> Arms:
 def _averaged_of_each(F: Array, lengths: Array, local: LocalCoefficients) -> Array:
     """`Arms.averaged` of arms with jumps, from their other fields."""
     starts = np.cumsum(lengths) - lengths
-    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)) * (1 - 2 * INSIDE)
+    x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1)) * (1 - 2 * HULL.inside)
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = np.stack(local).reshape(6, len(F), -1)
     regions = np.full((len(F), TRIALS, 2), inf)
@@ -217,10 +226,12 @@ def _least_square(alphas: Array, local: Array, push: float) -> float:
 
 
 def _constants(ratio: Array) -> Array:
-    """Constant alpha that are tried, (WEIGHTS + 1,), for ratios g/nu along arms, (...,)."""
+    """Constant alpha that are tried, (HULL.weights + 1,), for ratios g/nu along arms, (...,)."""
     sizes = np.abs(ratio)
     ends = np.log(np.maximum([sizes.min(), sizes.max()], (1e-3, 2e-3)))
-    return np.append(np.exp(ends[0] + (ends[1] - ends[0]) * np.arange(WEIGHTS) / (WEIGHTS - 1)), 1.0)
+    return np.append(
+        np.exp(ends[0] + (ends[1] - ends[0]) * np.arange(HULL.weights) / (HULL.weights - 1)), 1.0
+    )
 
 
 def _following(arms: Arms) -> Iterator[Hull]:
@@ -236,10 +247,10 @@ def _averaged(arms: Arms) -> Iterator[Hull]:
     if arms.continuous:
         return
     a, c = arms.averaged.max(axis=0).T
-    c = MARGIN * c
+    c = (1 + HULL.margin) * c
     with np.errstate(invalid="ignore"):
-        best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
-    if c[best] < LARGEST_SHARE:
+        best = int(np.argmin(np.where(c < 1 - HULL.least_remainder, _size(a, c), inf)))
+    if c[best] < 1 - HULL.least_remainder:
         yield Hull(float(a[best]), float(c[best]))
 
 
@@ -247,19 +258,20 @@ def _averaged(arms: Arms) -> Iterator[Hull]:
 def _squares_following(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
     """The largest squared norm of the matrix along arms for each of `MIDDLES`.
 
-    F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, POINTS). derivative: (POINTS, POINTS).
+    F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points).
     """
     found = np.zeros(len(MIDDLES))
-    level = np.empty(POINTS)
-    log_alpha = np.empty(POINTS)
+    points = local.shape[3]
+    level = np.empty(points)
+    log_alpha = np.empty(points)
     for m in range(len(MIDDLES)):
         for arm in range(len(F)):
             for piece in range(len(lengths)):
-                for i in range(POINTS):
+                for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
                     level[i] = MIDDLES[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
                     log_alpha[i] = log(g / (nu + level[i]))
-                for i in range(POINTS):
+                for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
                     alpha = g / (nu + level[i])
                     slope = (derivative[i] * log_alpha).sum() * 2 / lengths[piece]
@@ -273,12 +285,12 @@ def _squares_following(F: Array, lengths: Array, local: Array, derivative: Array
 @cache
 def _chebyshev() -> tuple[Array, Array]:
     """Matrices (derivative, integral from -1) of the interpolant through the points in [-1, 1]."""
-    x = -np.cos(np.pi * np.arange(POINTS) / (POINTS - 1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, POINTS - 1))
+    x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL.points - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
-    derivative = np.polynomial.chebyshev.chebvander(x, POINTS - 2) @ slopes
-    return derivative, np.polynomial.chebyshev.chebvander(x, POINTS) @ integrals
+    derivative = np.polynomial.chebyshev.chebvander(x, HULL.points - 2) @ slopes
+    return derivative, np.polynomial.chebyshev.chebvander(x, HULL.points) @ integrals
 
 
 def _by_clamp(arms: Arms) -> Iterator[Hull]:
@@ -292,10 +304,10 @@ def _by_clamp(arms: Arms) -> Iterator[Hull]:
     along_arms = np.array([nu, c2, arms.F * c2, weights]).reshape(4, len(arms.F), -1)
     integrals = _largest_integrals(alphas, along_arms)
     push = float((arms.F**2 * c3 / gamma2).max())
-    c = MARGIN * np.sqrt(integrals) / 2
+    c = (1 + HULL.margin) * np.sqrt(integrals) / 2
     a = np.sqrt(alphas * push)
-    best = int(np.argmin(np.where(c < LARGEST_SHARE, _size(a, c), inf)))
-    if c[best] < LARGEST_SHARE:
+    best = int(np.argmin(np.where(c < 1 - HULL.least_remainder, _size(a, c), inf)))
+    if c[best] < 1 - HULL.least_remainder:
         yield Hull(float(a[best]), float(c[best]))
 
 

@@ -14,6 +14,7 @@ n-th eigenvalue found is not right of the true n-th one, so none is missing amon
 agree.
 """
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -25,18 +26,26 @@ from ..elements.elements import Elements
 from ..elements.quadrature import gauss
 from .arm_resolution import arm_elements
 
-FIRST_ACCURACY = 1e-12
-"""Relative accuracy for which the first mesh is chosen."""
-MORE_ORDERS = 4
-"""Difference of the two orders whose eigenvalues are compared."""
-LARGEST_ORDER = 60
-"""Largest order of an element; a larger error is stated as found."""
-CONVERGED = 1e-13
-"""Relative difference of two orders at which the order is large enough."""
-ROUNDING_OF_RATES = 5e-14
-"""Least relative error that is stated, for rounding."""
-MORE_POINTS = 6
-"""Number of quadrature points for displacements in an element, beyond the number for strains."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LongitudinalSettings:
+    """Settings for the mesh of longitudinal modes and for the comparison of two orders."""
+
+    first_accuracy: float = 1e-12
+    """Relative accuracy for which the first mesh is chosen."""
+    more_orders: int = 4
+    """Difference of the two orders whose eigenvalues are compared."""
+    max_order: int = 60
+    """Largest order of an element; a larger error is stated as found."""
+    converged: float = 1e-13
+    """Relative difference of two orders at which the order is large enough."""
+    rounding: float = 5e-14
+    """Least relative error that is stated, for rounding."""
+    more_points: int = 6
+    """Number of quadrature points for displacements in an element, beyond the number for strains."""
+
+
+LONGITUDINAL_MODES = LongitudinalSettings()
 
 
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
@@ -46,15 +55,16 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     """
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, FIRST_ACCURACY)
+    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODES.first_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.elements))
     found = _rates(rod, mesh, order, modes)
     while True:
-        order += MORE_ORDERS
+        order += LONGITUDINAL_MODES.more_orders
+        # No a-priori bound of the error holds for every profile, so a second order shows it.
         finer = _rates(rod, mesh, order, modes)
         error = np.abs(finer / found - 1)
-        if error.max() <= CONVERGED or order >= LARGEST_ORDER:
-            return finer, error + ROUNDING_OF_RATES
+        if error.max() <= LONGITUDINAL_MODES.converged or order >= LONGITUDINAL_MODES.max_order:
+            return finer, error + LONGITUDINAL_MODES.rounding
         found = finer
 
 
@@ -66,8 +76,9 @@ def _rates(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
 
 
 def _displacements(rod: Rod, edges: Array, order: int) -> Array:
-    """The matrix A, (elements (order + MORE_POINTS), elements order)."""
-    (strains, of_strains), (points, weights) = gauss(order), gauss(order + MORE_POINTS)
+    """The matrix A, (elements (order + more_points), elements order)."""
+    strains, of_strains = gauss(order)
+    points, weights = gauss(order + LONGITUDINAL_MODES.more_points)
     halves = np.diff(edges)[:, None] / 2
     middles = (edges[1:] + edges[:-1])[:, None] / 2
     here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))
@@ -78,6 +89,7 @@ def _displacements(rod: Rod, edges: Array, order: int) -> Array:
     before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * (halves * of_strains)
     integral = np.broadcast_to(before, (count, len(points), count, order)).copy()
     own = np.arange(count)
+    # Inside its own element an integral ends at the point: whole weights would overshoot there.
     integral[own, :, own, :] = halves[:, :, None] * _integrals(order, points)
     matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
     return matrix

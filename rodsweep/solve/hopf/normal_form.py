@@ -193,6 +193,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
     for _ in range(NORMAL_FORM.max_shifts):
         shift = w * (1 + NORMAL_FORM.shift_offset)
         factors = elements.factors(shift)
+        # Odd unknowns are the transverse ones. Longitudinal ones start at 0 and stay there.
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
             q = factors.solve(elements.times_M(q))
@@ -207,5 +208,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
         raise Unsolvable(f"no eigenvalue is found near {guess:.6g}")
     if not w.imag > 0:
         raise Unsolvable(f"the eigenvalue near {guess:.6g} is real: the mode does not oscillate")
+    # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; <p, M q> = 1 saves every
+    # projection on q a denominator.
     scale = 2 * (elements.form.tip_y @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

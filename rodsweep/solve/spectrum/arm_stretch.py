@@ -6,7 +6,7 @@ interval short enough for smooth polynomials.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -30,28 +30,36 @@ from .search import Search
 from .spectrum import Reached, Spectrum, SpectrumRequest
 from .status import SpectrumStatus
 
-FURTHER_ARM_MODES = (3, 9)
-"""Numbers of modes followed in addition to the wanted modes; the larger number is tried if too few points are
-proved."""
-PROVED_ENOUGH = 0.5
-"""Fraction of points that must be proved complete; below this fraction more modes are followed, if they prove
-a point."""
-HEADROOM = 2.0
-"""Largest |w| of the propagators, in units of the largest |w| of the first point."""
-REUSED_HEADROOM = 1.25
-"""`HEADROOM` of the propagators of an earlier interval that serve again."""
-MORE_ARMS = 2
-"""Largest number of points for which a family is tried, in units of those reached with the previous one."""
-FEWEST = 4
-"""Minimum number of points of a family of arms."""
-ACCURACY = 1e-8
-"""Relative accuracy of eigenvalues along a path."""
-MODES_BEYOND_GROWING = 2
-"""Number of modes beyond the growing ones that a search for crossings asks for."""
-STEPS_FROM_NEAREST = (1, 4)
-"""Numbers of steps tried from the nearest point of the path to a point between."""
-HULL_ARMS = 7
-"""Number of arms of an interval from which the hulls of all arms between are interpolated."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmStretchSettings:
+    """Settings for arms along a path: followed modes, families of arms, and their hulls."""
+
+    further_modes: tuple[int, ...] = (3, 9)
+    """Numbers of modes followed in addition to the wanted modes; the larger number is tried if too few points
+    are proved."""
+    proved_enough: float = 0.5
+    """Fraction of points that must be proved complete; below this fraction more modes are followed, if they
+    prove a point."""
+    headroom: float = 2.0
+    """Largest |w| of the propagators, in units of the largest |w| of the first point."""
+    reused_headroom: float = 1.25
+    """`headroom` of the propagators of an earlier interval that serve again."""
+    points_growth: int = 2
+    """Largest number of points for which a family is tried, in units of those reached with the last one."""
+    fewest_points: int = 4
+    """Minimum number of points of a family of arms."""
+    accuracy: float = 1e-8
+    """Relative accuracy of eigenvalues along a path."""
+    modes_beyond_growing: int = 2
+    """Number of modes beyond the growing ones that a search for crossings asks for."""
+    steps_from_nearest: tuple[int, ...] = (1, 4)
+    """Numbers of steps tried from the nearest point of the path to a point between."""
+    hull_arms: int = 7
+    """Number of arms of an interval from which the hulls of all arms between are interpolated."""
+
+
+ARM_STRETCH = ArmStretchSettings()
 
 
 class Interval(NamedTuple):
@@ -96,13 +104,15 @@ def _interval(
     whose family serves again where it contains enough of the points.
     """
     best: Interval | None = None
-    for further in (number for number in FURTHER_ARM_MODES if before is None or number >= before.further):
+    for further in (
+        number for number in ARM_STRETCH.further_modes if before is None or number >= before.further
+    ):
         if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
             break
-        found = _followed(path, p, request, further, before) if len(p) >= FEWEST else None
+        found = _followed(path, p, request, further, before) if len(p) >= ARM_STRETCH.fewest_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
-        enough = best is not None and best.proved(request.modes) >= PROVED_ENOUGH * len(best.p)
+        enough = best is not None and best.proved(request.modes) >= ARM_STRETCH.proved_enough * len(best.p)
         if best is not None and enough and not _too_few(best):
             break
     return best
@@ -111,7 +121,7 @@ def _interval(
 def _too_few(found: Interval) -> bool:
     """Whether more modes grow somewhere than a search for crossings could prove to be all that grow."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
-    return bool(growing + MODES_BEYOND_GROWING > found.track.w.shape[1])
+    return bool(growing + ARM_STRETCH.modes_beyond_growing > found.track.w.shape[1])
 
 
 def _is_better(found: Interval, other: Interval, modes: int) -> bool:
@@ -147,13 +157,17 @@ def _followed(
     made = None
     if first is not None and before is not None:
         inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
-        if inside >= FEWEST and REUSED_HEADROOM * np.abs(first).max() <= before.family.W:
+        if (
+            inside >= ARM_STRETCH.fewest_points
+            and ARM_STRETCH.reused_headroom * np.abs(first).max() <= before.family.W
+        ):
             made = (before.family, before.hulls)
             n = inside
         else:
-            n = min(n, max(MORE_ARMS * len(before.p), FEWEST))
-    while first is not None and made is None and n >= FEWEST:
+            n = min(n, max(ARM_STRETCH.points_growth * len(before.p), ARM_STRETCH.fewest_points))
+    while first is not None and made is None and n >= ARM_STRETCH.fewest_points:
         made = arms_between(path, p[:n], first, request.modes)
+        # On half the interval the propagators need a lower degree.
         n = n if made is not None else n // 2
     if first is None or made is None:
         return None
@@ -180,13 +194,13 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
     try:
         if not is_smooth(path, low, high):
             return None
-        places = np.linspace(low, high, HULL_ARMS)
+        places = np.linspace(low, high, ARM_STRETCH.hull_arms)
         hulls = hulls_along([path.at(x) for x in places.tolist()], places)
-        W = HEADROOM * float(np.abs(first).max())
-        line = min(HEADROOM * float(first[modes - 1].real), 0.0)
+        W = ARM_STRETCH.headroom * float(np.abs(first).max())
+        line = min(ARM_STRETCH.headroom * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [points[-1] for k in POWERS if len(points := right_of_hull(line, *hull, k))]
-        near = [end for end in ends if end <= HEADROOM * W]
+        near = [end for end in ends if end <= ARM_STRETCH.headroom * W]
         family = family_of(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None
@@ -232,7 +246,7 @@ class FollowedArms:
 
     def __init__(self, path: Path, p: Array, modes: int):
         """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
-        self.path, self.request = path, SpectrumRequest(modes, ACCURACY, certify=True)
+        self.path, self.request = path, SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
         self.intervals: list[Interval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
         self._p = p
@@ -246,6 +260,8 @@ class FollowedArms:
             found = _interval(self.path, self._p[self._place :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
+            # Intervals share their end points. Where following fails it often fails at the next points too,
+            # so every further failure skips twice as many.
             self._place += max(len(found.p) - 1, 1) if found is not None else self._patience
             self._patience = 1 if found is not None else 2 * self._patience
 
@@ -293,7 +309,7 @@ class FollowedArms:
             known = 0
             wanted = 0
             growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
-            while wanted < (needed := min(max(modes, growing + MODES_BEYOND_GROWING), followed)):
+            while wanted < (needed := min(max(modes, growing + ARM_STRETCH.modes_beyond_growing), followed)):
                 wanted = needed
                 here, known = self._from_nearest(one, p, wanted)
                 growing = 0 if here is None else int((here.w.real > 0).sum())
@@ -315,7 +331,7 @@ class FollowedArms:
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
             return part(one.track, i, i + 1), int(one.known[i])
-        for steps in STEPS_FROM_NEAREST:
+        for steps in ARM_STRETCH.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = track_from(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)

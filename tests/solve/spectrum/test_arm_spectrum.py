@@ -155,7 +155,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     monkeypatch.setattr(search, "attempt", attempt)
     monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, enough_unproved=2))
     if not countable:
-        monkeypatch.setattr(hull, "LARGEST_SHARE", 0.0)
+        monkeypatch.setattr(hull, "HULL", replace(hull.HULL, least_remainder=1.0))
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))
     assert found.certified == countable
     assert found.unstable_count > 2 if countable else found.status == SpectrumStatus.not_certified
