@@ -20,7 +20,7 @@ from .slurm import CannotStart, Slurm, started_slurm, wait_for
 CONFIG = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 21}
+  F: {start: 0, stop: 60, num: 9}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
@@ -148,7 +148,7 @@ def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
 
 
 def test_job_gives_the_content_of_a_plain_run_and_submitted_again_has_nothing_to_do(slurm, expected):
-    for said in ("252 of 252 points to do", "c.h5 is complete, nothing to do"):
+    for said in ("108 of 108 points to do", "c.h5 is complete, nothing to do"):
         job = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
         assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
         assert said in (slurm.directory / f"rodsweep-{job}.log").read_text()
@@ -174,7 +174,7 @@ def test_job_requeued_in_the_middle_finishes_by_itself(quick_slurm, expected):
     quick_slurm("scontrol", "requeue", job)
     assert quick_slurm.end(job) == "COMPLETED 0:0", log(quick_slurm)
     assert quick_slurm.about(job, "Restarts") == "1"
-    assert log(quick_slurm).count("252 points to do") == 2  # the log of both times
+    assert log(quick_slurm).count("108 points to do") == 2  # the log of both times
     assert log(quick_slurm).count(" kept") == 1
     assert same(content(quick_slurm.directory / "c.h5"), expected)
 
@@ -201,9 +201,9 @@ def test_shards_of_an_array_are_merged_when_all_have_ended(quick_slurm, expected
     quick_slurm.warn(f"{array}_2")
     assert quick_slurm.end(last) == "COMPLETED 0:0", log(quick_slurm)
     assert log(quick_slurm).count(STOPPED) == 1
-    assert "252 points from 3 files, 0 missing" in log(quick_slurm)
+    assert "108 points from 3 files, 0 missing" in log(quick_slurm)
     parts = [content(path)["status"] for path in quick_slurm.directory.glob("c-*-of-3.h5")]
-    assert [(part != MISSING).sum() for part in parts] == [84, 84, 84]
+    assert [(part != MISSING).sum() for part in parts] == [36, 36, 36]
     assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 
