@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from conftest import BIN, RANK, ROOT, Command
 from contents import content, same
+from faults.isolated import Isolated
 from ranks import PATIENCE
 from slow_runs import FOR_EVER, slowly
 
@@ -86,12 +87,7 @@ def slurm(running, out_of_time, tmp_path):
 def quick_slurm(running, out_of_time, tmp_path, loaded):
     """The same, with ranks forked from a loaded process: for what depends on jobs, not on their start."""
     running.directory = clone_in(tmp_path)
-    own = tmp_path / ".venv" / "bin"
-    own.unlink()
-    own.mkdir()
-    (own / "mpiexec").symlink_to(BIN / "mpiexec")
-    (own / "rodsweep").write_text(f'#!/bin/sh\nexec {sys.executable} -SE {RANK} {loaded.ranks} "$@"\n')
-    (own / "rodsweep").chmod(0o755)
+    fork_ranks(tmp_path, loaded)
     return running
 
 
@@ -103,6 +99,16 @@ def clone_in(directory: Path) -> Path:
     (directory / "patch").mkdir()
     (directory / "patch" / "sitecustomize.py").write_text(SLOWLY)
     return directory
+
+
+def fork_ranks(clone: Path, loaded: Isolated) -> None:
+    """Lets the command of a clone be forked from a loaded process."""
+    own = clone / ".venv" / "bin"
+    own.unlink()
+    own.mkdir()
+    (own / "mpiexec").symlink_to(BIN / "mpiexec")
+    (own / "rodsweep").write_text(f'#!/bin/sh\nexec {sys.executable} -SE {RANK} {loaded.ranks} "$@"\n')
+    (own / "rodsweep").chmod(0o755)
 
 
 def halted(slurm: Slurm, *more: str) -> str:
@@ -125,9 +131,10 @@ def log(slurm: Slurm) -> str:
     return "".join(path.read_text() for path in sorted(slurm.directory.glob("rodsweep*.log")))
 
 
-def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
+def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path, loaded):
     """Without Slurm: what the script does in it, with a `scontrol` that only notes how it is called."""
     clone_in(tmp_path)
+    fork_ranks(tmp_path, loaded)
     (tmp_path / "scontrol").write_text('#!/bin/sh\necho "$@" > asked\n')
     (tmp_path / "scontrol").chmod(0o755)
     variables = {"SLURM_SUBMIT_DIR": str(tmp_path), "SLURM_NTASKS": "2", "SLURM_JOB_ID": "7"}
