@@ -127,7 +127,7 @@ ATTRIBUTES = {
     "gamma1": "where a spectrum or a phase diagram is given it",
     "coordinates": "names of the parameters along `point`, in a list of points; of an arm's quantities",
     "status_sentences": "the sentence of every status, one a line",
-    "failure_reasons": "of each distinct reason for which points failed, in all runs that ended, the first "
+    "failure_reasons": "of each distinct reason for which points failed, in all runs, the first "
     "point: parameters, status and reason, one a line; at most 20",
     "rodsweep_version, git_commit": "of the program; a commit that ends in `-dirty` was changed",
     "python_version, numpy_version, numba_version": "of the libraries",

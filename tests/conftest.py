@@ -88,9 +88,15 @@ def pytest_xdist_auto_num_workers(config):
     return min(len(os.sched_getaffinity(0)) + 1, 4)
 
 
+def pytest_collection():
+    """Collects no garbage while tests are collected: it would take half the time and find next to none."""
+    gc.disable()
+
+
 def pytest_collection_finish():
     """What is loaded by now stays, and collecting garbage would go through all of it each time."""
     gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(items):

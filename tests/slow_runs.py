@@ -24,8 +24,8 @@ note = StopRequest._note
 kept, heard = [], []
 
 def then_wait(append):
-    def append_and_wait(self, index, values):
-        append(self, index, values)
+    def append_and_wait(self, index, *given):
+        append(self, index, *given)
         kept.append(index)
         until = time.monotonic() + {pause!r}
         while len(kept) >= {points} and not heard and time.monotonic() < until:

@@ -25,11 +25,11 @@ from ..config.values import printable  # noqa: E402 - after the environment is s
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import speaks  # noqa: E402 - after the environment is set
-from .page_commands import explore, portrait, report  # noqa: E402 - after the environment is set
+from .page_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
 
-for _command in (explore, portrait, report):
+for _command in (explore, export, plot, portrait, report):
     commands.add_command(_command)
 
 LONGEST_MESSAGE = 350

@@ -11,7 +11,7 @@ from ..config.arm.quantities import given_text
 from ..config.arm.section import ArmSection
 from ..model.arm.neglected import wall_effect
 from ..post.summary import print_lines
-from ..post.summary.arm.answer import plane_lines, validity_sentence
+from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.cost_estimate import MAX_SAMPLE
 from ..sweep.points.points import Points

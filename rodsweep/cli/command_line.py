@@ -2,13 +2,12 @@
 
 import sys
 from pathlib import Path
-from typing import Any
 
 import click
 
 from .. import __version__
-from ..config.values import printable
 from ..errors import InputError
+from ..wording import counted
 from .arm_options import arm_options
 from .file_names import beside, followed, result_file
 from .launchers import rank_variables
@@ -72,11 +71,16 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
-    from .merging import merge_files
+    from ..results.file.combination.merge import merge as merge_files
+    from ..tasks.running.job import plan_without_solver
     from .run.running import CONTINUE
 
     output = result_file(output)
-    merged = merge_files(output, tuple(map(followed, shards)))
+    merged = merge_files(output, tuple(map(followed, shards)), plan_without_solver)
+    sources = counted(len(shards), "file")
+    click.echo(f"{output}: {merged.points} points from {sources}, {merged.missing} missing")
+    if merged.kernels:
+        click.echo(f"{output}: {merged.kernels}")
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(CONTINUE)
@@ -116,102 +120,6 @@ def show(file: Path, statuses: bool) -> None:
     from ..results.file.view import read_view
 
     show_summary(read_view(followed(file)), statuses)
-
-
-@commands.command()
-@click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
-@click.option(
-    "-o",
-    "--output",
-    type=FILE,
-    help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
-)
-@click.option(
-    "--roots",
-    type=click.Choice(["rightmost", "smallest", "all"]),
-    help="Roots of spectra to draw: all stored roots, or two roots of each point: the rightmost, or the "
-    "smallest in magnitude, as in the paper; by default the choice whose curves swap places less often.",
-)
-@click.option(
-    "--what",
-    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
-    help="Figure of limit_cycle, or (lines, map) of thresholds; by default the figure that suits the file.",
-)
-@click.option(
-    "--point",
-    "points",
-    type=int,
-    multiple=True,
-    metavar="N",
-    help="Points of limit_cycle to draw, from 1; up to 3 times.",
-)
-@click.option(
-    "--at",
-    "at",
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="Draw only points with this value of a parameter, as k1=150, or of an arm, as 'length=12 cm'.",
-)
-@click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
-@click.option(
-    "--width",
-    metavar="WIDTH",
-    help="Width of the figure, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
-)
-@click.option("--style", metavar="STYLE", help="Name or file of a matplotlib style.")
-def plot(
-    files: tuple[Path, ...],
-    output: Path | None,
-    roots: str | None,
-    what: str | None,
-    points: tuple[int, ...],
-    at: tuple[str, ...],
-    **look: Any,
-) -> None:
-    """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
-    from ..post.figures import draw
-    from ..post.figures.request import Look
-    from ..post.figures.sections import section
-    from ..results.file.view import read_view
-    from ..tasks.cycle_shapes import with_shapes
-
-    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
-    values = _values(at)
-    views = [section(read_view(followed(file)), values) for file in files]
-    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
-    click.echo(drawn)
-
-
-def _values(at: tuple[str, ...]) -> dict[str, str]:
-    """Values of `--at NAME=VALUE` by name; InputError for text of another form."""
-    found = {}
-    for text in at:
-        name, equals, value = text.partition("=")
-        if not equals:
-            raise InputError(f"--at {printable(text)} must be a parameter with a number, such as k1=150")
-        found[name.strip()] = value.strip()
-    return found
-
-
-@commands.command()
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
-@click.option("--table", metavar="NAME", help="Table to write: points, or a list such as crossings.")
-@click.option("--columns", metavar="A,B,C", help="Columns to write, in this order; by default all.")
-@click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
-@click.option("--replace", is_flag=True, help="Overwrite an existing file.")
-def export(
-    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
-) -> None:
-    """Write a table of the result FILE as CSV: one row per point, or per item of a list."""
-    from ..post.export import Request
-    from ..post.export import export as export_view
-    from ..results.file.view import read_view
-
-    output = followed(output or beside(file, ".csv"))
-    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
-    request = Request(table=table, columns=names, units=units, replace=replace)
-    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
 
 
 @commands.command()

@@ -1,10 +1,12 @@
-"""Commands that write a page or a picture to share, `report` and `portrait`, and `explore`, a local page."""
+"""Commands that write figures, tables and pages from results, and `explore`, a local page."""
 
 from pathlib import Path
 from typing import Any
 
 import click
 
+from ..config.values import printable
+from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
@@ -13,6 +15,102 @@ from .portrait_rod import LEFT_OUT, rod_from, showing
 
 PORTS = click.IntRange(0, 65535)
 FILE = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
+)
+@click.option(
+    "--roots",
+    type=click.Choice(["rightmost", "smallest", "all"]),
+    help="Roots of spectra to draw: all stored roots, or two roots of each point: the rightmost, or the "
+    "smallest in magnitude, as in the paper; by default the choice whose curves swap places less often.",
+)
+@click.option(
+    "--what",
+    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
+    help="Figure of limit_cycle, or (lines, map) of thresholds; by default the figure that suits the file.",
+)
+@click.option(
+    "--point",
+    "points",
+    type=int,
+    multiple=True,
+    metavar="N",
+    help="Points of limit_cycle to draw, from 1; up to 3 times.",
+)
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Draw only points with this value of a parameter, as k1=150, or of an arm, as 'length=12 cm'.",
+)
+@click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
+@click.option(
+    "--width",
+    metavar="WIDTH",
+    help="Width of the figure, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
+)
+@click.option("--style", metavar="STYLE", help="Name or file of a matplotlib style.")
+def plot(
+    files: tuple[Path, ...],
+    output: Path | None,
+    roots: str | None,
+    what: str | None,
+    points: tuple[int, ...],
+    at: tuple[str, ...],
+    **look: Any,
+) -> None:
+    """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
+    from ..post.figures import draw
+    from ..post.figures.request import Look
+    from ..post.figures.sections import section
+    from ..results.file.view import read_view
+    from ..tasks.cycle_shapes import with_shapes
+
+    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
+    values = _values(at)
+    views = [section(read_view(followed(file)), values) for file in files]
+    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
+    click.echo(drawn)
+
+
+def _values(at: tuple[str, ...]) -> dict[str, str]:
+    """Values of `--at NAME=VALUE` by name; InputError for text of another form."""
+    found = {}
+    for text in at:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"--at {printable(text)} must be a parameter with a number, such as k1=150")
+        found[name.strip()] = value.strip()
+    return found
+
+
+@click.command()
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option("--table", metavar="NAME", help="Table to write: points, or a list such as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Columns to write, in this order; by default all.")
+@click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
+@click.option("--replace", is_flag=True, help="Overwrite an existing file.")
+def export(
+    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
+) -> None:
+    """Write a table of the result FILE as CSV: one row per point, or per item of a list."""
+    from ..post.export import Request
+    from ..post.export import export as export_view
+    from ..results.file.view import read_view
+
+    output = followed(output or beside(file, ".csv"))
+    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
+    request = Request(table=table, columns=names, units=units, replace=replace)
+    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
 
 
 @click.command()

@@ -131,13 +131,13 @@ def _real(
 
 
 @compiled
-def refined(w: complex, coefficients: Coefficients) -> complex:
+def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
     """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess gives a real eigenvalue.
+    A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
     """
     real = w.imag == 0
-    last = math.inf
+    last = 2 * farthest
     for _ in range(MAX_REFINEMENTS):
         value = scaled_determinant(w, coefficients)
         if value.D_w == 0:

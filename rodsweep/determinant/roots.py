@@ -27,6 +27,8 @@ CLOSE_ROOTS = 0.1
 """Largest Newton correction, in the same unit, of an eigenvalue that may be refined in a pair."""
 REFINED_TOGETHER = 4.0
 """Distance of two eigenvalues, over the sum of their corrections, below which both are refined in a pair."""
+EXPANSIONS = 2
+"""Number of expansions of D for a pair, each about the middle of the two roots of the last."""
 ON_THE_AXIS = 1e-13
 """Relative real part below which an eigenvalue counts as imaginary, whatever its error estimate."""
 BLURRED = 1e-11
@@ -99,29 +101,31 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 
 @compiled
-def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
-    """Moves pairs of eigenvalues closer than their errors to two roots, in place; returns a mask, (n,).
+def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
+    """Moves pairs of eigenvalues closer than their errors to two roots, in place.
 
+    Returns half the distance from the other one of the pair, (n,), inf where an eigenvalue is not moved.
     w: eigenvalues, (n,). error: (n,).
     """
-    moved = np.zeros(len(w), dtype=np.bool_)
+    reach = np.full(len(w), math.inf)
     for i in range(len(w)):
-        if moved[i]:
+        if reach[i] < math.inf:
             continue
         partner = -1
         least = math.inf
         for j in range(len(w)):
-            if j != i and not moved[j] and abs(w[j] - w[i]) < least:
+            if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
                 partner = j
                 least = abs(w[j] - w[i])
         if partner >= 0 and least <= REFINED_TOGETHER * (error[i] + error[partner]):
-            middle = (w[i] + w[partner]) / 2
-            # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
-            if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
-                middle = complex(middle.real, 0.0)
-            w[i], w[partner] = two_roots(middle, coefficients)
-            moved[i] = moved[partner] = True
-    return moved
+            for _ in range(EXPANSIONS):
+                middle = (w[i] + w[partner]) / 2
+                # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
+                if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
+                    middle = complex(middle.real, 0.0)
+                w[i], w[partner] = two_roots(middle, coefficients)
+            reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
+    return reach
 
 
 @compiled
@@ -205,7 +209,8 @@ def _refined_all(
     updated in place.
     """
     w = first.copy()
-    moved = _separate(w, error, coefficients)
+    reach = _separate(w, error, coefficients)
+    moved = np.isfinite(reach)
     stands = moved | near
     for i in range(len(w)):
         if not stands[i]:
@@ -217,7 +222,8 @@ def _refined_all(
             error[i] = error[i - 1]
             wave[i] = wave[i - 1]
         else:
-            w[i] = refined(w[i], coefficients)
+            # Close to a double root D and D' are rounding errors, whose quotient may lead anywhere.
+            w[i] = refined(w[i], coefficients, reach[i])
             error[i], _, wave[i] = root_error(w[i], coefficients)
     return w, stands
 

@@ -49,7 +49,7 @@ class Page:
         self.contents = PageContents(self.change, self.load)
         self._idle: Callable[[], None] | None = None
         self.contents.connect(document, self._connections())
-        self.contents.beating.on_drag(self.bend, self.let_go)
+        self.contents.beating.on_drag(self.drag)
         if stored is not None and stored.diagram is not None:
             self.asked["diagram"] = needs(Question("diagram", state))
             self.contents.show("diagram", stored.diagram, state)
@@ -100,16 +100,12 @@ class Page:
                     self.contents.say(kind, STOPPED)
         self._show_solving()
 
-    def bend(self, tip: Tip) -> None:
-        """Bends the arm until the tip is at a place, in L."""
-        self._drop("motion")
-        self._ask("bent", tip)
-        self._show_solving()
-
-    def let_go(self, tip: Tip) -> None:
-        """Releases the arm with the tip at a place, in L."""
-        self._drop("bent")
-        self._ask("motion", tip)
+    def drag(self, kind: str, tip: Tip) -> None:
+        """Bends the arm until the tip is at a place, in L, or releases it there; kind: one of `OF_TIP`."""
+        for other in OF_TIP:
+            if other != kind:
+                self._drop(other)
+        self._ask(kind, tip)
         self._show_solving()
 
     def _drop(self, kind: str) -> None:
@@ -243,10 +239,8 @@ class Page:
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:
             return
-        scales = SCALES[self.state.tab]
-        load = self.state.load
-        second = self.state.second
-        self.change({load: scales[load].text(event.x), second: scales[second].text(event.y)})
+        at = {self.state.load: event.x, self.state.second: event.y}
+        self.change({name: SCALES[self.state.tab][name].text(value) for name, value in at.items()})
 
     def _move_load(self, event: Tap) -> None:
         """Moves the load to the x of a click."""

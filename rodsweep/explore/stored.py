@@ -12,7 +12,7 @@ from ..config.document.reading import config_of, load_config
 from ..config.schema import Config
 from ..errors import InputError
 from .scales import SCALES
-from .solving.diagrams import Dataset, of_arms, of_grid, of_phases, of_rows
+from .solving.diagrams import Dataset, of_arms, of_phases, of_rows
 from .state import ACROSS, ARM, DEFAULT_F_MAX, LAWS, ROD, PageState
 from .stored_results import StoredResults
 
@@ -104,10 +104,8 @@ def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
         pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
         return of_arms(data, data[second].values, pressure) if "crossing_pressure" in data else None
     over_F = data.sizes.get("F", 1) > 1
-    if "class" in data and over_F:
-        return of_phases(data, second)
     if "crossing_F" in data:
         return of_rows(data, data[second].values, "crossing_F", float(data["F_end"].max()))
     if "unstable_count" in data and over_F:
-        return of_grid(data, second)
+        return of_phases(data, second)
     return None

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from ..api.dataset import view_of
 from ..arrays import Array
 from ..model.parameters import PARAMETERS
-from ..post.branch_curves import curves_of
+from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
+from ..results.file.view import sentences_in
 from .scales import SCALES
-from .solving.branches import drawn_branches, straight_pieces
-from .solving.diagrams import Dataset, code_of
+from .solving.branches import drawn_branches
+from .solving.diagrams import Dataset, words_of
 from .state import PageState
 
 Found = dict[str, Any]
@@ -65,7 +66,7 @@ class StoredResults:
             return None
         places = np.unravel_index(numbers[0], self.data["status"].shape) if self.dims else ()
         point = self.data.isel({name: [int(i)] for name, i in zip(self.dims, places, strict=True)})
-        is_filmed = _word(point["status"].squeeze()) == "cycle" and point.sizes["shape"] >= MIN_SHAPES
+        is_filmed = words_of(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES
         return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
@@ -110,7 +111,7 @@ class StoredResults:
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
         point = self._at(numbers[:1]).isel({POINT: 0})
-        status = _word(point["status"])
+        status = str(words_of(point["status"]))
         F = float(point["F"])
         k1 = float(point["k1"])
         is_drawn = np.isfinite(point["shape_x"].values).all()
@@ -119,7 +120,8 @@ class StoredResults:
         found: Found = {str(name): array.values for name, array in point.variables.items()}
         u = point["u"].values
         return found | {
-            "status": status, "sentence": self._sentence(status), "message": f"stored in {self.path.name}",
+            "status": status, "sentence": sentences_in(self.data.attrs).get(status, ""),
+            "message": f"stored in {self.path.name}",
             "units": {str(name): array.attrs["units"] for name, array in point.data_vars.items()},
             "x": (1 - F / k1) * u, "y": np.zeros(len(u)),
         }  # fmt: skip
@@ -131,12 +133,11 @@ class StoredResults:
             return None
         line = self._at(numbers)
         y = line["tip_y_max"].values
-        status = line["status"]
-        at_rest = status.values == code_of(status, "straight")
-        y = np.where(at_rest, 0.0, y)
+        words = words_of(line["status"])
+        y = np.where(words == "straight", 0.0, y)
         known = np.isfinite(y)
-        unstable = status.values[known] == code_of(status, "unstable")
-        cycles = {"F": line["F"].values[known], "y": y[known], "stable": np.where(unstable, 0, 1)}
+        stable = np.where(words[known] == "unstable", 0, 1)
+        cycles = {"F": line["F"].values[known], "y": y[known], "stable": stable}
         return {"pieces": [], "special": [], "cycles": cycles, **self._found()}
 
     def _branch(self, state: PageState) -> Found | None:
@@ -146,29 +147,16 @@ class StoredResults:
             return None
         rod = int(numbers[0])
         point = self._at(numbers[:1]).isel({POINT: 0})
-        if _word(point["status"]) == "missing":
+        if words_of(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
-        drawn = drawn_branches(curves_of(view_of(self.data, self.path), rod))
-        drawn["pieces"] += straight_pieces(point, stop)
-        return drawn | self._found()
+        return drawn_branches(RodBranches(view_of(self.data, self.path), rod), stop) | self._found()
 
     def _found(self) -> Found:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
-
-    def _sentence(self, status: str) -> str:
-        lines = str(self.data.attrs["status_sentences"]).splitlines()
-        return dict(line.split(": ", 1) for line in lines).get(status, "")
 
 
 def _stands_for(value: float, stored: float) -> bool:
     """Whether a control's value is a stored one, or the stored one rounded."""
     rounded = [float(f"{stored:.{digits}g}") for digits in DIGITS]
     return any(each == value or abs(each - value) <= EQUAL * abs(each) for each in (stored, *rounded))
-
-
-def _word(status: Dataset) -> str:
-    """Word of one status."""
-    words = str(status.attrs["flag_meanings"]).split()
-    codes = list(map(int, np.atleast_1d(status.attrs["flag_values"])))
-    return words[codes.index(int(status))]

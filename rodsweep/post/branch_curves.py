@@ -5,9 +5,9 @@ branch has a special point. A cycle with a multiplier on the circle, within the 
 stability of all cycles between the same two special points, if equal.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
-from itertools import pairwise
+from itertools import combinations, pairwise
 from math import nan
 
 import numpy as np
@@ -68,6 +68,11 @@ class StoredBranch:
         return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
 
     @property
+    def errors(self) -> dict[float, float]:
+        """Absolute errors of the special points, by their positions."""
+        return {float(special.at): special.error for special in self.special}
+
+    @property
     def is_decided(self) -> bool:
         """Whether the branch is followed to its end, and the stability of all its cycles is known."""
         return self.special[-1].reason not in STOPPED and bool((self.stable >= 0).all())
@@ -96,51 +101,110 @@ def followed_parameter(view: View) -> str:
     return next(name for name in PARAMETERS if f"branch_{name}" in view.variables)
 
 
-def count_incomplete_branches(view: View, rod: int) -> int:
-    """Number of branches of a rod whose special points do not fit into the stored list."""
-    v = view.of_point(rod)
-    return max(int(v["branch_count"]), 0) - _count_complete(v)
+def ends_of(view: View) -> Range:
+    """(start, stop) of the followed parameter."""
+    options = view.config["branch"]
+    return float(options["start"]), float(options["stop"])
 
 
-def _count_complete(v: dict[str, Array]) -> int:
-    """Number of leading branches with all special points stored. If the list is full, the last listed branch
-    and the branches behind it may lack some.
+class RodBranches:
+    """Branches of a rod, and the ranges of the parameter in which its states are stable.
+
+    rod: place among all points. curves: branches with all special points stored. hidden: number of the
+    others.
     """
-    listed = v["special_branch"][v["special_kind"] > 0]
-    if len(listed) >= v["special_count"]:
-        return max(int(v["branch_count"]), 0)
-    return int(listed.max(initial=1)) - 1
 
+    def __init__(self, view: View, rod: int = 0):
+        self.view = view
+        self.rod = rod
+        self._v = view.of_point(rod)
+        count = max(int(self._v["branch_count"]), 0)
+        listed = self._v["special_branch"][self._v["special_kind"] > 0]
+        # Of a full list the last branch and the branches behind it may lack special points.
+        complete = count if len(listed) >= self._v["special_count"] else int(listed.max(initial=1)) - 1
+        self.hidden = count - complete
+        along = followed_parameter(view)
+        self.curves = [_stored_branch(self._v, along, number) for number in range(1, complete + 1)]
 
-def curves_of(view: View, rod: int) -> list[StoredBranch]:
-    """Branches of a rod with all special points stored; rod: place among all points."""
-    along = followed_parameter(view)
-    v = view.of_point(rod)
-    curves = []
-    for number in range(1, _count_complete(v) + 1):
-        cycles = np.flatnonzero(v["branch"] == number)
-        special = np.flatnonzero(v["special_branch"] == number)
-        before = special[v["special_point"][special] == 0]
-        order: list[tuple[bool, int]] = [(False, int(i)) for i in before]
-        for place in cycles:
-            order.append((True, int(place)))
-            order += [(False, int(i)) for i in special[v["special_point"][special] == place + 1]]
-        values = [
-            (v[f"branch_{along}"][i], v["tip_y_max"][i], v["period"][i])
-            if is_cycle
-            else (v["special_at"][i], v["special_tip_y_max"][i], v["special_period"][i])
-            for is_cycle, i in order
+    @property
+    def errors(self) -> dict[float, float]:
+        """Absolute errors of the special points, by their positions."""
+        return {at: error for curve in self.curves for at, error in curve.errors.items()}
+
+    @property
+    def stable_cycles(self) -> list[Range]:
+        """Ranges with a stable cycle."""
+        return union(piece for curve in self.curves for piece in curve.stable_ranges)
+
+    @property
+    def two_cycles(self) -> list[Range]:
+        """Ranges in which cycles on two branches are stable."""
+        pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
+        return union(piece for one, other in pairs for piece in intersection(one, other))
+
+    @property
+    def coexistence(self) -> list[Range]:
+        """Ranges with a stable cycle and a stable straight rod."""
+        return intersection(self.stable_cycles, self.straight_ranges(ends_of(self.view))[0])
+
+    @property
+    def coexistence_is_decided(self) -> bool:
+        """Whether the stability of all cycles and of the straight rod is known in the whole range."""
+        after = self._v["special_unstable_after"][self._v["special_kind"] == HOPF]
+        straight = int(self._v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
+        return straight and all(curve.is_decided for curve in self.curves)
+
+    def straight_ranges(self, ends: Range) -> tuple[list[Range], list[Range]]:
+        """(ranges of the stable straight rod, ranges of the unstable straight rod) between two ends.
+
+        Both are empty if the special points of some branch are not stored.
+        """
+        pieces = [] if self.hidden else self.straight_pieces(ends)
+        stable, unstable = (union((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0))
+        return stable, unstable
+
+    def straight_pieces(self, ends: Range) -> list[tuple[float, float, int]]:
+        """(from, to, stability) of the straight rod between Hopf points: 1 stable, 0 unstable, -1 unknown."""
+        v = self._v
+        hopf = v["special_kind"] == HOPF
+        at, first = np.unique(v["special_at"][hopf], return_index=True)
+        after = v["special_unstable_after"][hopf][first]
+        edges = [ends[0], *(float(a) for a in at), max(ends[1], *at) if len(at) else ends[1]]
+        counts = [int(v["unstable_at_start"]), *(int(count) for count in after)]
+        return [
+            (low, high, -1 if count < 0 else int(count == 0))
+            for (low, high), count in zip(pairwise(edges), counts, strict=True)
         ]
-        at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
-        crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
-        outside = [least_outside(int(count), float(m), float(error)) for count, m, error in crossing]
-        counts = [outside[i] if is_cycle else None for is_cycle, i in order]
-        is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
-        stable = stability_of_pieces(counts)
-        curves.append(
-            StoredBranch(at, y, period, stable, is_cycle, tuple(_special_point(v, i) for i in special))
-        )
-    return curves
+
+
+def runs_of(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
+    """Yields (vertices, stability) of each run of equal stability among the pieces of a curve, (n - 1,)."""
+    starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
+    yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
+
+
+def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch:
+    """A branch of a rod, by its number from 1; v: variables of the rod."""
+    cycles = np.flatnonzero(v["branch"] == number)
+    special = np.flatnonzero(v["special_branch"] == number)
+    before = special[v["special_point"][special] == 0]
+    order: list[tuple[bool, int]] = [(False, int(i)) for i in before]
+    for place in cycles:
+        order.append((True, int(place)))
+        order += [(False, int(i)) for i in special[v["special_point"][special] == place + 1]]
+    values = [
+        (v[f"branch_{along}"][i], v["tip_y_max"][i], v["period"][i])
+        if is_cycle
+        else (v["special_at"][i], v["special_tip_y_max"][i], v["special_period"][i])
+        for is_cycle, i in order
+    ]
+    at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
+    crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
+    outside = [least_outside(int(count), float(m), float(error)) for count, m, error in crossing]
+    counts = [outside[i] if is_cycle else None for is_cycle, i in order]
+    is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
+    points = tuple(_special_point(v, i) for i in special)
+    return StoredBranch(at, y, period, stability_of_pieces(counts), is_cycle, points)
 
 
 def _special_point(v: dict[str, Array], place: int) -> StoredSpecialPoint:
@@ -164,35 +228,6 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
             if len({count == 0 for count in beside}) == 1:
                 stable[i] = int(beside[0] == 0)
     return np.array(stable, dtype=int)
-
-
-def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:
-    """(ranges of the stable straight rod, ranges of the unstable straight rod) between two ends.
-
-    Both are empty if the special points of some branch are not stored.
-    """
-    v = view.of_point(rod)
-    if count_incomplete_branches(view, rod):
-        return [], []
-    hopf = v["special_kind"] == HOPF
-    at, first = np.unique(v["special_at"][hopf], return_index=True)
-    after = v["special_unstable_after"][hopf][first]
-    edges = [ends[0], *(float(a) for a in at), max(ends[1], *at) if len(at) else ends[1]]
-    counts = [int(v["unstable_at_start"]), *(int(count) for count in after)]
-    stable: list[Range] = []
-    unstable: list[Range] = []
-    for count, low, high in zip(counts, edges[:-1], edges[1:], strict=True):
-        if count >= 0:
-            (unstable if count else stable).append((low, high))
-    return union(stable), union(unstable)
-
-
-def coexistence_is_decided(view: View, rod: int) -> bool:
-    """Whether the stability of all cycles and of the straight rod is known in the whole range."""
-    v = view.of_point(rod)
-    after = v["special_unstable_after"][v["special_kind"] == HOPF]
-    straight = int(v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
-    return straight and all(curve.is_decided for curve in curves_of(view, rod))
 
 
 def union(ranges: Iterable[Range]) -> list[Range]:

@@ -105,24 +105,20 @@ class Estimate:
     """Number of sampled points whose mesh would exceed RESOLUTION.most_unknowns."""
 
 
-def estimate_lines(lines: int, certify: bool) -> Estimate:
-    """Cost of searching `lines` rods for crossings, each along one parameter."""
-    return Estimate(lines * 1e-3 * (LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)))
+def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
+    """Cost of searching `lines` rods for crossings, each along one parameter; of_arms: as below."""
+    uniform = LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)
+    return Estimate(lines * 1e-3 * (LINE_OF_ARM_MS if of_arms else uniform))
 
 
-def estimate_lines_of_arms(lines: int) -> Estimate:
-    """Cost of searching `lines` arms that are not uniform for crossings."""
-    return Estimate(lines * 1e-3 * LINE_OF_ARM_MS)
-
-
-def estimate_diagram_of_arms(rows: int, curves: bool, criticality: bool) -> Estimate:
-    """Cost of a diagram of arms that are not uniform, without its cycles."""
-    lines = estimate_lines_of_arms(rows)
+def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:
+    """Cost of a diagram without its cycles; of uniform rods the curves take little."""
+    lines = estimate_lines(rows, certify, of_arms)
     more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
-    return replace(lines, seconds=lines.seconds + more)
+    return replace(lines, seconds=lines.seconds + more * of_arms)
 
 
-def estimate_criticality(rods: int, certify: bool, of_arms: bool = False) -> Estimate:
+def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
     """Cost of the Hopf points of rods with their normal forms; of_arms: whether some are not uniform."""
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     each = HOPF_POINTS_MS + (LINE_OF_ARM_MS if of_arms else search)

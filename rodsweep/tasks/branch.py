@@ -33,12 +33,6 @@ class BranchTask(NonlinearTask):
         ends = f"from {options.start:g} to {options.stop:g}"
         return each_point(self.points, f"followed in {along} {ends}{short}")
 
-    @property
-    def moved(self) -> dict[str, np.ndarray]:
-        """Parameters of the rods, (points,) each, and the ends of the followed parameter, (2,)."""
-        options = self.config.branch
-        return self.points.of_rods | {options.along: np.array([options.start, options.stop])}
-
     def asked(self) -> list[Part]:
         options = self.config.branch
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"

@@ -1,6 +1,6 @@
 """The task limit_cycle: beating of the nonlinear rod at every point, or return to the straight rod."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -146,13 +146,12 @@ class LimitCycleTask(Task):
         return Estimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
 
     def solver(self) -> Solver:
-        if self.config.limit_cycle.method == "integration":
-            return self._integration()
         from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         request = self.request()
-        along = self.config.along if self.chains else None
+        chains = self.chains
+        along = self.config.along if chains else None
         workspace = NewtonWorkspace()
 
         def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
@@ -162,13 +161,22 @@ class LimitCycleTask(Task):
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
-        chains = self.chains
-        return Solver(
+        by_collocation = Solver(
             statuses=tuple(CycleStatus),
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
             chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
+        )
+        if self.config.limit_cycle.method == "collocation":
+            return by_collocation
+        from ..solve.cycle.marched import solve_by_integration
+        from ..solve.cycle.status import MarchedStatus
+
+        return replace(
+            by_collocation,
+            statuses=tuple(MarchedStatus),
+            solve=lambda index: solve_by_integration(self.points.rod(index), request),
         )
 
     def request(self) -> "CycleRequest":
@@ -177,20 +185,6 @@ class LimitCycleTask(Task):
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         return CycleRequest(accuracy=self.config.accuracy, **options)
-
-    def _integration(self) -> Solver:
-        """Solver of the points by time integration alone."""
-        from ..solve.cycle.limit_cycle import warm_up
-        from ..solve.cycle.marched import solve_by_integration
-        from ..solve.cycle.status import MarchedStatus
-
-        request = self.request()
-        return Solver(
-            statuses=tuple(MarchedStatus),
-            warm_up=warm_up,
-            solve=lambda index: solve_by_integration(self.points.rod(index), request),
-            record=lambda index, cycle: self.record(self.points.values(index), cycle),
-        )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
         """A Cycle as variables of the file: fields, measures and errors."""

@@ -31,6 +31,7 @@ class ModesTask(ProvedTask):
     config: ModesConfig
 
     not_proved: ClassVar[str] = "modes may be missed"
+    counted_along: ClassVar[str] = "point"
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates of the modes' nodes, shape (nodes,)."""
@@ -58,9 +59,6 @@ class ModesTask(ProvedTask):
         return largest_first_mesh(
             self.points, lambda rod: spectrum_mesh(rod, self.config.modes.modes, accuracy)
         )
-
-    def certificate(self) -> tuple[bool, str]:
-        return self.certificate_of_counts()
 
     def cost(self) -> Estimate:
         options = self.config.modes

@@ -26,6 +26,8 @@ class ProvedTask(Task):
 
     not_proved: ClassVar[str]
     """Consequence of a missing certificate."""
+    counted_along: ClassVar[str] = ""
+    """Where modes are counted: at every "point", or along each "line" of rods."""
     left_out: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",
@@ -39,7 +41,7 @@ class ProvedTask(Task):
     @property
     def moved(self) -> dict[str, np.ndarray]:
         """Values of the parameters of the task's rods, each of any shape."""
-        return self.points.of_rods | self.coordinates()
+        return self.points.of_rods | self.searched() | self.coordinates()
 
     def arms(self) -> str:
         return arms_line(self.config, self.moved, self.first_mesh)
@@ -63,27 +65,20 @@ class ProvedTask(Task):
     def certificate(self) -> tuple[bool, str]:
         """(whether completeness is proved, the proof or the reason for its absence)."""
         task = self.config.task
-        if getattr(self.config, task).certify:
-            return True, "winding number of D"
-        return False, f"{task}.certify: false; {self.not_proved}"
+        if not getattr(self.config, task).certify:
+            return False, f"{task}.certify: false; {self.not_proved}"
+        proof = "winding number of D"
+        if self.counted_along == "line" and not self.config.standard:
+            proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
+        if self.counted_along == "point" and self._varies:
+            proof += ", estimated in part"
+        return True, proof
 
     @property
-    def varies(self) -> bool:
+    def _varies(self) -> bool:
         """Whether D has no closed form, because a rod varies along the length."""
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
-
-    def certificate_of_counts(self) -> tuple[bool, str]:
-        """`ProvedTask.certificate` for modes counted at every point."""
-        asked, proof = ProvedTask.certificate(self)
-        return asked, f"{proof}, estimated in part" if asked and self.varies else proof
-
-    def certificate_of_lines(self) -> tuple[bool, str]:
-        """`ProvedTask.certificate` for modes counted along lines of rods."""
-        asked, proof = ProvedTask.certificate(self)
-        if asked and not self.config.standard:
-            return True, f"{proof} at some rods, estimated in part; between them slopes of the eigenvalues"
-        return asked, proof
 
     def parts(self) -> list[Part]:
         what, why = self.left_out

@@ -8,7 +8,7 @@ import numpy as np
 from ..config.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
-from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram_of_arms, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
 from .parts import ProvedTask
@@ -26,6 +26,7 @@ class PhaseDiagramTask(ProvedTask):
     config: PhaseDiagramConfig
 
     not_proved: ClassVar[str] = "crossings may be missed"
+    counted_along: ClassVar[str] = "line"
 
     @property
     def line(self) -> np.ndarray:
@@ -71,9 +72,6 @@ class PhaseDiagramTask(ProvedTask):
         """Ends of the rows, (2,)."""
         return {self.config.plane[0]: self.line[[0, -1]]}
 
-    def certificate(self) -> tuple[bool, str]:
-        return self.certificate_of_lines()
-
     def parts(self) -> list[Part]:
         """Parts of a linear task; with cycles, the nonlinear motion too."""
         linear = ProvedTask.parts(self)
@@ -84,10 +82,9 @@ class PhaseDiagramTask(ProvedTask):
 
     def cost(self) -> Estimate:
         options = self.config.phase_diagram
-        rows = self.points.count
-        lines = estimate_lines(rows, options.certify)
-        if not self.config.standard:
-            lines = estimate_diagram_of_arms(rows, options.curves, options.criticality)
+        of_arms = not self.config.standard
+        asked = options.certify, of_arms, options.curves, options.criticality
+        lines = estimate_diagram(self.points.count, *asked)
         if not options.cycles:
             return lines
         reach = (float(self.line[0]), float(self.line[-1]))
@@ -101,14 +98,32 @@ class PhaseDiagramTask(ProvedTask):
 
         options = self.config.phase_diagram
         request = self.row_request()
-        if options.cycles:
-            return self._with_cycles(request)
-        return Solver(
+        workspace = NewtonWorkspace()
+        curves = DiagramCurves(self, workspace)
+        of_rows = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod(index), request),
-            record=lambda index, result: record(result, self.config.plane[0], options.crossings),
-            together=DiagramCurves(self, NewtonWorkspace()) if options.curves else None,
+            record=lambda index, result: record(result, request.name, request.crossings),
+            together=curves if options.curves else None,
+        )
+        if not options.cycles:
+            return of_rows
+        from ..solve.branch.branches import warm_up as warm_up_branches
+        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
+
+        def solve(index: int) -> CoexistenceRow:
+            row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
+            return curves.keep(index, row)
+
+        return replace(
+            of_rows,
+            statuses=tuple(CoexistenceStatus),
+            warm_up=warm_up_branches,
+            solve=solve,
+            record=lambda index, result: (
+                of_rows.record(index, result.row) | cycles_record(result, request.name)
+            ),
         )
 
     def rod(self, index: int) -> Rod:
@@ -127,29 +142,6 @@ class PhaseDiagramTask(ProvedTask):
             certify=options.certify,
             crossings=options.crossings,
             cycle_accuracy=options.cycle_accuracy,
-        )
-
-    def _with_cycles(self, request: "RowRequest") -> Solver:
-        """Solver of rows with cycles."""
-        from ..solve.branch.branches import warm_up
-        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
-        from ..solve.orbit.matrix.workspace import NewtonWorkspace
-
-        workspace = NewtonWorkspace()
-        curves = DiagramCurves(self, workspace)
-
-        def solve(index: int) -> CoexistenceRow:
-            row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
-            return curves.keep(index, row)
-
-        return Solver(
-            statuses=tuple(CoexistenceStatus),
-            warm_up=warm_up,
-            solve=solve,
-            record=lambda index, result: (
-                record(result.row, request.name, request.crossings) | cycles_record(result, request.name)
-            ),
-            together=curves if self.config.phase_diagram.curves else None,
         )
 
 

@@ -11,7 +11,7 @@ from ..config.document.reading import validated
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
-from ..post.branch_curves import Range, curves_of, union
+from ..post.branch_curves import Range, RodBranches
 from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS
@@ -77,7 +77,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
         for kind, F in mode_forces(views["thresholds"]).items()
         if (view := solved("modes", {}, F)) is not None
     }
-    ranges = stable_ranges(views["branch"]) if "branch" in views else []
+    ranges = RodBranches(views["branch"]).stable_cycles if "branch" in views else []
     cycles = [(F, view) for F in cycle_forces(ranges) if (view := _cycle(solved, F)) is not None]
     if not modes:
         missing.setdefault("modes", f"no threshold is known up to F = {request.F_max:g}")
@@ -114,11 +114,6 @@ def mode_forces(thresholds: View) -> dict[str, float]:
         if len(places):
             found[kind] = float(forces[places[0]])
     return found
-
-
-def stable_ranges(branch: View) -> list[Range]:
-    """Ranges of the force with a stable cycle on a branch."""
-    return union(piece for curve in curves_of(branch, 0) for piece in curve.stable_ranges)
 
 
 def cycle_forces(ranges: Sequence[Range]) -> list[float]:

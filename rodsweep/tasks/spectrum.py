@@ -37,6 +37,7 @@ class SpectrumTask(ProvedTask):
     config: SpectrumConfig
 
     not_proved: ClassVar[str] = "modes may be missed"
+    counted_along: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.by_name["k1"]).any():
@@ -117,7 +118,7 @@ class SpectrumTask(ProvedTask):
 
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
-            return self.certificate_of_counts()
+            return ProvedTask.certificate(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.not_proved}"
 
     def cost(self) -> Estimate:

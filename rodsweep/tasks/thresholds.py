@@ -8,7 +8,7 @@ import numpy as np
 from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
-from ..sweep.cost_estimate import Estimate, estimate_lines, estimate_lines_of_arms
+from ..sweep.cost_estimate import Estimate, estimate_lines
 from .parts import ProvedTask, before_crushed, each_point
 from .protocol import Part, Solver
 
@@ -27,6 +27,7 @@ class ThresholdsTask(ProvedTask):
     config: ThresholdsConfig
 
     not_proved: ClassVar[str] = "crossings may be missed"
+    counted_along: ClassVar[str] = "line"
 
     def headline(self) -> str:
         until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
@@ -43,13 +44,9 @@ class ThresholdsTask(ProvedTask):
         """The largest force, (1,)."""
         return {"F": np.array([self.config.thresholds.F_max])}
 
-    def certificate(self) -> tuple[bool, str]:
-        return self.certificate_of_lines()
-
     def cost(self) -> Estimate:
-        if not self.config.standard:
-            return estimate_lines_of_arms(self.points.count)
-        return estimate_lines(self.points.count, self.config.thresholds.certify)
+        of_arms = not self.config.standard
+        return estimate_lines(self.points.count, self.config.thresholds.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up

@@ -117,7 +117,7 @@ def test_ranges_with_two_states_are_those_of_the_branch(portrait):
 
 
 def test_what_is_not_decided_is_not_denied(portrait):
-    view = portrait.results.branch
+    view = portrait.results.views["branch"]
     unknown = {name: np.full_like(view.variables[name], -1) for name in UNDECIDED}
     views = {**portrait.results.views, "branch": replace(view, variables={**view.variables, **unknown})}
     text = paragraph(replace(portrait.results, views=views))
@@ -125,11 +125,12 @@ def test_what_is_not_decided_is_not_denied(portrait):
     assert "It is not known whether a stable cycle exists beside the stable straight rod." in text
 
 
-def test_branches_without_all_special_points_are_counted(portrait, monkeypatch):
-    monkeypatch.setattr("rodsweep.post.rod_portrait.paragraph.count_incomplete_branches", lambda *_: 1)
-    assert "1 of its branches of cycles is not drawn: not all special points are" in paragraph(
-        portrait.results
-    )
+def test_branches_without_all_special_points_are_counted(portrait):
+    view = portrait.results.views["branch"]
+    more = {"special_count": view.variables["special_count"] + 1}
+    views = {**portrait.results.views, "branch": replace(view, variables={**view.variables, **more})}
+    text = paragraph(replace(portrait.results, views=views))
+    assert "1 of its branches of cycles is not drawn: not all special points are" in text
 
 
 def test_cycles_are_those_of_the_limit_cycle_task(portrait):

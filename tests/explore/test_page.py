@@ -239,10 +239,10 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     page._answered(diagram, Reply("refused", {"sentence": ""}, 0.0))
     page.solve("cycles")
     page.stop()
-    page.bend((0.6, 0.5))
+    page.drag("bent", (0.6, 0.5))
     run_callbacks(page.document)
     assert len(page.contents.beating.bent.data["x"]) > 0
-    page.let_go((0.6, 0.5))
+    page.drag("motion", (0.6, 0.5))
     page.stop()
     assert len(page.contents.beating.bent.data["x"]) == 0
     solvers.questions.clear()

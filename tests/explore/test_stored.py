@@ -12,10 +12,10 @@ import rodsweep as rs
 from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import TORUS
 from rodsweep.explore.pictures.numbers import written
-from rodsweep.explore.solving.diagrams import code_of
 from rodsweep.explore.solving.questions import answer_to
 from rodsweep.explore.stored import opened, stored_diagram
 from rodsweep.explore.stored_results import StoredResults
+from rodsweep.results.layouts.branch import SPECIAL_KINDS
 
 ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
 CYCLES = f"task: limit_cycle\nparameters: {{F: [20, 40, 50], {ROD}}}\nlimit_cycle: {{shapes: 16}}\n"
@@ -140,7 +140,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
     state, _ = opened(path)
     data = rs.open(path).load()
     kind = data["cycle_curve_kind"]
-    kind.values[:] = code_of(kind, "torus")
+    kind.values[:] = SPECIAL_KINDS.index("torus")
     page = page_with(
         NoSolvers(), state=state, stored=StoredResults(path, data, state, stored_diagram(data, state))
     )

@@ -10,8 +10,7 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.post.branch_curves import curves_of, intersection, straight_ranges, union
-from rodsweep.post.summary.branch import ends_of
+from rodsweep.post.branch_curves import RodBranches, ends_of, intersection, union
 
 from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
 from .truths import leading
@@ -42,8 +41,8 @@ DECIDED = 0.02
 
 def branch_sentences(view, page, keywords, fine):
     rods = range(view.variables["status"].size)
-    true = {rod: curves_of(fine, rod) for rod in rods}
-    own = {rod: curves_of(view, rod) for rod in rods}
+    true = {rod: RodBranches(fine, rod).curves for rod in rods}
+    own = {rod: RodBranches(view, rod).curves for rod in rods}
     kinds = [
         {rod: [[(s.kind, s.reason) for s in curve.special] for curve in each] for rod, each in some.items()}
         for some in (own, true)
@@ -171,8 +170,8 @@ def _ranges_line(page, line, true):
 
 def _beside(fine, rod):
     """Where stable cycles are beside a stable straight rod."""
-    stable = union(piece for curve in curves_of(fine, rod) for piece in curve.stable_ranges)
-    return intersection(stable, straight_ranges(fine, rod, ends_of(fine))[0])
+    stable = union(piece for curve in RodBranches(fine, rod).curves for piece in curve.stable_ranges)
+    return intersection(stable, RodBranches(fine, rod).straight_ranges(ends_of(fine))[0])
 
 
 def _pairs(curves):

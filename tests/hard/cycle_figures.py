@@ -16,7 +16,7 @@ import rodsweep as rs
 from rodsweep.discretization.elements.periodic import resampled
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import curves_of
+from rodsweep.post.branch_curves import RodBranches
 
 from .arm_sentences import UNIT, UNITS, in_si
 from .drawing import (
@@ -421,8 +421,8 @@ STYLE_OF_STABILITY = {"-": 1, "--": 0, ":": -1}
 def branch_figure(d, view, fine):
     columns, found = view.point_columns, []
     entries = d.legend_entries()
-    own = {rod: curves_of(view, rod) for rod in range(view.variables["status"].size)}
-    true = {rod: curves_of(fine(), rod) for rod in own}
+    own = {rod: RodBranches(view, rod).curves for rod in range(view.variables["status"].size)}
+    true = {rod: RodBranches(fine(), rod).curves for rod in own}
     upper, lower, *third = d.panels
     rods = [rod for rod in own if any(curve.cycles.any() for curve in own[rod])]
     colours = {colour_of(handle): told(text) for handle, text in entries if told(text)}

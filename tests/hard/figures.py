@@ -120,7 +120,10 @@ def _spectra(random, keywords, top):
     if kind == "as it is":
         return keywords, {}
     keywords = _single(keywords)
-    keywords["F"] = np.linspace(0, min(top, 0.9 * keywords["k1"]), int(random.integers(6, 30))).tolist()
+    # A pull is a negative force: the forces rise from it to 0.
+    keywords["F"] = sorted(
+        np.linspace(0, min(top, 0.9 * keywords["k1"]), int(random.integers(6, 30))).tolist()
+    )
     if kind == "line":
         return keywords, {"roots": random.choice([None, "rightmost", "smallest", "all"])}
     name = str(random.choice(["k2", "gamma3"]))

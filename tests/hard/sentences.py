@@ -20,7 +20,7 @@ from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import curves_of
+from rodsweep.post.branch_curves import RodBranches
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.sweep.points.points import lines_over
 
@@ -913,7 +913,7 @@ def _states_of(view, row, fixed, table):
     for value, motions in zip(view.axes[row], table, strict=True):
         rod = {**fixed, row: float(value), "gamma1": gamma1, "stop": float(F[-1])}
         branch = solved("branch", rod | {"accuracy": FINE["branch"]})
-        ranges_ = [piece for curve in curves_of(branch, 0) for piece in curve.stable_ranges]
+        ranges_ = [piece for curve in RodBranches(branch).curves for piece in curve.stable_ranges]
         cycles = np.array([any(a < x < b * (1 + TIE) for a, b in ranges_) for x in F])
         straight = np.isin(motions, ["monotone", "oscillatory"])
         states.append(np.where(motions == "crushed", 5, straight + 2 * cycles))

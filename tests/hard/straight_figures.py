@@ -175,6 +175,12 @@ def _growth_map(d, axes, names, columns, growth):
     levels, *zero = sorted(d.take(axes, ContourSet), key=lambda each: -len(each.levels))
     x, y = (columns[name] for name in names)
     d.marks += len(x)
+    for dots in d.take(axes, PathCollection, lambda one: not one.get_visible()):  # values that a report shows
+        own = np.column_stack([x, y])[np.isfinite(x + y)]
+        right = sorted(map(tuple, dots.get_offsets().data)) == sorted(map(tuple, own))
+        shown = np.sort(np.ma.filled(dots.get_array(), np.nan))
+        right &= np.allclose(shown, np.sort(growth), rtol=SAME, atol=SAME, equal_nan=True)
+        yield "" if right else "the points under the map are not those of the file"
     inner = (x > x.min()) & (x < x.max()) & (y > y.min()) & (y < y.max()) & np.isfinite(x + y)
     size = np.nanmax(np.abs(growth))
     for i in np.flatnonzero(inner)[:: max(1, inner.sum() // 40)]:

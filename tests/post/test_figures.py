@@ -630,6 +630,12 @@ def test_normal_forms_of_an_arm_over_its_drags_are_drawn():
     assert sum(line.get_marker() == "o" for line in figure.axes[0].lines) >= 2
 
 
+def test_one_arm_with_a_load_relative_to_flutter_has_the_figure_of_a_rod():
+    """A grid over its quantities with one point has no axis for a map."""
+    figure = figure_of("spectrum", arm=ARM | {"young": "12 kPa", "pressure": "1.2 of flutter"})
+    assert figure.axes[0].get_xlabel() == r"$\mathrm{Re}\,\omega\,\tau_2$"
+
+
 def test_a_bar_of_frequencies_that_are_all_0_does_not_reach_below():
     load = {"young": ["12 kPa", "13 kPa"], "length": ["13 cm", "14 cm"], "pressure": "0.01 kPa"}
     figure = figure_of("spectrum", arm=ARM | load)

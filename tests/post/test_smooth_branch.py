@@ -88,3 +88,16 @@ def test_steps_that_grow_at_a_bend_make_no_waves():
     x, _, period, _ = through_cycles(curve)
     off = np.interp(fine, x, np.log(period)) - log_period(fine)
     assert np.abs(off).max() < 4e-3 * np.ptp(log_period(at))
+
+
+def test_a_branch_that_ends_next_to_its_hopf_point_is_a_square_root_to_its_end():
+    """With the steps of a branch of a rod, which is followed over a twentieth of its force."""
+    sizes = [0.0, 0.0200, 0.0220, 0.0241, 0.0282, 0.0365, 0.0451, 0.0629, 0.0922, 0.1257, 0.1650, 0.2056]
+    y = np.array(sizes)
+    curve = StoredBranch(
+        37.93 * (1 + 1.56 * y**2), y, 0.1 * np.exp(-0.5 * y**2), np.ones(11, int), np.ones(12, bool), ()
+    )
+    at, drawn, _, _ = through_cycles(curve)
+    true = np.sqrt(np.maximum(at / 37.93 - 1, 0) / 1.56)
+    off = np.abs(drawn - true)[np.append(False, np.diff(at) > 0)]
+    assert off.max() < 1e-4 * sizes[-1]

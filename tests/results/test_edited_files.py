@@ -14,12 +14,11 @@ from contents import content, same
 from faults.edits import copied, edited
 
 from rodsweep.api.dataset import open_result
-from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import make_job, plan_without_solver
 
 CONFIGS = {
     "spectrum": """

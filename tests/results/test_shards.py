@@ -12,13 +12,13 @@ import pytest
 from contents import content, same
 from ranks import PATIENCE
 
-from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
 from rodsweep.results.file import exchange
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.exchange import Lock
 from rodsweep.results.run.journal import journal_directory
 from rodsweep.sweep.points.ranges import Shard, shard_of
+from rodsweep.tasks.running.job import plan_without_solver
 
 SPECTRA = """
 title: shards

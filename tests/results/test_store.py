@@ -6,19 +6,22 @@ import h5py
 import numpy as np
 import pytest
 
+from rodsweep.api.dataset import open_result
 from rodsweep.config.document.reading import canonical, validated
 from rodsweep.errors import InputError
 from rodsweep.results.file import exchange, points, validation
 from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.provenance import FAILURE_REASONS
+from rodsweep.results.file.recent import take_snapshot
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
-from rodsweep.results.run.journal import Journal, journal_directory, read_journals
+from rodsweep.results.run.journal import Journal, journal_directory, read_journals, read_reasons
 from rodsweep.sweep.points.points import Points
 
 CONFIG = canonical(
@@ -163,6 +166,48 @@ def test_torn_tail_of_a_journal_is_dropped(tmp_path, lost):
     records = np.concatenate(list(read_journals(store.journals, LAYOUT, store.plan.fingerprint)))
     whole = 7 - -(-lost // (LAYOUT.record.itemsize + 4))
     assert records["index"].tolist() == list(range(whole))
+    store.close()
+
+
+def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
+    """In sight before the next run folds them in, and beside those of earlier runs, the newest first."""
+    path, long = (
+        tmp_path / "a.h5",
+        "F=3.0: failed " + "w\N{GREEK SMALL LETTER OMEGA}" * LAYOUT.record.itemsize,
+    )
+    one, other = "F=1.0: failed a", "F=2.0: failed b"
+    store = Store(path, plan())
+    pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
+    pages.append(0, record(0), [one])
+    pages.append(1, record(1))
+    store.fold({})
+    pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
+    several = {name: np.array([value, value]) for name, value in record(2).items()}
+    pages.append_all(np.array([2, 3]), several, [other, long])
+    store.close()  # the journal stays, as after SIGKILL
+    told = f"{other}\n{long}\n{one}"
+    view = read_view(path)
+    assert (view.journalled, view.attributes[FAILURE_REASONS]) == (2, told)
+    assert open_result(path).attrs[FAILURE_REASONS] == told
+    take_snapshot(path, tmp_path / "s.h5")
+    assert read_view(tmp_path / "s.h5").attributes[FAILURE_REASONS] == told
+    again = Store(path, plan())
+    assert again.missing() == [(4, 12)]
+    assert again.attributes()[FAILURE_REASONS] == told
+    again.close()
+
+
+@pytest.mark.parametrize("lost", [1, LAYOUT.record.itemsize + 4])
+def test_a_torn_line_of_reasons_is_dropped_and_only_it(tmp_path, lost):
+    store = Store(tmp_path / "a.h5", plan())
+    pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
+    pages.append(0, record(0), ["F=1.0: failed a"])
+    nothing = np.zeros(0, LAYOUT.record)
+    pages.append_all(nothing["index"], {name: nothing[name] for name in record(0)}, ["x" * 300])
+    pages.close()
+    (page,) = store.journals.glob("rank-*")
+    page.write_bytes(page.read_bytes()[:-lost])
+    assert read_reasons(store.journals, LAYOUT, store.plan.fingerprint) == ["F=1.0: failed a"]
     store.close()
 
 

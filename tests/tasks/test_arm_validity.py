@@ -13,7 +13,8 @@ from rodsweep.api.asking import job_from
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.post.figures import draw
-from rodsweep.post.summary.arm.answer import arm_answer, validity_sentence
+from rodsweep.post.summary.arm.answer import arm_answer
+from rodsweep.post.summary.arm.validity import validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import NOT_KNOWN, VALIDITY
 from rodsweep.results.layouts.phase_diagram import CLASSES

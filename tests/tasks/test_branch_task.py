@@ -15,11 +15,10 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.model.floquet import least_outside
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import curves_of, intersection, stability_of_pieces, straight_ranges, union
+from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import through_cycles
 from rodsweep.post.summary import branch as summary
-from rodsweep.post.summary.branch import coexistence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING
@@ -58,13 +57,19 @@ def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cy
     """SummaryLines once each: a symmetry breaking lies on both branches that meet there."""
     shown(command, CONFIG.format(k1="[100, 150]", stop=80))
     view = read_view(command.directory / "c.h5")
-    (branch,) = curves_of(view, 1)
+    (branch,) = RodBranches(view, 1).curves
     (start, end), stable = (branch.special[0], branch.special[-1]), np.ones_like(branch.stable)
     breaking = replace(end, kind="symmetry_breaking", reason="none", at=75.0)
     one = replace(branch, special=(start, replace(breaking, meets=2), end), stable=stable)
     other = replace(branch, special=(replace(breaking, meets=1), end), stable=stable)
+
+    class WithBreaking(RodBranches):
+        def __init__(self, view, rod=0):
+            super().__init__(view, rod)
+            self.curves = [one, other] if rod else []
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(summary, "curves_of", lambda _, rod: [one, other] if rod else [])
+        patch.setattr(summary, "RodBranches", WithBreaking)
         told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
     assert "1 symmetry breaking: F = 75" in told
     assert "2 branches lead to the end of the range: F = 80" in told
@@ -110,17 +115,17 @@ def test_file_has_the_branches_in_order_and_nothing_behind_them(command):
 def test_curves_of_a_file_go_through_cycles_and_special_points(command):
     shown(command, CONFIG.format(k1=150, stop=200))
     view = read_view(command.directory / "c.h5")
-    (curve,) = curves_of(view, 0)
+    (curve,) = RodBranches(view).curves
     assert (curve.y[0], curve.y[-1]) == (0, 0)
     assert int(np.argmax(curve.at)) == np.flatnonzero(~curve.cycles)[1]
     assert curve.at.max() == pytest.approx(FOLD, rel=1e-8)
-    stable, unstable = straight_ranges(view, 0, (0.0, 200.0))
+    stable, unstable = RodBranches(view).straight_ranges((0.0, 200.0))
     assert stable == [
         (0.0, pytest.approx(67.3869842879)),
         (pytest.approx(85.569316943), 150 * (1 - 1e-4)),
     ] or (stable[1][1] == 200.0)
     assert unstable == [(pytest.approx(67.3869842879), pytest.approx(85.569316943))]
-    assert coexistence(view, 0) == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
+    assert RodBranches(view).coexistence == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
 
 
 def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_points():
@@ -168,7 +173,7 @@ def test_figure_is_drawn(command, suffix):
 def test_figure_holds_the_amplitude_against_the_normal_form_from_both_hopf_points(command):
     """Both ends of the branch tend to the law, the subcritical one from above: its cycles lead to a fold."""
     shown(command, CONFIG.format(k1=150, stop=200))
-    (curve,) = curves_of(read_view(command.directory / "c.h5"), 0)
+    (curve,) = RodBranches(read_view(command.directory / "c.h5")).curves
     (first, y_first, stable), (last, y_last, unstable) = curve.near_hopf_points()
     assert first[:2] == pytest.approx(y_first[:2] ** 2, rel=0.02)
     # The error of F is below a hundredth of the accuracy; the nearest cycle may lie within it.
@@ -232,9 +237,9 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert "not known for 1 rod: they have more special points than the list holds" in told
     assert "stable cycles beside a stable straight rod at 0 of 1 rod" in told
     view = read_view(command.directory / "c.h5")
-    assert [len(curves_of(view, rod)) for rod in (0, 1)] == [0, 0]
-    assert straight_ranges(view, 0, (0.0, 200.0))[0] == [(0.0, 200.0)]
-    assert straight_ranges(view, 1, (0.0, 200.0)) == ([], [])
+    assert [len(RodBranches(view, rod).curves) for rod in (0, 1)] == [0, 0]
+    assert RodBranches(view).straight_ranges((0.0, 200.0))[0] == [(0.0, 200.0)]
+    assert RodBranches(view, 1).straight_ranges((0.0, 200.0)) == ([], [])
     command.write("d.yaml", CONFIG.format(k1=150, stop=200).replace("stop:", "special: 2, stop:"))
     command.solved("d.yaml")
     assert "1 of 1 branch is not shown" in " ".join(command("show", "d.h5").stdout.split())
@@ -337,12 +342,11 @@ accuracy of the branch that stands for it."""
 def test_the_curve_in_the_figure_is_the_branch(k1, stop):
     """Straight pieces between its few cycles miss it by up to a hundredth, next to a Hopf point most."""
     coarse, fine = (
-        curves_of(
+        RodBranches(
             view_of(
                 rs.sweep("branch", k1=k1, k2=1e4, gamma3=1e-4, stop=stop, accuracy=accuracy), Path("b.h5")
-            ),
-            0,
-        )
+            )
+        ).curves
         for accuracy in (1e-3, FINER)
     )
     for curve, true in zip(coarse, fine, strict=True):

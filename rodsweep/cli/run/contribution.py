@@ -1,7 +1,7 @@
 """End of a run: what each rank contributed, attributes of the file made of it, and closing sentences."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,13 +31,6 @@ def of_the_last_run(plan: Plan) -> dict[str, Any]:
     """Attributes of a plan that describe the last run with computed points."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
-
-
-def reasons_of(contributions: Sequence[Contribution], before: Mapping[str, Any]) -> dict[str, str]:
-    """Attribute with the reasons of failed points; before: attributes with the reasons of earlier runs."""
-    found = "\n".join(failure for contribution in contributions for failure in contribution.failures)
-    # The newest examples first: an earlier one may be a point that has been computed anew.
-    return provenance.united_reasons(found, str(before.get(provenance.FAILURE_REASONS, "")))
 
 
 def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:

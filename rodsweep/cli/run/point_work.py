@@ -67,11 +67,11 @@ class PointWork:
         plan = self.plan
 
         def keep(index: Indices, result: Any) -> None:
+            new = reasons.add(index, result)
             if isinstance(result, StretchResult):
-                journal.append_all(np.asarray(index), result.values)
+                journal.append_all(np.asarray(index), result.values, new)
             else:
-                journal.append(int(index), solver.record(int(index), result))
-            reasons.add(index, result)
+                journal.append(int(index), solver.record(int(index), result), new)
 
         shown = ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else Silent()
         directory = journal_directory(self.output)

@@ -1,7 +1,7 @@
 """`rodsweep run`: read the config, open the file, solve missing points, write them into the file."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -27,7 +27,6 @@ from .contribution import (
     RunEnd,
     history_of,
     of_the_last_run,
-    reasons_of,
 )
 from .joint import JointDue, JointWork
 from .options import RunOptions
@@ -68,8 +67,8 @@ class _Run:
         self.options = options
         self.shard = options.shard
         self.began, self.started, self.seconds = time.monotonic(), provenance.now(), 0.0
-        self.log = Log(output, team.rank, self._where)
-        self.solver = guarded(job.solver(), job.layout, self._note)
+        self.log = Log(output, team.rank, self._where, options.strict)
+        self.solver = guarded(job.solver(), job.layout, self.log)
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
@@ -86,7 +85,7 @@ class _Run:
         )
         together = self.solver.together
         self.joint = together and JointWork(
-            team, together, output, self.plan.fingerprint, self._note_unit, stop
+            team, together, output, self.plan.fingerprint, self.log.note, stop
         )
 
     def run(self) -> int:
@@ -129,8 +128,6 @@ class _Run:
         if count:
             history = history_of(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.started, "stopped": self.stop.name}
-            self.store.restore()  # the file may have been moved meanwhile
-            history |= reasons_of(contributions, self.store.attributes())
             self.store.fold(of_the_last_run(self.plan) | history | started)
         if not self._lacks_curves(total(self.store.missing())):
             return JointDue(False)
@@ -144,22 +141,6 @@ class _Run:
         """Prints a text, in quiet mode only if it reports a problem."""
         if amiss or not self.options.quiet:
             click.echo(text)
-
-    def _note(self, indices: Sequence[int], error: Exception) -> None:
-        """Writes an unforeseen exception into the log; raises it in strict mode."""
-        self.log(indices, error)
-        self._raise_if_strict(self._where(indices[0]), error)
-
-    def _note_unit(self, place: str, error: Exception) -> None:
-        """Writes an unforeseen exception of a unit of joint work into the log; raises it in strict mode."""
-        self.log.note(place, error)
-        self._raise_if_strict(place, error)
-
-    def _raise_if_strict(self, place: str, error: Exception) -> None:
-        """Raises the exception with its place in strict mode."""
-        if self.options.strict:
-            error.add_note(f"at {place}")
-            raise error
 
     def _open(self) -> list[IndexRange]:
         """Opens the file; returns the missing points."""

@@ -16,6 +16,7 @@ from ..roots import (
     A_ROOT,
     BLURRED,
     CLOSE_ROOTS,
+    EXPANSIONS,
     ON_THE_AXIS,
     REFINED_TOGETHER,
     SAME_ROOT,
@@ -59,13 +60,13 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
     return error + ROUNDING_OF_CHAIN * abs(w)
 
 
-def refined(w: complex, determinant: ArmDeterminant) -> complex:
+def refined(w: complex, determinant: ArmDeterminant, farthest: float = math.inf) -> complex:
     """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess gives a real eigenvalue.
+    A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
     """
     real = w.imag == 0
-    last = math.inf
+    last = 2 * farthest
     for _ in range(MAX_REFINEMENTS):
         value = determinant.value(w)
         if value.D_w == 0:
@@ -125,9 +126,9 @@ def roots(
     start = first[chosen]
     error = error[chosen]
     length = length[chosen]
-    w, moved = _separated(start, error, determinant)
-    stands = moved | (error <= A_ROOT * length)
-    _refine(w, start, moved, stands, determinant)
+    w, reach = _separated(start, error, determinant)
+    stands = np.isfinite(reach) | (error <= A_ROOT * length)
+    _refine(w, start, reach, stands, determinant)
     kept = np.flatnonzero(stands)
     order = np.arange(len(kept))
     sort_descending(w[kept], order)
@@ -158,39 +159,42 @@ def _inside(w: complex, hull: Hull) -> bool:
     return w.real <= real and abs(w.imag) <= imag
 
 
-def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Mask]:
-    """(w, mask) after moving each pair of eigenvalues closer than its errors to the two roots near it.
+def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Array]:
+    """(w, reach) after moving each pair of eigenvalues closer than its errors to the two roots near it.
 
-    w: (n,). error: (n,). mask: eigenvalues that were moved, (n,).
+    w: (n,). error: (n,). reach: half the distance from the other one of the pair, (n,), inf where an
+    eigenvalue is not moved.
     """
     w = w.copy()
-    moved = np.zeros(len(w), dtype=bool)
+    reach = np.full(len(w), math.inf)
     for i in range(len(w)):
-        others = [j for j in range(len(w)) if j != i and not moved[j]]
-        if moved[i] or not others:
+        others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
+        if reach[i] < math.inf or not others:
             continue
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
         if abs(w[partner] - w[i]) <= REFINED_TOGETHER * (error[i] + error[partner]):
-            middle = complex(w[i] + w[partner]) / 2
-            if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
-                middle = complex(middle.real, 0.0)
-            w[i], w[partner] = two_roots(middle, determinant)
-            moved[i] = moved[partner] = True
-    return w, moved
+            for _ in range(EXPANSIONS):
+                middle = complex(w[i] + w[partner]) / 2
+                if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
+                    middle = complex(middle.real, 0.0)
+                w[i], w[partner] = two_roots(middle, determinant)
+            reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
+    return w, reach
 
 
-def _refine(w: Complex, start: Complex, moved: Mask, stands: Mask, determinant: ArmDeterminant) -> None:
+def _refine(w: Complex, start: Complex, reach: Array, stands: Mask, determinant: ArmDeterminant) -> None:
     """Refines in place each w that approximates a root; conjugates of refined roots are copied.
 
-    w, start: refined and original eigenvalues, (n,). moved, stands: masks of eigenvalues that `_separated`
-    moved, and that approximate a root, (n,).
+    w, start: refined and original eigenvalues, (n,). reach: that of `_separated`, (n,). stands: mask of
+    eigenvalues that approximate a root, (n,).
     """
+    moved = np.isfinite(reach)
     for i in np.flatnonzero(stands).tolist():
         pair = i > 0 and stands[i - 1] and w[i].imag != 0 and not moved[i - 1] and not moved[i]
         if pair and start[i] == start[i - 1].conjugate():
             w[i] = w[i - 1].conjugate()
         else:
-            w[i] = refined(complex(w[i]), determinant)
+            w[i] = refined(complex(w[i]), determinant, float(reach[i]))
 
 
 def _raise_errors_of_equal_roots(w: Complex, error: Array, determinant: ArmDeterminant) -> None:

@@ -51,13 +51,13 @@ class BeatingPicture:
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
         return CustomJS(args=sources | {"period": SECONDS}, code=read("beating.js"))
 
-    def on_drag(self, bend: Callable[[Tip], None], let_go: Callable[[Tip], None]) -> None:
-        """Registers the function called after a drag of the tip, with the tip's place in L."""
+    def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
+        """Registers the function called after a drag of the tip: kind of question, place of the tip in L."""
 
         def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
             if len(new["x"]) == 1:
-                tip = tuple(float(new[name][0]) / self.length.factor for name in "xy")
-                (let_go if new["phase"][0] == "let go" else bend)((tip[0], tip[1]))
+                x, y = (float(new[name][0]) / self.length.factor for name in "xy")
+                drag("motion" if new["phase"][0] == "let go" else "bent", (x, y))
 
         self.grip.on_change("data", dragged)
 

@@ -102,43 +102,18 @@ def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
 
 
 def of_phases(data: Dataset, second: str) -> dict[str, Any]:
-    """The diagram from a result of the task phase_diagram over F and a second parameter."""
+    """The diagram from a result of the task phase_diagram or spectrum over F and a second parameter."""
     counts = data["unstable_count"].transpose(second, "F").values
-    crushed = data["class"].transpose(second, "F").values == code_of(data["class"], "crushed")
-    curves = _no_curves()
-    if "cycle_curve_F" in data and f"cycle_curve_{second}" in data:
-        curves |= {
-            "cycle_curve_x": data["cycle_curve_F"].values,
-            "cycle_curve_y": data[f"cycle_curve_{second}"].values,
-            "cycle_curve_number": data["cycle_curve_number"].values,
-            "cycle_curve_kind": words_of(data["cycle_curve_kind"]),
-        }
-    if "curve_F" in data and f"curve_{second}" in data:
-        curves |= {
-            "curve_x": data["curve_F"].values,
-            "curve_y": data[f"curve_{second}"].values,
-            "curve_number": data["curve_number"].values,
-            "curve_kind": words_of(data["curve_kind"]),
-        }
-    return {
-        "x": data["F"].values,
-        "y": data[second].values,
-        "unstable_count": np.where(crushed, CRUSHED, counts),
-        **curves,
-        **_no_crossings(),
-    }
-
-
-def of_grid(data: Dataset, second: str) -> dict[str, Any]:
-    """The diagram from a result of the task spectrum over F and a second parameter."""
-    counts = data["unstable_count"].transpose(second, "F").values
-    return {
-        "x": data["F"].values,
-        "y": data[second].values,
-        "unstable_count": counts,
-        **_no_curves(),
-        **_no_crossings(),
-    }
+    if "class" in data:
+        is_crushed = words_of(data["class"].transpose(second, "F")) == "crushed"
+        counts = np.where(is_crushed, CRUSHED, counts)
+    found = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_no_curves()}
+    for curve in ("curve", "cycle_curve"):
+        if f"{curve}_F" in data and f"{curve}_{second}" in data:
+            names = {"x": "F", "y": second, "number": "number"}
+            found |= {f"{curve}_{key}": data[f"{curve}_{name}"].values for key, name in names.items()}
+            found[f"{curve}_kind"] = words_of(data[f"{curve}_kind"])
+    return found | {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
 
 
 def _of_thresholds(state: PageState) -> dict[str, Any]:
@@ -202,16 +177,6 @@ def _no_curves() -> dict[str, Any]:
     empty = np.zeros(0)
     none = {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
     return none | {f"cycle_{name}": values for name, values in none.items()}
-
-
-def _no_crossings() -> dict[str, Any]:
-    return {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
-
-
-def code_of(array: Dataset, word: str) -> int:
-    """The flag value of a word of an array of flags."""
-    words = str(array.attrs["flag_meanings"]).split()
-    return int(np.atleast_1d(array.attrs["flag_values"])[words.index(word)])
 
 
 def words_of(array: Dataset) -> Any:

@@ -21,15 +21,9 @@ Tip = tuple[float, float]
 """Place (x, y) of the tip, in lengths of the arm."""
 
 
-def bent(state: PageState, tip: Tip) -> dict[str, Any]:
-    """x, y: the shape of the arm with its tip at a place, (nodes,) in L."""
+def bent(state: PageState, tip: Tip | None) -> dict[str, Any]:
+    """x, y: the shape of the arm with its tip at a place, (nodes,) in L; the straight arm for None."""
     x, y = bent_shape(_job(state), tip)
-    return {"x": x, "y": y}
-
-
-def straight(state: PageState) -> dict[str, Any]:
-    """x, y: the straight arm, (nodes,) in L."""
-    x, y = bent_shape(_job(state), None)
     return {"x": x, "y": y}
 
 

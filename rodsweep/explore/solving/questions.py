@@ -16,11 +16,11 @@ from ...api.dataset import view_of
 from ...api.sweeping import sweep
 from ...config.axes import DEFAULTS
 from ...errors import InputError
-from ...post.branch_curves import curves_of
+from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
-from .branches import drawn_branches, straight_pieces
+from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram, diagram, words_of
-from .letting_go import Tip, bent, film_of_motion, motion, straight
+from .letting_go import Tip, bent, film_of_motion, motion
 
 Found = dict[str, Any]
 """Variables of an answer by name, as arrays; `status`, `sentence` and `message` are text."""
@@ -99,7 +99,7 @@ def growth(state: PageState) -> Found:
 
 def cycle(state: PageState) -> Found:
     """The limit cycle, with the shapes of the arm over a period; x, y: the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPES, progress=False)) | straight(state)
+    return variables(state.subject().cycle(shapes=SHAPES, progress=False)) | bent(state, None)
 
 
 def film(state: PageState) -> Found:
@@ -124,8 +124,8 @@ def branch(state: PageState) -> Found:
     known. special: (F, y, kind, period) of each special point.
     """
     answer = state.subject().branch(stop=state.largest_force(), progress=False)
-    found = drawn_branches(curves_of(view_of(answer.whole, Path(answer.rod)), 0))
-    found["pieces"] += straight_pieces(answer.data, state.largest_force())
+    rod = RodBranches(view_of(answer.whole, Path(answer.rod)))
+    found = drawn_branches(rod, state.largest_force())
     return found | {"status": str(answer.status), "sentence": answer.sentence}
 
 

@@ -17,7 +17,6 @@ from ...results.file.view import View
 from .arm.map import can_draw, draw_arm_map
 from .branch import draw_branch
 from .criticality import draw_criticality
-from .cycle.selection import outcomes
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
@@ -114,7 +113,7 @@ def draw(
 
 def _omitted_points(views: Sequence[View]) -> str:
     """Clause on the points without anything to draw, or an empty text."""
-    words = np.concatenate([outcomes(view) for view in views])
+    words = np.concatenate([view.outcomes for view in views])
     counts = (f"{np.count_nonzero(words == word)} {text}" for word, text in OMITTED.items() if word in words)
     omitted = " and ".join(counts)
     return f"; of {words.size} points {omitted}" if omitted else ""

@@ -12,18 +12,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...model.parameters import CRUSHING
-from ...results.file.view import View
 from ...results.layouts.variables import MISSING
 from ...wording import counted, has_or_have, some_of
-from ..branch_curves import (
-    Range,
-    StoredBranch,
-    count_incomplete_branches,
-    curves_of,
-    followed_parameter,
-    straight_ranges,
-)
-from ..summary.branch import ends_of
+from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter, runs_of
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -53,13 +44,13 @@ COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F"
 def draw_branch(request: FigureRequest) -> str:
     """Draws the largest tip y and the period over the followed parameter, for one rod or several."""
     view = request.only_view()
-    branches = [curves_of(view, rod) for rod in range(view.variables["status"].size)]
-    beating = [rod for rod, own in enumerate(branches) if any(curve.cycles.any() for curve in own)]
+    rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
+    beating = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
     style.require(view, beating, "branch with cycles")
     drawn = beating[: len(COLOURS)]
-    curves = [curve for rod in drawn for curve in branches[rod]]
-    alone = len(branches) == 1
-    colours = COLOURS if alone else [COLOURS[k] for k, rod in enumerate(drawn) for _ in branches[rod]]
+    curves = [curve for rod in drawn for curve in rod.curves]
+    alone = len(rods) == 1
+    colours = COLOURS if alone else [COLOURS[k] for k, rod in enumerate(drawn) for _ in rod.curves]
     along = followed_parameter(view)
     beside = any(curve.near_hopf_points() for curve in curves)
     figure = Figure(figsize=(5.6, 7.6 if beside else 5.6), layout="constrained")
@@ -68,21 +59,20 @@ def draw_branch(request: FigureRequest) -> str:
     upper.tick_params(labelbottom=False)
     marked = draw_curves(upper, lower, curves, colours)
     if alone:
-        draw_straight_rod(upper, view, drawn[0], curves)
+        draw_straight_rod(upper, drawn[0])
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[along], yscale="log")
     for axes in third:
         marked["predicted"] = _compare_prediction(axes, curves, colours, along)
     handles = stability_entries(curves)
-    shared, own = shared_and_own_of_points(view, [rod + 1 for rod in drawn])
+    shared, own = shared_and_own_of_points(view, [rod.rod + 1 for rod in drawn])
     handles += [
         Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
     ]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
     figure.suptitle(style.heading(view, shared))
-    return request.write(
-        figure, f"{counted(len(curves), 'branch')} of cycles over {along}{_left_out(view, drawn, beating)}"
-    )
+    shown = f"{counted(len(curves), 'branch')} of cycles over {along}"
+    return request.write(figure, shown + _left_out(rods, len(beating), len(drawn)))
 
 
 def draw_curves(
@@ -98,10 +88,9 @@ def draw_curves(
     return marked
 
 
-def draw_straight_rod(axes: Axes, view: View, rod: int, curves: Sequence[StoredBranch]) -> None:
+def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     """Draws the straight rod, y = 0, with a line style for its stability."""
-    straight = straight_ranges(view, rod, _shown(view, rod, curves))
-    for stable, ranges in zip((1, 0), straight, strict=True):
+    for stable, ranges in zip((1, 0), rod.straight_ranges(_shown(rod)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
 
@@ -112,40 +101,38 @@ def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
     return [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(shown)[::-1]]
 
 
-def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
+def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
     """Clause on branches and rods not drawn."""
-    hidden = sum(count_incomplete_branches(view, rod) for rod in range(view.variables["status"].size))
+    hidden = sum(rod.hidden for rod in rods)
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
-    missing = int((view.variables["status"] == MISSING).sum())
-    rods = view.variables["status"].size - missing
-    if len(drawn) < len(beating):
-        more += f"; of the first {len(drawn)} of {len(beating)} rods with branches (--at chooses others)"
-    without = rods - len(beating)
-    return more + (f"; {some_of(without, rods, 'rod')} {has_or_have(without)} none" if without > 0 else "")
+    if drawn < beating:
+        more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
+    computed = int((rods[0].view.variables["status"] != MISSING).sum())
+    without = computed - beating
+    return more + (
+        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} none" if without > 0 else ""
+    )
 
 
-def _shown(view: View, rod: int, curves: Sequence[StoredBranch]) -> Range:
+def _shown(rod: RodBranches) -> Range:
     """Range in which the straight rod is drawn: where it is not crushed, and not far beyond all cycles."""
-    low, high = ends_of(view)
-    if curves:
-        high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in curves))
+    low, high = ends_of(rod.view)
+    if rod.curves:
+        high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
     force, stiffness = CRUSHING
-    columns = {name: float(values[rod]) for name, values in view.point_columns.items()}
-    if followed_parameter(view) == force:
+    columns = {name: float(values[rod.rod]) for name, values in rod.view.point_columns.items()}
+    along = followed_parameter(rod.view)
+    if along == force:
         return low, min(high, columns[stiffness])
-    return (max(low, columns[force]) if followed_parameter(view) == stiffness else low), high
+    return (max(low, columns[force]) if along == stiffness else low), high
 
 
 def _pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve, x and y of shape (n,), with a line style for each stability of its pieces, (n - 1,)."""
-    changes = np.flatnonzero(np.diff(stable)) + 1
-    for run in np.split(np.arange(len(stable)), changes):
-        if len(run):
-            vertices = slice(run[0], run[-1] + 2)
-            line = LINES[int(stable[run[0]])][0]
-            axes.plot(x[vertices], y[vertices], ls=line, marker=marker, color=colour, lw=1.4)
+    for vertices, kind in runs_of(stable):
+        axes.plot(x[vertices], y[vertices], ls=LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 
 def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:

@@ -11,7 +11,7 @@ from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
 from .cycle.point_map import is_map, point_map, varied_parameters
 from .cycle.portrait import draw_portrait
-from .cycle.selection import ENERGIES, MAX_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
+from .cycle.selection import ENERGIES, MAX_CYCLES, SHAPES, TRACE, chosen_cycles
 from .cycle.transient import draw_transients
 from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
@@ -47,7 +47,7 @@ def _with_needs(request: FigureRequest, name: str) -> View:
     view = request.views[0]
     if request.shapes is None or all(variable in view.variables for variable in NEEDS.get(name, ())):
         return view
-    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(outcomes(view) == "cycle")]
+    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.outcomes == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
     return request.shapes(view, numbers[:MAX_CYCLES])
 
@@ -78,7 +78,7 @@ def _suggested(request: FigureRequest) -> str:
         return "animation"
     if others:
         return "amplitude"
-    beats = outcomes(first) == "cycle"
+    beats = first.outcomes == "cycle"
     chosen = [number - 1 for number in request.points]
     few_cycles = len(chosen) > 0 or beats.sum() <= MAX_CYCLES
     few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES

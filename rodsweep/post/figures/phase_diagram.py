@@ -16,7 +16,8 @@ from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.variables import has_covering, number_of
+from ...results.layouts.rods import has_covering
+from ...results.layouts.variables import number_of
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings

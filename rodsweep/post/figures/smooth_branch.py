@@ -15,13 +15,13 @@ MIRRORED = 3
 IMAGE = np.array([1.0, -1.0, 1.0])
 """Factors of (parameter, y, log period) that make the mirror image of a cycle."""
 SHARES = np.array([0.5, 1.0, 1.0])
-"""Weights of parameter, y and log period in the length of a chord, each in units of the branch's extent: next
-to a Hopf point the parameter goes with the square of y, and a length close to y is smoothest."""
+"""Weights of parameter, y and log period in the length of a chord, each in units of the branch's extent."""
 WITHOUT_Y = np.array([1.0, 0.0, 1.0])
 """Factors that leave y out of the length of a chord."""
-POWERS = (1.0, 0.5)
-"""Powers of chords whose sums are tried as variable of the curve. The length (1) is best on most branches,
-the sum of roots (0.5) where the steps grow at a bend."""
+VARIABLES = ((SHARES, 1.0), (SHARES, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
+"""Weights and powers of chords whose sums are tried as variable of the curve. The length is best on most
+branches, the sum of roots where the steps grow at a bend. A length close to y is best on a branch that ends
+next to its Hopf point, where parameter and period go with the square of y."""
 SLOPE_CYCLES = 5
 """Number of cycles in the polynomial for the slope of the curve at the middle cycle."""
 CORNER_CYCLES = 4
@@ -73,7 +73,7 @@ def _smooth(own: Array, extent: Array) -> Array:
     first = len(before) if own[0, 1] == 0 else 0
     last = len(behind) if own[-1, 1] == 0 else 0
     whole = np.concatenate([before[:first], own, behind[:last]])
-    variables = [_lengths(whole, extent, power) for power in POWERS]
+    variables = [_lengths(whole, extent, shares, power) for shares, power in VARIABLES]
     s = min(variables, key=lambda variable: _roughness(variable, whole / extent))
     ends = s[first : first + len(own)]
     finer = np.append(np.linspace(ends[:-1], ends[1:], PIECES, endpoint=False, axis=1).ravel(), ends[-1])
@@ -121,9 +121,12 @@ def _rise(x: Array, values: Array) -> Polynomial:
     return (behind - before) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
 
 
-def _lengths(places: Array, extent: Array, power: float = 1.0) -> Array:
-    """Sums of powers of the chords from the first place to each, (n,); places has the shape (n, 3)."""
-    chords = np.linalg.norm(np.diff(places / extent * SHARES, axis=0), axis=1)
+def _lengths(places: Array, extent: Array, shares: Array = SHARES, power: float = 1.0) -> Array:
+    """Sums of powers of the chords from the first place to each, (n,).
+
+    places: shape (n, 3). shares: weights in a chord, (3,).
+    """
+    chords = np.linalg.norm(np.diff(places / extent * shares, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 

@@ -78,9 +78,14 @@ def _lines(view: View, few: str, request: FigureRequest) -> str:
     """Draws a panel for each value of a parameter with few values; a map between them would mislead."""
     lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
+    return _in_panels(views, request, few)
+
+
+def _in_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
+    """Draws a panel for each of some lines of spectra."""
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.narrow)
-    return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {few}")
+    return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {each}")
 
 
 def _several(request: FigureRequest) -> str:
@@ -90,10 +95,7 @@ def _several(request: FigureRequest) -> str:
     if len(request.views) > MAX_PANELS:
         raise InputError(f"{len(request.views)} files are given, and one figure has room for {MAX_PANELS}")
     views = [_line_of(view, request) for view in request.views]
-    roots = roots_to_follow(views, request.roots)
-    figure = draw_panels(views, roots, request.look.narrow)
-    shown = f"{FOLLOWED_ROOTS[roots]}, in a panel for each of {len(request.views)} files"
-    return request.write(figure, shown)
+    return _in_panels(views, request, f"of {len(views)} files")
 
 
 def _line_of(view: View, request: FigureRequest) -> View:

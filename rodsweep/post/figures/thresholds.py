@@ -34,7 +34,7 @@ def draw_thresholds(request: FigureRequest) -> str:
         return _of_files(request)
     view = as_grid(request.only_view("lines", "map"))
     if not view.is_grid or view.variables["status"].size == 1:
-        if request.what and view.quantities:
+        if request.what and view.quantities and view.variables["status"].size > 1:
             raise InputError(
                 f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove it, "
                 "or draw lines over the other quantities with --at, such as --at 'length=12 cm'"

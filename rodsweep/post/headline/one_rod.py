@@ -15,8 +15,6 @@ from ..tables.columns import Column
 from ..tables.contents import POINTS
 
 YES_NO = ("no", "yes")
-COMPLEX_PARTS = {"landau": "landau_error", "growth_slope": "growth_slope_error"}
-"""Complex variables, stored as two parts, and their error relative to the modulus."""
 EXACT = ("F_end",)
 """Variables that repeat an option."""
 
@@ -50,10 +48,6 @@ class Digits:
             return np.zeros_like(self._values[name])
         if name in self._beside:
             return self._beside[name]
-        for whole, error in COMPLEX_PARTS.items():
-            if name in (f"{whole}_real", f"{whole}_imag") and error in self.columns:
-                parts = (self._values[f"{whole}_{part}"] for part in ("real", "imag"))
-                return np.hypot(*parts) * self._values[error]
         known = errors_of(self._values, name)
         has_error = any(table.get(name, "") in self.columns for table in (RELATIVE, ABSOLUTE))
         return known if has_error else np.where(known > 0, known, np.nan)

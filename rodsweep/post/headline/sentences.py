@@ -84,7 +84,7 @@ def branch_sentence(rod: OneRod) -> str:
 def cycle_sentence(rod: OneRod) -> str:
     """Period and amplitude of the cycle, or the straight rod; empty for any other outcome."""
     if period := rod.text("period"):
-        status = rod.view.flags[int(rod.view.variables["status"].ravel()[0])]
+        status = str(rod.view.outcomes[0])
         beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
         return f"{beats}: period {period}, largest tip y {rod.text('tip_y_max')}"
     return ""
@@ -98,8 +98,8 @@ def _end(rod: OneRod) -> str:
 
 def _not_known_beyond(rod: OneRod) -> str:
     """Clause on the loads beyond the end of a search that ended early; empty for a search to its end."""
-    early = rod.view.flags[int(rod.view.variables["status"].ravel()[0])] == "ended_early"
-    return f"; not known beyond {_end(rod)}, where the search ended early" if early else ""
+    early = "; not known beyond {}, where the search ended early"
+    return early.format(_end(rod)) if rod.view.with_status("ended_early").all() else ""
 
 
 EIGENVALUES = ("mode", "growth_rate", "frequency")

@@ -15,12 +15,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from ... import __version__
-from ...errors import InputError
 from ...results.file.provenance import now
 from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
-from ..whole_file import written_whole
+from ..whole_file import require_name, written_whole
 from .dark_colours import in_the_dark
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
@@ -33,14 +32,7 @@ QUOTED = re.compile("`([^`]*)`")
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
     """Raises InputError unless a page can be written under this name; inputs: files to report."""
-    if output.suffix != ".html":
-        raise InputError(f"--output {output}: the name must end in .html")
-    if not output.parent.is_dir():
-        raise InputError(f"--output {output}: there is no directory {output.parent}")
-    if output.exists() and not output.is_file():
-        raise InputError(f"--output {output} is not a name for a page; choose another")
-    if output.exists() and any(output.samefile(path) for path in inputs if path.exists()):
-        raise InputError(f"--output {output} is a file to report and would be overwritten; choose another")
+    require_name(output, (".html",), "page", inputs)
 
 
 def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = None) -> str:

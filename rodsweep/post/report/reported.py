@@ -76,11 +76,10 @@ def _with_places(view: View, statuses: TextTable) -> TextTable:
     """The table of statuses; of several statuses with the ranges of the parameters in which each is found."""
     if len(statuses.rows) == 1:
         return statuses
-    values = {word: value for value, word in view.flags.items()}
-    status = view.listed.variables["status"]
+    listed = view.listed
     rows = []
     for word, count, meaning in statuses.rows:
-        where = region(view.listed, status == values[word]) if word in values else ""
+        where = region(listed, listed.with_status(word)) if word in view.flags.values() else ""
         rows.append((word, count, where, meaning))
     first, second, last = statuses.headings
     return TextTable((first, second, "where", last), tuple(rows))

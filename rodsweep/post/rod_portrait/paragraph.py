@@ -1,21 +1,20 @@
 """The portrait of a rod in words: thresholds, criticality, branches, coexistence, cycles, missing results."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 
 import numpy as np
 
-from ...results.file.view import View
 from ...results.layouts.arm import VALIDITY
+from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
-from ..branch_curves import coexistence_is_decided, count_incomplete_branches, curves_of
-from ..figures.cycle.selection import CYCLE_WORDS, outcomes
-from ..summary.arm.answer import plane_lines, validity_sentence
-from ..summary.branch import SPECIAL_WORDS, coexistence, errors_of, two_cycles
+from ..branch_curves import StoredBranch
+from ..summary.arm.validity import plane_lines, validity_sentence
+from ..summary.branch import SPECIAL_WORDS
 from ..summary.criticality import SIDES
 from ..summary.ranges import rounded
-from ..summary.thresholds import ended_early
+from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
 SAME_FORCE = 1e-6
@@ -99,7 +98,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     elif v["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
-        range_ = f" up to {end}" if ended_early(view).all() else ""
+        range_ = f" up to {end}" if view.with_status(ENDED_EARLY).all() else ""
         proof = "proved complete" if v["certified"] else "not proved complete"
         yield f"This list of thresholds{range_} is {proof}."
 
@@ -120,16 +119,15 @@ def _side(results: RodResults, F: float) -> str:
 
 def _branches(results: RodResults) -> Iterator[str]:
     """Yields sentences on the branches of cycles, their special points and ranges of stability."""
-    view = results.branch
-    if view is None:
+    rod = results.branches
+    if rod is None:
         return
-    curves = curves_of(view, 0)
-    hidden = count_incomplete_branches(view, 0)
-    if hidden:
+    if rod.hidden:
         yield (
-            f"{hidden} of its branches of cycles {is_or_are(hidden)} not drawn: not all special points are "
-            "stored."
+            f"{rod.hidden} of its branches of cycles {is_or_are(rod.hidden)} not drawn: not all special "
+            "points are stored."
         )
+    curves = rod.curves
     if not curves:
         yield "No branch of cycles begins at a Hopf point in this range."
         return
@@ -138,23 +136,22 @@ def _branches(results: RodResults) -> Iterator[str]:
     special = [
         f"{counted(len(at), word)} at {units.at(', '.join(at))}"
         for kind, word in SPECIAL_WORDS.items()
-        if (at := _special(view, kind, units.force.factor))
+        if (at := _special(curves, kind, units.force.factor))
     ]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
     verb = "begins" if len(curves) == 1 else "begin"
     end = f"with {' and '.join(special)}" if special else "without a fold or another change of stability"
     yield f"{number} {verb} at its Hopf points, {end}."
-    errors = errors_of(curves)
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
-    no_cycle = "none" if is_decided and not hidden else "none is known"
-    yield f"Stable cycles: {units.forces_at(stable, errors) if stable else no_cycle}."
-    if not hidden:
-        beside = coexistence(view, 0)
-        ranges = units.forces_at(beside, errors) if beside else ""
-        yield _beside(ranges, coexistence_is_decided(view, 0), results.rod.kind)
-        if pairs := two_cycles(view, 0):
-            yield f"Two different cycles are stable at {units.forces_at(pairs, errors)}."
+    no_cycle = "none" if is_decided and not rod.hidden else "none is known"
+    yield f"Stable cycles: {units.forces_at(stable, rod.errors) if stable else no_cycle}."
+    if not rod.hidden:
+        beside = rod.coexistence
+        ranges = units.forces_at(beside, rod.errors) if beside else ""
+        yield _beside(ranges, rod.coexistence_is_decided, results.rod.kind)
+        if pairs := rod.two_cycles:
+            yield f"Two different cycles are stable at {units.forces_at(pairs, rod.errors)}."
 
 
 def _beside(ranges: str, is_decided: bool, kind: str) -> str:
@@ -168,11 +165,11 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
     return f"It is not known whether a stable cycle exists beside the stable straight {kind}."
 
 
-def _special(view: View, kind: str, factor: float) -> list[str]:
+def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
     """Loads at the special points of a kind, each point once. factor: the load at F = 1."""
     found = {
         rounded(factor * special.at, factor * special.error): None
-        for curve in curves_of(view, 0)
+        for curve in curves
         for special in curve.special
         if special.kind == kind
     }
@@ -185,7 +182,7 @@ def _cycles(results: RodResults) -> Iterator[str]:
     clauses = []
     for F, view in results.cycles:
         v = view.of_point(0)
-        word = str(outcomes(view)[0])
+        word = str(view.outcomes[0])
         if word not in CYCLE_WORDS:
             clauses.append(f"at {units.force_at(F)} no cycle is drawn ({word.replace('_', ' ')})")
             continue
@@ -209,11 +206,5 @@ def _missing(results: RodResults) -> Iterator[str]:
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
     for task in SEARCHES:
-        if (view := results.views.get(task)) and (word := str(outcomes(view)[0])) != SUCCEEDED:
-            yield f"About {task}, {word.replace('_', ' ')}: {status_meaning(view, word)}."
-
-
-def status_meaning(view: View, word: str) -> str:
-    """Meaning of a status, as the view's attributes give it."""
-    lines = str(view.attributes.get("status_sentences", "")).splitlines()
-    return dict(line.split(": ", 1) for line in lines if ": " in line).get(word, word)
+        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCEEDED:
+            yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."

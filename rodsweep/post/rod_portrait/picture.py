@@ -11,14 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...results.file.view import View
-from ..branch_curves import count_incomplete_branches, curves_of
+from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ..figures import style
 from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, clamp, force_arrow
-from ..figures.cycle.selection import CYCLE_WORDS, outcomes
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
-from ..summary.branch import coexistence, two_cycles
-from .paragraph import paragraph, status_meaning
+from .paragraph import paragraph
 from .results import RodResults
 from .units import draw_in
 
@@ -87,8 +85,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
     if not np.isfinite(v["F_end"]):
-        word = str(outcomes(view)[0])
-        _say(axes, f"thresholds: {status_meaning(view, word)}", LINE_WIDTH)
+        _say(axes, f"thresholds: {_outcome(view)}", LINE_WIDTH)
         return []
     axes.set_xlim(0, float(v["F_end"]))
     seen = draw_class_bar(axes, view, 0, upright=False)
@@ -99,22 +96,18 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
     """Draws the branches and ranges with two stable states; returns legend entries."""
-    view = results.branch
-    curves = [] if view is None else curves_of(view, 0)
-    if view is None or not curves:
+    rod = results.branches
+    if rod is None or not rod.curves:
         lower.set_axis_off()
         _say(upper, results.missing.get("branch", "no branch of cycles begins in this range"), LINE_WIDTH)
         return []
     handles: list[Artist] = [
-        *stability_entries(curves),
-        *draw_curves(upper, lower, curves, COLOURS).values(),
+        *stability_entries(rod.curves),
+        *draw_curves(upper, lower, rod.curves, COLOURS).values(),
     ]
-    draw_straight_rod(upper, view, 0, curves)
-    if not count_incomplete_branches(view, 0):
-        for ranges, (colour, word) in (
-            (coexistence(view, 0), BESIDE_STRAIGHT),
-            (two_cycles(view, 0), TWO_CYCLES),
-        ):
+    draw_straight_rod(upper, rod)
+    if not rod.hidden:
+        for ranges, (colour, word) in ((rod.coexistence, BESIDE_STRAIGHT), (rod.two_cycles, TWO_CYCLES)):
             bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
             handles += bands[:1]
     handles += _mark_cycles(upper, lower, results)
@@ -128,7 +121,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """Marks the cycles whose shapes are drawn; returns a legend entry."""
-    beating = [(F, view.of_point(0)) for F, view in results.cycles if _is_cycle(view)]
+    beating = [(F, view.of_point(0)) for F, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
         values = [float(v[name]) for _, v in beating]
@@ -136,11 +129,6 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
             [F for F, _ in beating], values, "*", color="k", ms=9, mec="white", mew=0.6, label=CYCLE_WORD
         )
     return handles if beating else []
-
-
-def _is_cycle(view: View) -> bool:
-    """Whether the point of a view has a cycle, stable or unstable."""
-    return str(outcomes(view)[0]) in CYCLE_WORDS
 
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
@@ -152,8 +140,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     v = view.of_point(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
-        word = view.flags[int(v["status"])]
-        _say(axes, f"no mode: {status_meaning(view, word)}", PANEL_WIDTH)
+        _say(axes, f"no mode: {_outcome(view)}", PANEL_WIDTH)
         return
     parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
     for part, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
@@ -171,16 +158,16 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_axis_off()
         _say(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_WIDTH)
         return
-    drawn = [view.of_point(0) for _, view in results.cycles if _is_cycle(view)]
+    drawn = [view.of_point(0) for _, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
     units = results.units
     length = units.length.factor
     reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
         v = view.of_point(0)
         force = units.force_title(F)
-        if not _is_cycle(view):
+        if not view.with_status(*CYCLE_WORDS).all():
             axes.set_title(force)
-            _say(axes, f"no cycle: {status_meaning(view, str(outcomes(view)[0]))}", PANEL_WIDTH)
+            _say(axes, f"no cycle: {_outcome(view)}", PANEL_WIDTH)
             continue
         shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(v["shape_x"])))
         clamp(axes, length)
@@ -193,6 +180,12 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.set(xlim=ends, ylim=(-length * reach, length * reach), aspect="equal")
         axes.set(xlabel=units.along("x"), ylabel=units.along("y") if axes is panels[0] else "")
         axes.tick_params(labelleft=axes is panels[0])
+
+
+def _outcome(view: View) -> str:
+    """The meaning of the status of the single point of a view."""
+    word = str(view.outcomes[0])
+    return view.sentences.get(word, word)
 
 
 def _say(axes: Axes, sentence: str, width: int) -> None:

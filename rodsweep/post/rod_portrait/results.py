@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ...results.file.view import View
+from ..branch_curves import RodBranches
 from .units import PortraitUnits, units_of
 
 
@@ -60,9 +61,9 @@ class RodResults:
         return units_of(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
 
     @property
-    def branch(self) -> View | None:
+    def branches(self) -> RodBranches | None:
         """Branches of cycles; None if they are missing."""
-        return self.views.get("branch")
+        return RodBranches(self.views["branch"]) if "branch" in self.views else None
 
 
 def _quantity(value: Any) -> str:

@@ -2,13 +2,12 @@
 
 from pathlib import Path
 
-from ...errors import InputError
 from ..origin import origin_lines
-from ..report import rendered, require_page
+from ..report import rendered
 from ..report.page_tables import page_tables
 from ..report.pictures import Captioned, Pictures
 from ..report.vector_picture import vector_picture
-from ..whole_file import written_whole
+from ..whole_file import require_name, written_whole
 from .paragraph import paragraph
 from .picture import portrait_figure
 from .results import RodResults
@@ -22,15 +21,7 @@ HIDDEN = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 
 def require_portrait(output: Path) -> None:
     """Raises InputError unless a portrait can be written under this name."""
-    if output.suffix == PAGE:
-        require_page(output, [])
-        return
-    if output.suffix not in IMAGES:
-        raise InputError(f"--output {output}: the name must end in {', '.join((*IMAGES, PAGE))}")
-    if not output.parent.is_dir():
-        raise InputError(f"--output {output}: there is no directory {output.parent}")
-    if output.exists() and not output.is_file():
-        raise InputError(f"--output {output} is not a name for a picture; choose another")
+    require_name(output, (*IMAGES, PAGE), "page" if output.suffix == PAGE else "picture")
 
 
 def write_portrait(results: RodResults, output: Path) -> str:

@@ -58,7 +58,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     a = view.attributes
     return Summary(
         answer=_answer(view, done, lines),
-        trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust, *_failures(view, status)],
+        trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust, *_failures(view)],
         statuses=TextTable(("status", plural(noun), "meaning"), tuple(_statuses(view, status, every_status))),
         details=lines.details,
         axes=_axes(view),
@@ -152,13 +152,13 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     return lines
 
 
-def _failures(view: View, status: np.ndarray) -> Iterable[str]:
+def _failures(view: View) -> Iterable[str]:
     """Yields an example point of each distinct reason for which points failed, and the reason."""
     columns = view.point_columns
     for line in str(view.attributes.get(FAILURE_REASONS, "")).splitlines():
         where, _, outcome = line.partition(": ")
         name, _, reason = outcome.partition(" ")
-        here = np.isin(status.ravel(), [value for value, word in view.flags.items() if word == name])
+        here = view.with_status(name).ravel()
         for parameter, _, text in (pair.partition("=") for pair in where.split(", ")):
             here &= columns.get(parameter, float(text)) == float(text)
         if here.any() and reason:  # a later run may have computed the point anew
@@ -200,8 +200,7 @@ def _extent(values: np.ndarray) -> tuple[str, str, str]:
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
     """Yields (status, number of points, meaning); every: whether statuses of no point are included."""
-    lines = str(view.attributes.get("status_sentences", "")).splitlines()
-    sentences = dict(line.split(": ", 1) for line in lines if ": " in line) | {"missing": "not computed yet"}
+    sentences = view.sentences | {"missing": "not computed yet"}
     found = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | found.keys()) if every else found:
         name = view.flags.get(value, f"unknown ({value})")

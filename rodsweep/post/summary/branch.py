@@ -1,31 +1,18 @@
 """Branches of cycles in `rodsweep show`: their ends and special points, and ranges with two stable states."""
 
-from collections.abc import Callable, Iterable, Iterator
-from itertools import combinations
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ...arrays import Array
 from ...results.file.view import View
 from ...wording import counted, is_or_are, some_of
-from ..branch_curves import (
-    Range,
-    StoredBranch,
-    coexistence_is_decided,
-    count_incomplete_branches,
-    curves_of,
-    followed_parameter,
-    intersection,
-    straight_ranges,
-    union,
-)
+from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
-from .summary_lines import SummaryLines, at_point, completeness
+from .summary_lines import SummaryLines, at_point, completeness, first_lines
 from .thresholds import not_known
 
-NAMED_RODS = 8
-"""Largest number of rods listed individually."""
 LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
 """Cause and remedy of branches not shown."""
 BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
@@ -51,45 +38,44 @@ ENDS = {
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
-        return SummaryLines(list(_one_rod(view, 0)), [_searched(view, done)])
+        return SummaryLines(list(_one_rod(RodBranches(view))), [_searched(view, done)])
     v = view.variables
-    rods = np.flatnonzero(done.ravel())
+    rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(done.ravel())]
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
     line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
-    answer = [line, *_special_lines(view, rods), *_coexistence(view, rods)]
+    along = followed_parameter(view)
+    answer = [line, *_special_lines(rods, along), *_coexistence(rods, along)]
     return SummaryLines(answer, [_searched(view, done)])
 
 
-def _one_rod(view: View, rod: int) -> Iterator[str]:
+def _one_rod(rod: RodBranches) -> Iterator[str]:
     """Yields lines about every branch of the single rod of a file, with the errors of its special points."""
-    along = followed_parameter(view)
-    curves = curves_of(view, rod)
-    v = view.variables
-    hidden = count_incomplete_branches(view, rod)
-    if hidden:
-        part = some_of(hidden, hidden + len(curves), "branch")
-        yield f"{part} {is_or_are(hidden)} not shown: {LIST_TOO_SHORT}"
+    along = followed_parameter(rod.view)
+    v = rod.view.variables
+    if rod.hidden:
+        part = some_of(rod.hidden, rod.hidden + len(rod.curves), "branch")
+        yield f"{part} {is_or_are(rod.hidden)} not shown: {LIST_TOO_SHORT}"
     elif v["branch_count"].max() < 0:
         yield "its branches are not known"
-    elif not curves:
+    elif not rod.curves:
         yield f"no Hopf point in the range of {along}, so that no branch begins there"
-    for number, curve in enumerate(curves, 1):
+    for number, curve in enumerate(rod.curves, 1):
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
         yield f"branch {number}, {_ends(curve, along)}: {_extent(curve, errors, along)}"
         yield from _special_of_branch(curve, along)
         if curve.stable_ranges:
-            yield f"  stable cycles at {along} = {listed(curve.stable_ranges, errors_of([curve]))}"
+            yield f"  stable cycles at {along} = {listed(curve.stable_ranges, curve.errors)}"
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
-    if curves and not hidden:
-        common = coexistence(view, rod)
-        nowhere = "nowhere in the range" if coexistence_is_decided(view, rod) else "not known"
-        words = f"{along} = {listed(common, errors_of(curves))}" if common else nowhere
+    if rod.curves and not rod.hidden:
+        nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
+        common = rod.coexistence
+        words = f"{along} = {listed(common, rod.errors)}" if common else nowhere
         yield f"{BESIDE_STRAIGHT}: {words}"
-        if pairs := two_cycles(view, rod):
-            yield f"{TWO_CYCLES}: {along} = {listed(pairs, errors_of(curves))}"
+        if pairs := rod.two_cycles:
+            yield f"{TWO_CYCLES}: {along} = {listed(pairs, rod.errors)}"
 
 
 def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
@@ -135,29 +121,6 @@ def _ends(curve: StoredBranch, along: str) -> str:
     return f"{start} to {ENDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
 
 
-def coexistence(view: View, rod: int) -> list[Range]:
-    """Ranges of the parameter with a stable cycle on a branch and a stable straight rod."""
-    stable = union(piece for curve in curves_of(view, rod) for piece in curve.stable_ranges)
-    return intersection(stable, straight_ranges(view, rod, ends_of(view))[0])
-
-
-def two_cycles(view: View, rod: int) -> list[Range]:
-    """Ranges of the parameter in which cycles on two branches are stable."""
-    pairs = combinations([curve.stable_ranges for curve in curves_of(view, rod)], 2)
-    return union(piece for one, other in pairs for piece in intersection(one, other))
-
-
-def errors_of(curves: Iterable[StoredBranch]) -> dict[float, float]:
-    """Absolute errors of the special points of branches, by their positions."""
-    return {float(special.at): special.error for curve in curves for special in curve.special}
-
-
-def ends_of(view: View) -> Range:
-    """(start, stop) of the followed parameter."""
-    options = view.config["branch"]
-    return float(options["start"]), float(options["stop"])
-
-
 def _sizes(view: View, done: np.ndarray) -> str:
     """Clause on the period and the amplitude of all cycles of the points in `done`; may be empty."""
     v = view.variables
@@ -167,17 +130,16 @@ def _sizes(view: View, done: np.ndarray) -> str:
     return f": period {period} tau2, largest tip y {y} L"
 
 
-def _special_lines(view: View, rods: np.ndarray) -> Iterator[str]:
+def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     """Yields lines about the special points of each kind, and about ends of branches."""
-    along = followed_parameter(view)
     found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *ENDS)}
-    for rod in rods:
-        for number, curve in enumerate(curves_of(view, int(rod)), 1):
-            for special in curve.special:
-                kind = special.reason if special.kind == "end" else special.kind
-                is_counted = 0 < special.meets < number  # with the other branch at this point
-                if kind in found and not is_counted:
-                    found[kind].append((special.at, special.error))
+    curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
+    for _, number, curve in curves:
+        for special in curve.special:
+            kind = special.reason if special.kind == "end" else special.kind
+            is_counted = 0 < special.meets < number  # with the other branch at this point
+            if kind in found and not is_counted:
+                found[kind].append((special.at, special.error))
     for kind, located in found.items():
         if not located:
             continue
@@ -187,50 +149,38 @@ def _special_lines(view: View, rods: np.ndarray) -> Iterator[str]:
         else:
             verb = "leads" if len(located) == 1 else "lead"
             yield f"{counted(len(located), 'branch')} {verb} to {ENDS[kind]}: {where}"
-    yield from _stopped(view, rods)
-
-
-def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
-    """Yields lines about branches that could not be followed to the end, some with the rod's parameters."""
-    along = followed_parameter(view)
-    ends = [
-        (int(rod), number, curve.special[-1])
-        for rod in rods
-        for number, curve in enumerate(curves_of(view, int(rod)), 1)
-        if curve.special[-1].reason == "no_cycle_found"
+    stopped = [
+        f"{at_point(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
+        for rod, number, curve in curves
+        if (end := curve.special[-1]).reason == "no_cycle_found"
     ]
-    for rod, number, end in ends[:NAMED_RODS]:
-        yield f"  {at_point(view, rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
-    if len(ends) > NAMED_RODS:
-        yield f"  and {counted(len(ends) - NAMED_RODS, 'branch')} more"
+    yield from first_lines(stopped, "branch")
 
 
-def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
+def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     """Yields lines about rods with two stable states, some with parameters."""
-    complete = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
+    complete = [rod for rod in rods if not rod.hidden]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
-    if not complete:
-        return
-    yield from _rods_with(view, complete, BESIDE_STRAIGHT, coexistence)
-    if any(two_cycles(view, rod) for rod in complete):
-        yield from _rods_with(view, complete, TWO_CYCLES, two_cycles)
+    if complete:
+        yield from _rods_with(complete, along, BESIDE_STRAIGHT, [rod.coexistence for rod in complete])
+    two_cycles = [rod.two_cycles for rod in complete]
+    if any(two_cycles):
+        yield from _rods_with(complete, along, TWO_CYCLES, two_cycles)
 
 
 def _rods_with(
-    view: View, rods: list[int], words: str, ranges_of: Callable[[View, int], list[Range]]
+    rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[Range]]
 ) -> Iterator[str]:
-    """Yields the number of rods with a property, and ranges of the parameter for some rods."""
-    along = followed_parameter(view)
-    having = [(rod, ranges) for rod in rods if (ranges := ranges_of(view, rod))]
-    others = set(rods).difference(rod for rod, _ in having)
-    unknown = sum(not coexistence_is_decided(view, rod) for rod in others)
+    """Yields the number of rods with a property in ranges of the parameter, and the ranges of some rods."""
+    unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
+    having = [
+        ": ".join(filter(None, (at_point(rod.view, rod.rod), f"{along} = {listed(own, rod.errors)}")))
+        for rod, own in zip(rods, ranges, strict=True)
+        if own
+    ]
     yield f"{words} at {some_of(len(having), len(rods), 'rod')}{not_known(unknown)}"
-    for rod, ranges in having[:NAMED_RODS]:
-        where = f"{along} = {listed(ranges, errors_of(curves_of(view, rod)))}"
-        yield f"  {': '.join(filter(None, (at_point(view, rod), where)))}"
-    if len(having) > NAMED_RODS:
-        yield f"  and {counted(len(having) - NAMED_RODS, 'rod')} more"
+    yield from first_lines(having, "rod")
 
 
 def _searched(view: View, done: np.ndarray) -> str:

@@ -1,6 +1,6 @@
 """Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and their errors."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -9,11 +9,11 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
+from .errors import errors_of
 from .ranges import number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, completeness, in_brackets, region
-from .thresholds import ended_early, not_known, not_known_beyond, not_stored
+from .thresholds import ENDED_EARLY, not_known, not_known_beyond, not_stored
 
-Number = Callable[[Mapping[str, np.ndarray], int], tuple[float, float]]
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
 NAMED_RODS = 8
@@ -27,21 +27,23 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         none = "its Hopf points are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
-        flat = {name: values.ravel() for name, values in v.items()}
-        lines = list(_hopf_lines(flat)) or [none]
-        lines[0] += not_known_beyond(view, float(flat["F_end"][0]))
+        of_rod = view.of_point(0)
+        lines = list(_hopf_lines(of_rod)) or [none]
+        lines[0] += not_known_beyond(view, float(of_rod["F_end"]))
         trust = [_searched(view, done)]
-        return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(flat))
+        return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(of_rod))
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    unknown = int(((v["crossing_count"] < 0) | (ended_early(view) & ~with_hopf))[done].sum())
+    unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
     lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{not_known(unknown)}"]
     if not known.any():
         return SummaryLines(lines, [_searched(view, done)])
-    a, b = (_relative(v, name, done) for name in ("amplitude_coefficient", "frequency_slope"))
+    a, b = (
+        (v[name][done], errors_of(v, name)[done]) for name in ("amplitude_coefficient", "frequency_slope")
+    )
     F = span(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
     lines += [
         f"first Hopf point: {_counts(first)}; F = {F}, a = {span(*(table[:, 0] for table in a))} L",
@@ -58,14 +60,8 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     return SummaryLines(lines, trust, [every])
 
 
-def _relative(v: Mapping[str, np.ndarray], name: str, done: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(coefficient of all Hopf points, its absolute error), each (points, crossings)."""
-    values = v[name][done]
-    return values, np.abs(values) * v[f"{name}_error"][done]
-
-
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields a line about every Hopf point of the single rod of a file; v: its variables, flat."""
+    """Yields a line about every Hopf point of the single rod of a file; v: its variables."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
@@ -78,43 +74,28 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table of the Hopf points of a single rod, a column for each; None without any. v: flat variables."""
+    """Table of the Hopf points of a single rod, a column for each; None without any. v: its variables."""
     at = np.flatnonzero(v["crossing_kind"] > 0)
-    columns = [[cell for i in at for cell in number_and_error(*each(v, int(i)))] for each in NUMBERS.values()]
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
+    rows = []
+    for name, words in NUMBERS.items():
+        numbers = zip(v[name][at].tolist(), errors_of(v, name)[at].tolist(), strict=True)
+        rows.append((words, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
-    rows = zip(NUMBERS, columns, strict=True)
-    return TextTable(headings, tuple((words, *cells) for words, cells in rows)) if len(at) else None
+    return TextTable(headings, tuple(rows)) if len(at) else None
 
 
-def _with_absolute(name: str) -> Number:
-    """Number of a crossing with its absolute error."""
-    error = "crossing_error" if name == "crossing_F" else f"{name}_error"
-    return lambda v, i: (float(v[name][i]), float(v[error][i]))
-
-
-def _with_relative(name: str, part: str = "") -> Number:
-    """Number of a normal form, whose stored error is relative to the modulus of the coefficient."""
-
-    def number(v: Mapping[str, np.ndarray], i: int) -> tuple[float, float]:
-        parts = [v[f"{name}_{each}"][i] for each in ("real", "imag")] if part else [v[name][i]]
-        value = v[f"{name}_{part}" if part else name][i]
-        return float(value), float(np.linalg.norm(parts) * v[f"{name}_error"][i])
-
-    return number
-
-
-NUMBERS: dict[str, Number] = {
-    "F, k3/L^2": _with_absolute("crossing_F"),
-    f"frequency, {ANGULAR}": _with_absolute("crossing_frequency"),
-    "Re c, 1/(tau2 L^2)": _with_relative("landau", "real"),
-    "Im c, 1/(tau2 L^2)": _with_relative("landau", "imag"),
-    "Re dw/dF, L^2/(k3 tau2)": _with_relative("growth_slope", "real"),
-    "Im dw/dF, L^2/(k3 tau2)": _with_relative("growth_slope", "imag"),
-    "a, L": _with_relative("amplitude_coefficient"),
-    "b, L^2/(k3 tau2)": _with_relative("frequency_slope"),
+NUMBERS = {
+    "crossing_F": "F, k3/L^2",
+    "crossing_frequency": f"frequency, {ANGULAR}",
+    "landau_real": "Re c, 1/(tau2 L^2)",
+    "landau_imag": "Im c, 1/(tau2 L^2)",
+    "growth_slope_real": "Re dw/dF, L^2/(k3 tau2)",
+    "growth_slope_imag": "Im dw/dF, L^2/(k3 tau2)",
+    "amplitude_coefficient": "a, L",
+    "frequency_slope": "b, L^2/(k3 tau2)",
 }
-"""Functions to (number, absolute error) of a Hopf point, by words and unit."""
+"""Words and unit of the numbers of a Hopf point, by variable."""
 
 
 def _words(v: Mapping[str, np.ndarray], i: int) -> str:

@@ -34,6 +34,8 @@ ABSOLUTE = {
     "crossing_frequency": "crossing_frequency_error",
 }
 """Variables with a stored absolute error, and its name; for `frequency` only in files without a period."""
+COMPLEX = ("landau", "growth_slope")
+"""Complex variables, stored as two parts, with a stored error relative to the modulus."""
 EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose error is stored in units of tip_y_max."""
 BETWEEN_NODES = 1e-3
@@ -48,7 +50,10 @@ STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
 
 def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of a variable of a file, of its shape; 0 if all digits are known."""
+    whole, _, part = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
+        if whole in COMPLEX and part != "error" and f"{whole}_error" in v:
+            return np.hypot(v[f"{whole}_real"], v[f"{whole}_imag"]) * v[f"{whole}_error"]
         return _errors(v, name)
 
 

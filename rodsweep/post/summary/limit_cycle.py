@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.limit_cycle import SECOND_STATES
+from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
 from ...results.layouts.variables import ANGULAR
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
@@ -30,9 +30,8 @@ CYCLE_NUMBERS = (
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     v = view.variables
-    values = {word: value for value, word in view.flags.items()}
-    beats = done & (v["status"] == values.get("cycle"))
-    orbit = done & np.isin(v["status"], [values[word] for word in ("cycle", "unstable") if word in values])
+    beats = done & view.with_status("cycle")
+    orbit = done & view.with_status(*CYCLE_WORDS)
     stability, of_arm = _stability(view)
     answer = [outcome_line(view, done, region), *stability, *_second_state_lines(v, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
@@ -41,7 +40,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     rate, frequency = (span_of(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
-    on_torus = done & (v["status"] == values.get("torus"))
+    on_torus = done & view.with_status("torus")
     if on_torus.any():
         details.append(f"tori: the cycles inside have multipliers {span_of(v, 'multiplier', on_torus)}")
     if done.size == 1 and orbit.any():

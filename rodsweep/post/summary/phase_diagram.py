@@ -6,8 +6,9 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...results.layouts.variables import has_covering, number_of
+from ...results.layouts.variables import number_of
 from ...wording import counted, some_of
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines

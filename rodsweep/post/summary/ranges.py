@@ -25,10 +25,10 @@ NONE = "none"
 """Text for a missing number or range."""
 
 
-def span(values: np.ndarray, errors: np.ndarray | None = None) -> str:
+def span(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
     """Range of the finite values, of any shape, as text; NONE without a finite value.
 
-    errors: absolute errors, of the shape of the values, which limit the number of digits.
+    errors: absolute errors, of the shape of the values, which limit the number of digits, at most `most`.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
@@ -38,7 +38,7 @@ def span(values: np.ndarray, errors: np.ndarray | None = None) -> str:
     flat = values[is_finite]
     known = np.nan_to_num(known[is_finite], nan=0.0)
     ends = (int(flat.argmin()), int(flat.argmax()))
-    low, high = (rounded(flat[i], known[i]) for i in ends)
+    low, high = (rounded(flat[i], known[i], most) for i in ends)
     return low if low == high else f"{low} to {high}"
 
 

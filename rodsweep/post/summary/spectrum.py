@@ -3,7 +3,8 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.variables import ANGULAR, estimates_counts, has_covering
+from ...results.layouts.rods import estimates_counts, has_covering
+from ...results.layouts.variables import ANGULAR
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .ranges import number_and_error, span

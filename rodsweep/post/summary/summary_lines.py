@@ -1,13 +1,17 @@
 """Lines and tables of the summary of a result, in the order of printing."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.variables import has_covering
+from ...results.layouts.rods import has_covering
+from ...wording import counted
 from .ranges import span
+
+NAMED_THINGS = 8
+"""Largest number of things listed individually."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +74,13 @@ def region(view: View, mask: np.ndarray) -> str:
 def at_point(view: View, index: int) -> str:
     """Varied parameters at a point of the file, by its index."""
     return ", ".join(f"{name} = {column[index]:.6g}" for name, column in varied(view).items())
+
+
+def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
+    """Yields the first of the lines about a thing each, indented, and the number of further things."""
+    yield from (f"  {line}" for line in lines[:NAMED_THINGS])
+    if len(lines) > NAMED_THINGS:
+        yield f"  and {counted(len(lines) - NAMED_THINGS, noun)} more"
 
 
 def in_brackets(text: str) -> str:

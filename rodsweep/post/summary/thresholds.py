@@ -6,8 +6,9 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
+from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...results.layouts.variables import ANGULAR, has_covering
+from ...results.layouts.variables import ANGULAR
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span
@@ -43,7 +44,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     found = np.isfinite(F)
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~ended_early(view).ravel()
+    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.with_status(ENDED_EARLY).ravel()
     unknown = not_known(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
@@ -56,15 +57,10 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span(v[rate][done])} {unit}"
 
 
-def ended_early(view: View) -> np.ndarray:
-    """Mask of the points whose search ended before the requested F, of the points' shape."""
-    early = [value for value, word in view.flags.items() if word == ENDED_EARLY]
-    return np.isin(view.variables["status"], early)
-
-
 def not_known_beyond(view: View, F: float) -> str:
     """Clause on the forces beyond the end of the search of a single rod, if this search ended early."""
-    return f"; not known beyond F = {F:.6g}, where the search ended early" if ended_early(view).all() else ""
+    clause = f"; not known beyond F = {F:.6g}, where the search ended early"
+    return clause if view.with_status(ENDED_EARLY).all() else ""
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
@@ -75,23 +71,23 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 
 def crossing_lines(view: View) -> list[str]:
     """Lines about the number of crossings of the single rod of a file, and the meaning of every kind."""
-    v = {name: view.variables[name].ravel() for name in view.variables}
-    kinds = [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]
-    count = f"{counted(int(v['crossing_count'][0]), 'crossing')} up to F = {v['F_end'][0]:.15g}"
-    firsts = {word: v[f"F_{event}"][0] for event, word in FIRSTS.items()}
-    words = [f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F)]
-    count = "; ".join((", ".join(words), count)) if words else count
-    lines = [count, *(f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))] if kinds else []
-    if not lines and v["crossing_count"][0] < 0:
+    v = view.of_point(0)
+    end = f"F = {v['F_end']:.15g}{not_known_beyond(view, float(v['F_end']))}"
+    if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
+        firsts = {word: v[f"F_{event}"] for event, word in FIRSTS.items()}
+        words = ", ".join(f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F))
+        count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
+        meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
+        return ["; ".join(filter(None, (words, count))), *meanings]
+    if v["crossing_count"] < 0:
         return ["its thresholds are not known"]
-    none = "no threshold is located" if np.isfinite(v["open_from"][0]) else "no threshold"
-    lines = lines or [f"{none} up to F = {v['F_end'][0]:.15g}"]
-    return [lines[0] + not_known_beyond(view, v["F_end"][0]), *lines[1:]]
+    none = "no threshold is located" if np.isfinite(v["open_from"]) else "no threshold"
+    return [f"{none} up to {end}"]
 
 
 def crossing_table(view: View) -> TextTable | None:
     """Table of the crossings of the single rod of a file; None without a crossing."""
-    v = {name: view.variables[name].ravel() for name in view.variables}
+    v = view.of_point(0)
     rows = []
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = number_and_error(float(v["crossing_F"][i]), float(v["crossing_error"][i]))
@@ -106,14 +102,13 @@ def crossing_table(view: View) -> TextTable | None:
 
 def trust_of_one(view: View) -> list[str]:
     """Lines about the searched range and the completeness for the single rod of a file."""
-    v = {name: view.variables[name].ravel() for name in ("crossing_count", "crossing_kind", "certified")}
-    end, open_from, open_to = (float(view.variables[n].ravel()[0]) for n in ("F_end", "open_from", "open_to"))
-    hidden = int(v["crossing_count"][0]) - int((v["crossing_kind"] > 0).sum())
+    v = view.of_point(0)
+    hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
-    proof = proof if v["certified"].all() else f"not {proof}"
-    lines = [f"searched up to F = {end:.15g}; the list of crossings is {proof}{not_stored(hidden)}"]
-    if np.isfinite(open_from):
-        lines.append(f"undecided: F = {open_from:.9g} to {open_to:.9g}")
+    proof = proof if v["certified"] else f"not {proof}"
+    lines = [f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{not_stored(hidden)}"]
+    if np.isfinite(v["open_from"]):
+        lines.append(f"undecided: F = {v['open_from']:.9g} to {v['open_to']:.9g}")
     return lines
 
 

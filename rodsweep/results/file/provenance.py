@@ -82,6 +82,15 @@ def united_reasons(*several: str) -> dict[str, str]:
     return {FAILURE_REASONS: kept} if kept else {}
 
 
+def reasons_added(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
+    """The attribute FAILURE_REASONS of a file with further points, from the lines of these points.
+
+    before: attributes with the reasons of earlier runs.
+    """
+    # The newest examples first: an earlier one may be a point that has been computed anew.
+    return united_reasons(*lines, str(before.get(FAILURE_REASONS, "")))
+
+
 def kernels_sentence(attribute: str) -> str:
     """Warning that points of a file were computed by several kernels; empty for a single kernel."""
     kernels = attribute.splitlines()

@@ -14,10 +14,10 @@ import numpy as np
 from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import total
 from ..layouts.variables import MISSING
-from ..run.journal import journal_directory, read_journals
+from ..run.journal import journal_directory, read_journals, read_reasons
 from .exchange import Exchange, disk_refusals, identity
 from .points import missing_ranges, write_points
-from .provenance import now
+from .provenance import now, reasons_added
 from .validation import Header, is_ours, read_header, reading
 
 MAX_REREADS = 20
@@ -56,6 +56,13 @@ def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
     return found[::-1][last]
 
 
+def journalled_reasons(header: Header) -> dict[str, str]:
+    """Attribute with the reasons of failed points, also of journalled ones; may be empty."""
+    directory = journal_directory(header.path)
+    lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
+    return reasons_added(lines, header.attributes)
+
+
 def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
     """Writes records, (n,), of a variable into the values, of the shape of points and variable."""
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
@@ -88,7 +95,7 @@ def _copied(path: Path, exchange: Exchange) -> tuple[int, int]:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
         write_points(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
-            file.attrs[SNAPSHOT] = now()
+            file.attrs.update(journalled_reasons(header) | {SNAPSHOT: now()})
         missing = total(missing_ranges(copy))
     return header.points - missing, header.points
 

@@ -28,13 +28,14 @@ from ..run.journal import (
     kept_sentence,
     other_journals,
     read_journals,
+    read_reasons,
     set_aside,
 )
 from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals, identity
 from .points import missing_ranges, parameters_of, statuses, write_points
-from .provenance import merged_history
+from .provenance import merged_history, reasons_added
 from .recent import SNAPSHOT
 from .refusals import header_in_the_way, refuse_other, require_room
 from .validation import Header, is_ours, reading
@@ -200,14 +201,15 @@ class Store:
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)
+            reasons = read_reasons(self.journals, layout, fingerprint)
             if first is not None or attributes:
                 with self.exchange.replacing(self.path) as copy:
                     if first is not None:
                         write_points(copy, chain([first], blocks), layout)
-                    if attributes:
+                    if attributes or reasons:
                         with h5py.File(copy, "r+") as file:
                             add_variables(file, additions(file) if additions else ())
-                            file.attrs.update(attributes)
+                            file.attrs.update(attributes | reasons_added(reasons, file.attrs))
             for journal in journals:
                 journal.unlink(missing_ok=True)
 

@@ -8,12 +8,13 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED
 from .content import is_users
-from .recent import journalled_points, put_in, unfolded
+from .recent import journalled_points, journalled_reasons, put_in, unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
@@ -118,6 +119,21 @@ class View:
         n = len(shape)
         return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
 
+    @property
+    def outcomes(self) -> NDArray[np.str_]:
+        """Word of the status of every point, (points,)."""
+        return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
+
+    def with_status(self, *words: str) -> NDArray[np.bool_]:
+        """Mask of the points with one of these statuses, of the points' shape."""
+        values = [value for value, word in self.flags.items() if word in words]
+        return np.isin(self.variables["status"], values)
+
+    @property
+    def sentences(self) -> dict[str, str]:
+        """Meaning of every status, by its word."""
+        return sentences_in(self.attributes)
+
     def by_point(self, name: str) -> np.ndarray:
         """A variable with all points along its first dimension, (points, ...)."""
         values = self.variables[name]
@@ -136,6 +152,12 @@ class View:
         if self.is_grid:
             columns = [table.ravel() for table in np.meshgrid(*columns, indexing="ij")]
         return dict(zip(self.parameters, columns, strict=True))
+
+
+def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
+    """Meaning of every status, by its word, from the attributes of a file."""
+    lines = str(attributes.get("status_sentences", "")).splitlines()
+    return dict(line.split(": ", 1) for line in lines if ": " in line)
 
 
 def read_view(path: Path) -> View:
@@ -157,4 +179,5 @@ def _view(path: Path) -> View:
         stored = (name for name in ALL_QUANTITIES if name in file)
         typed = {name: str(file[name].attrs[TYPED]) for name in stored if TYPED in file[name].attrs}
     layout = header.layout
-    return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
+    attributes = header.attributes | journalled_reasons(header)
+    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)

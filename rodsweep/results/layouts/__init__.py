@@ -7,7 +7,8 @@ from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
-from .variables import Increase, Layout, Variable, optional_in
+from .rods import optional_in
+from .variables import Increase, Layout, Variable
 
 MODULES = {
     "spectrum": spectrum,

@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
+from .rods import confirmed
 from .variables import (
     NEEDS_NEW_SOLVE,
     SECONDS,
@@ -12,7 +13,6 @@ from .variables import (
     Variable,
     along,
     boolean,
-    confirmed,
     integer,
     real,
     word,

@@ -4,8 +4,9 @@ from math import nan
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
+from .rods import confirmed
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, along, confirmed, integer, real
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, along, integer, real
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from .rods import has_covering, optional_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR,
@@ -18,11 +19,8 @@ from .variables import (
     Layout,
     Variable,
     along,
-    has_covering,
     integer,
-    optional_in,
     real,
-    with_meaning,
     word,
 )
 
@@ -30,6 +28,8 @@ POWER = "k3/(L tau2)"
 """Unit of a power."""
 STORED_MULTIPLIERS = 6
 """Number of stored nontrivial Floquet multipliers; NaN stands for a modulus below 1e-6."""
+CYCLE_WORDS = ("cycle", "unstable")
+"""Statuses of points with a cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
 """Knowledge of a second stable state, besides the state in which a point ended."""
 CYCLE = (

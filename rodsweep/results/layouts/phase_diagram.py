@@ -6,20 +6,10 @@ from typing import Any
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
 from .criticality import LANDAU, SLOPE, side
+from .rods import confirmed
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
-from .variables import (
-    ANGULAR,
-    NEEDS_NEW_SOLVE,
-    NEEDS_NO_SOLVE,
-    Layout,
-    Variable,
-    along,
-    confirmed,
-    integer,
-    real,
-    word,
-)
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, NEEDS_NO_SOLVE, Layout, Variable, along, integer, real, word
 
 CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
 """Behaviour of the rod at a point of a phase diagram."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from .rods import estimates_counts, has_covering, is_linear, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR,
@@ -18,12 +19,8 @@ from .variables import (
     Layout,
     Variable,
     boolean,
-    estimates_counts,
-    has_covering,
     integer,
-    is_linear,
     real,
-    with_meaning,
     word,
 )
 

@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
+from .rods import confirmed
 from .variables import (
     ANGULAR,
     NEEDS_NEW_SOLVE,
@@ -12,7 +13,6 @@ from .variables import (
     Layout,
     Variable,
     boolean,
-    confirmed,
     integer,
     real,
     word,

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
 """Default of `recorded`: fields have the names of their variables."""
@@ -225,48 +225,3 @@ class Layout:
     def inner(self, variable: Variable) -> tuple[int, ...]:
         """Shape of a variable at a point."""
         return tuple(self.extents[d] for d in variable.extra)
-
-
-def optional_in(config: Mapping[str, Any]) -> tuple[str, ...]:
-    """Optional parameters of the points of a resolved config: those with an axis or a column of a list."""
-    parameters = config["parameters"]
-    given = (*parameters, *parameters.get("columns", ()))
-    return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
-
-
-def estimates_counts(config: Mapping[str, Any]) -> bool:
-    """Whether a resolved config has rods that vary along their length, for which counts are estimates."""
-    parameters = config.get("parameters", {})
-    arm = parameters.get("arm", {})
-    taper = parameters.get("taper")
-    tapered = "tip_radius" in arm if taper is None else taper.get("values") != [1.0]
-    tapered = tapered or "taper" in parameters.get("columns", ())
-    followed = config.get("branch", {}).get("along") == "taper"
-    return tapered or followed or "segments" in arm or "profile" in config.get("material", {})
-
-
-def has_covering(config: Mapping[str, Any]) -> bool:
-    """Whether a covering proves the crossings of all rods: those that are uniform and of linear material."""
-    return is_linear(config) and not estimates_counts(config)
-
-
-def is_linear(config: Mapping[str, Any]) -> bool:
-    """Whether the material of a resolved config is linear."""
-    stated = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
-    return all(each.get("law", "linear") == "linear" for each in stated)
-
-
-def confirmed(variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str) -> tuple[Variable, ...]:
-    """The variables; without a covering, `certified` says that counts confirm the list of the noun."""
-    if has_covering(config):
-        return variables
-    meaning = (
-        f"whether counts of unstable modes confirm the list of {noun}; between the counts it rests on "
-        "slopes of the eigenvalues"
-    )
-    return with_meaning(variables, "certified", meaning)
-
-
-def with_meaning(variables: tuple[Variable, ...], name: str, meaning: str) -> tuple[Variable, ...]:
-    """The variables, with another long name for the variable `name`."""
-    return tuple(replace(v, long_name=meaning) if v.name == name else v for v in variables)

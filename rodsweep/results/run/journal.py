@@ -2,13 +2,13 @@
 
 The records of a point, or of a stretch of points solved at once, are written by a single call. A kill at any
 instant therefore loses only the points in progress. Every record carries a checksum, which reveals a torn
-tail.
+tail. New reasons why points failed are written by the same call, as text in records that no point has.
 """
 
 import os
 import shutil
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,12 @@ JOURNAL_HEAD = b"rodsweep journal 1\n"
 """First line of a journal; the second line is its fingerprint."""
 BYTES_A_BLOCK = 1 << 18
 """Bytes read at once, to bound the memory."""
+TEXT_GOES_ON, TEXT_ENDS = -2, -1
+"""Indices of records with a piece of a line of text, and with its last piece."""
+CHECKSUM_BYTES = 4
+"""Length of the checksum behind a record, in bytes."""
+INDEX_BYTES = 8
+"""Length of the index, the first field of a record, in bytes."""
 LONGEST_HEAD = 200
 """Largest length of each of the two first lines of a journal, in bytes."""
 
@@ -42,15 +48,22 @@ class Journal:
         self._write(_head(fingerprint))
         self.head = len(_head(fingerprint))
 
-    def append(self, index: int, values: dict) -> None:
-        """Writes the record of a finished point; `values` has every variable."""
+    def append(self, index: int, values: dict, reasons: Sequence[str] = ()) -> None:
+        """Writes the record of a finished point; `values` has every variable.
+
+        reasons: lines on why points failed, for `read_reasons`.
+        """
         # One assignment, because assigning single fields takes three times as long.
         self.page[()] = (index, *(values[name] for name in self.names))
-        data = self.page.tobytes()
-        self._write(data + zlib.crc32(data).to_bytes(4, "little"))
+        self._write(b"".join(map(_sealed, (*self._text(reasons), self.page.tobytes()))))
 
-    def append_all(self, index: np.ndarray, values: dict[str, np.ndarray]) -> None:
-        """Writes the records of finished points: index, (n,), and every variable in `values`, (n, ...)."""
+    def append_all(
+        self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
+    ) -> None:
+        """Writes the records of finished points: index, (n,), and every variable in `values`, (n, ...).
+
+        reasons: as in `append`.
+        """
         records = np.zeros(len(index), self.page.dtype)
         records["index"] = index
         for name in self.names:
@@ -58,7 +71,17 @@ class Journal:
         data = records.tobytes()
         size = records.itemsize
         parts = (data[at : at + size] for at in range(0, len(data), size))
-        self._write(b"".join(part + zlib.crc32(part).to_bytes(4, "little") for part in parts))
+        self._write(b"".join(map(_sealed, (*self._text(reasons), *parts))))
+
+    def _text(self, lines: Sequence[str]) -> Iterator[bytes]:
+        """Yields records with lines of text in place of values."""
+        room = self.page.itemsize - INDEX_BYTES
+        for line in lines:
+            text = line.encode()
+            pieces = [text[at : at + room] for at in range(0, len(text), room)]
+            for number, piece in enumerate(pieces, 1):
+                index = TEXT_ENDS if number == len(pieces) else TEXT_GOES_ON
+                yield index.to_bytes(INDEX_BYTES, "little", signed=True) + piece.ljust(room, b"\0")
 
     def close(self) -> None:
         """Syncs the journal to disk, written again if it was moved; deletes it if it has no points."""
@@ -147,18 +170,58 @@ def _points_of(path: Path) -> bytes:
         return head if file.read(1) else b""
 
 
+def _sealed(record: bytes) -> bytes:
+    """A record with its checksum."""
+    return record + zlib.crc32(record).to_bytes(CHECKSUM_BYTES, "little")
+
+
 def read_journals(
     directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
 ) -> Iterator[np.ndarray]:
     """Yields intact records, (records,), of a run's points from all of its journals in a directory."""
-    size = layout.record.itemsize
     for path in journals_of(directory, fingerprint):
-        with path.open("rb") as file:
-            file.seek(len(_head(fingerprint)))
-            while block := file.read(max(1, BYTES_A_BLOCK // (size + 4)) * (size + 4)):
-                raw = np.frombuffer(block, np.uint8)
-                raw = raw[: len(raw) // (size + 4) * (size + 4)].reshape(-1, size + 4)
-                sums = np.ascontiguousarray(raw[:, size:]).view("<u4").ravel()
-                whole = np.array([zlib.crc32(row[:size].data) for row in raw], dtype=np.uint32) == sums
-                records = np.ascontiguousarray(raw[whole, :size]).view(layout.record).ravel()
-                yield records[(records["index"] >= 0) & (records["index"] < points)]
+        for rows in _rows(path, layout, fingerprint):
+            whole = rows[_is_whole(rows), :-CHECKSUM_BYTES]
+            records = np.ascontiguousarray(whole).view(layout.record).ravel()
+            yield records[(records["index"] >= 0) & (records["index"] < points)]
+
+
+def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:
+    """Lines on why points of a run failed, from all of its journals in a directory."""
+    return [
+        line
+        for path in journals_of(directory, fingerprint)
+        for line in _text_in(_rows(path, layout, fingerprint)).decode().splitlines()
+    ]
+
+
+def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
+    """The whole lines of text in records with their checksums, blocks of rows, (records, bytes)."""
+    lines, line = [], b""
+    for rows in blocks:
+        index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
+        some = (index == TEXT_GOES_ON) | (index == TEXT_ENDS)
+        for row, at, whole in zip(rows[some], index[some], _is_whole(rows[some]), strict=True):
+            line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if whole else b""
+            if at == TEXT_ENDS:
+                lines.append(line)
+                line = b""
+    return b"\n".join(lines)
+
+
+def _rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
+    """Yields the records of a journal with their checksums, each a row of bytes, (records, bytes)."""
+    size = layout.record.itemsize + CHECKSUM_BYTES
+    with path.open("rb") as file:
+        file.seek(len(_head(fingerprint)))
+        while block := file.read(max(1, BYTES_A_BLOCK // size) * size):
+            raw = np.frombuffer(block, np.uint8)
+            yield raw[: len(raw) // size * size].reshape(-1, size)
+
+
+def _is_whole(rows: np.ndarray) -> np.ndarray:
+    """Whether each row of bytes, (records, bytes), has its own checksum, (records,)."""
+    sums = np.ascontiguousarray(rows[:, -CHECKSUM_BYTES:]).view("<u4").ravel()
+    own = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
+    whole: np.ndarray = own == sums
+    return whole

@@ -151,17 +151,28 @@ def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> A
     workspace: memory of the branch's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    for amplitude in BEGINNING.first_amplitudes:
-        try:
-            return _cycle_of(hopf, min(amplitude, BEGINNING.amplitude_share * a), accuracy, workspace)
-        except Unsolvable as error:
-            why = error
+    usual = max(accuracy, REFINEMENT.first_accuracy)
+    # A coarse mesh may have no cycle here, because the mesh's own Hopf point lies beyond.
+    for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
+        for share in BEGINNING.first_amplitudes:
+            amplitude = min(share, BEGINNING.amplitude_share * a)
+            try:
+                return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
+            except Unsolvable as error:
+                why = error
     raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
 
 
-def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
-    """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable."""
+def _cycle_of(
+    hopf: HopfBirth, amplitude: float, aim: float, finer: bool, accuracy: float, workspace: NewtonWorkspace
+) -> ArcPoint:
+    """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable.
+
+    aim: accuracy for which the first mesh is chosen. finer: whether the prediction has such a mesh too.
+    """
     start = predicted_cycle(hopf, amplitude)
+    if finer:
+        start = wanted_mesh(start, aim, stages_for(aim)).carry(start)
     least = abs(deflection_of(start)) * BEGINNING.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
@@ -174,7 +185,6 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: New
     least_ratio, largest_ratio = BEGINNING.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
-    aim = max(accuracy, REFINEMENT.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection

@@ -143,6 +143,9 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
         range_end = _range_end(start, limits, outside) if outside >= 0 else None
         if range_end is not None:
             end = _at_range_end(start, end, range_end, limits)
+        if range_end is not None and _hides_corner(start, end):
+            range_end = None  # after the cycle half way
+            end = point_at(start, arc_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model ends here, whatever the discrete equations still solve.
         if stretch_at(end) <= 0:
             return BranchEnd(located(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True)
@@ -172,6 +175,16 @@ def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -
     if start.orbit.symmetric:
         return turned_round(start, end)
     return mirrored(start, end, limits.breakings, limits.accuracy)
+
+
+def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
+    """Whether the largest y has a corner between a cycle and the last one, too far from it to be located.
+
+    At a corner another maximum of y(t) becomes the largest. A figure finds it from two cycles on each side.
+    """
+    apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
+    other = min(apart, 1 - apart) > ENDINGS.same_maximum
+    return other and arc_between(start, end) > ENDINGS.largest_hidden_corner
 
 
 def turned_round(start: ArcPoint, end: ArcPoint) -> bool:

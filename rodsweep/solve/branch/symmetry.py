@@ -60,6 +60,10 @@ class EndingSettings:
     it."""
     range_end_error: float = 1e-15
     """Relative error of the parameter at an end of the range."""
+    same_maximum: float = 0.05
+    """Fraction of a period between the largest y of two cycles beyond which these are different maxima."""
+    largest_hidden_corner: float = 0.02
+    """Arc length before the end of the range within which a corner of the largest y is not resolved."""
 
 
 ENDINGS = EndingSettings()

@@ -90,6 +90,8 @@ class CrossingSearch:
                 found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
             if found.unstable_count < 0:
                 raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
+            if _needed(found) > max(modes, ARM_CROSSINGS.max_known_modes):
+                raise Unsolvable(f"{self.problem.path.at(p)}: {found.unstable_count} modes grow")
             slopes = found.eigenvalues.copy()
             for i, w in enumerate(found.eigenvalues.tolist()):
                 slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()

@@ -256,5 +256,11 @@ def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     period = abs(one.orbit.period / other.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
     worst = max(abs(a[name] - b[name]) for name in a) / size
-    stated = [float(MARCHING.pair_factor * difference + share) for difference in (period, height, worst)]
-    return CycleErrors(stated[0], stated[1], stated[2], nan)
+    # The distance left is relative to each extremum, of which theta may be several times y.
+    left = share * max(1.0, abs(b["tip_theta_max"]) / size)
+    return CycleErrors(
+        float(MARCHING.pair_factor * period + share),
+        float(MARCHING.pair_factor * height + share),
+        float(MARCHING.pair_factor * worst + left),
+        nan,
+    )

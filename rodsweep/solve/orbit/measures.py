@@ -102,6 +102,11 @@ class CyclePath:
         """Smallest y of the tip; for a symmetric orbit minus the largest y."""
         return -self.extrema["tip_y_max"] if self.orbit.symmetric else float(self._path.least[1])
 
+    @property
+    def time_of_largest_y(self) -> float:
+        """Time of the largest sample of the tip's y, in periods from the orbit's start."""
+        return int(self.tip_samples[:, 1].argmax()) / len(self.tip_samples)
+
     @cached_property
     def beginning(self) -> float:
         """Time in periods at which the tip's y rises through its mean."""

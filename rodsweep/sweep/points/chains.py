@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..stop import StopRequest
-from .ranges import IndexRange, IndexSet, joined
+from .ranges import IndexRange, IndexSet, indices_along, joined
 
 Arrays = dict[str, Array]
 
@@ -62,10 +62,8 @@ class Chains:
 
     def indices(self, chain: int) -> NDArray[np.int64]:
         """Flat indices of the points of a chain in the order of solution, shape (length,)."""
-        inner = math.prod(self.shape[self.axis + 1 :])
-        outer, within = divmod(chain, inner)
-        along = outer * self.length * inner + within + inner * np.arange(self.length)
-        return along if self.upward else along[::-1]
+        along = np.arange(self.length)
+        return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the chains with missing points."""

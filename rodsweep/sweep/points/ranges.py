@@ -1,5 +1,6 @@
 """Ranges (first, end) of flat indices of points or chains, sets of such indices, and shards of a sweep."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,17 @@ def joined(ranges: Iterable[IndexRange]) -> list[IndexRange]:
         touches = bool(result) and result[-1][1] == first
         result.append((result.pop()[0] if touches else first, end))
     return result
+
+
+def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> Any:
+    """Flat indices of the places `along` an axis of a grid, on a line in its direction.
+
+    Lines are numbered in row-major order of the remaining axes. line, along: numbers or arrays, which
+    broadcast to the shape of the result.
+    """
+    inner = math.prod(shape[axis + 1 :])
+    outer, within = np.divmod(line, inner)
+    return (outer * shape[axis] + along) * inner + within
 
 
 class IndexSet:

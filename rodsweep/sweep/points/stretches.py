@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .ranges import IndexRange, IndexSet, joined, total
+from .ranges import IndexRange, IndexSet, indices_along, joined, total
 
 STRETCH_POINTS = 64
 """Largest number of points in a stretch."""
@@ -68,19 +68,13 @@ class Stretches:
         """Flat indices of the points of a stretch, shape (n,)."""
         part, line = divmod(stretch, self.lines)
         along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
-        # Row-major index: `axis` has the stride inner, the axes before it together the stride shape[axis] *
-        # inner.
-        inner = math.prod(self.shape[self.axis + 1 :])
-        outer, within = divmod(line, inner)
-        return outer * self.shape[self.axis] * inner + within + inner * along
+        return indices_along(self.shape, self.axis, line, along)
 
     def missing_of(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
         """Number of missing points of each stretch in a range, shape (stretches,)."""
         part, line = np.divmod(np.arange(*stretches)[:, None], self.lines)
         along = part * STRETCH_POINTS + np.arange(STRETCH_POINTS)
-        inner = math.prod(self.shape[self.axis + 1 :])
-        outer, within = np.divmod(line, inner)
-        index = outer * self.shape[self.axis] * inner + within + inner * along
+        index = indices_along(self.shape, self.axis, line, along)
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
 
     def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:

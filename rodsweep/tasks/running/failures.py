@@ -26,13 +26,20 @@ class FailureReasons:
     where: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
-    def add(self, index: Indices, result: Any) -> None:
-        """Notes the reasons of failed points: of one outcome, or of a stretch with n indices, (n,)."""
+    def add(self, index: Indices, result: Any) -> list[str]:
+        """Notes the reasons of failed points: of one outcome, or of a stretch with n indices, (n,).
+
+        Returns the new ones, a line each.
+        """
+        new = []
         for at, outcome in _failed(index, result):
             if len(self.examples) >= MAX_FAILURE_REASONS:
-                return
+                break
             line = " ".join(f"{self.where(at)}: {outcome}".split())
-            self.examples.setdefault(reason_of(line), line)
+            if reason_of(line) not in self.examples:
+                self.examples[reason_of(line)] = line
+                new.append(line)
+        return new
 
 
 def _failed(index: Indices, result: Any) -> Iterable[tuple[int, str]]:

@@ -88,20 +88,15 @@ class Job:
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             return values | in_si(values, index, layout, quantities) | validity.of(values, index)
 
-        if solver.stretched is None:
-            return replace(
-                solver, record=lambda index, outcome: complete(solver.record(index, outcome), index)
-            )
-        stretches, solve_stretch = solver.stretched
-
         def together(indices: NDArray[np.int64]) -> StretchResult:
-            found = solve_stretch(indices)
+            assert solver.stretched is not None
+            found = solver.stretched[1](indices)
             return replace(found, values=complete(found.values, indices))
 
         return replace(
             solver,
             record=lambda index, outcome: complete(solver.record(index, outcome), index),
-            stretched=(stretches, together),
+            stretched=solver.stretched and (solver.stretched[0], together),
         )
 
     @cached_property

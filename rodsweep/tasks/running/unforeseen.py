@@ -125,8 +125,11 @@ def log_file(output: Path) -> Path:
 class Log:
     """Tracebacks of a rank's points, appended to a file beside the result that all ranks share."""
 
-    def __init__(self, output: Path, rank: int, where: Callable[[int], str]):
-        """Function `where`: the parameters of a point in words, from the point's index."""
+    def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
+        """where: the parameters of a point in words, from the point's index. strict: whether an exception is
+        raised again, with its place, after it is written.
+        """
+        self.strict = strict
         self.path = log_file(output)
         self.rank = rank
         self.where = where
@@ -144,19 +147,20 @@ class Log:
     def note(self, place: str, error: Exception) -> None:
         """Appends a traceback under the name of a place."""
         self.count += 1
-        if self.count > MAX_NOTES:
-            return
+        if self.count <= MAX_NOTES:
+            self._write(place, error)
+        if self.strict:
+            error.add_note(f"at {place}")
+            raise error
+
+    def _write(self, place: str, error: Exception) -> None:
         head = f"{now()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
         lines = traceback.format_exception(error)
         text = "".join(lines)
         body = f"{lines[-1]}as above\n" if text in self._known else text
         self._known.add(text)
-        self._append(f"{head}{body}\n")
-
-    def _append(self, text: str) -> None:
-        """Writes with a single call, so that lines of different ranks do not mix."""
         handle = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
-        try:
-            os.write(handle, text.encode(errors="backslashreplace"))
+        try:  # a single call, so that lines of different ranks do not mix
+            os.write(handle, f"{head}{body}\n".encode(errors="backslashreplace"))
         finally:
             os.close(handle)

@@ -1,5 +1,6 @@
 """Branches of cycles: where they lead, where they change, and how sure both is."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -9,8 +10,9 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch import beginning as begun
 from rodsweep.solve.branch import bordered, branches, following
-from rodsweep.solve.branch.beginning import hopf_point
+from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.bordered import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
@@ -283,3 +285,23 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
     one, other = folds
     assert abs(one.at - other.at) <= one.error + other.error
     assert max(one.error, other.error) < 1e-7 * rod.k1
+
+
+def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkeypatch):
+    """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
+    smallest = begun.BEGINNING.first_amplitudes[-1]
+    monkeypatch.setattr(begun, "BEGINNING", replace(begun.BEGINNING, first_amplitudes=(smallest,)))
+    monkeypatch.setattr(begun, "first_point", lambda first, *others: first.orbit)
+    path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
+    (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
+    orbit = beginning(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
+    assert float(orbit.form.tip(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
+
+
+def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
+    """Another maximum of y(t) becomes the largest at a corner, which a figure locates from both sides."""
+    rod = Rod(F=0.0, k1=419.6, k2=23447.0, gamma3=0.1237, gamma1=0.645)
+    request = BranchRequest("F", 0.0, 124.34, 3e-4, certify=False, cycles=100, special=10)
+    (branch,) = solve_branches(rod, request, NewtonWorkspace()).curves
+    sizes = [point.measures.tip_y_max for point in branch.points[-4:]]
+    assert np.diff(sizes) == pytest.approx([-0.0083, 0.011, 0.026], abs=1e-3)

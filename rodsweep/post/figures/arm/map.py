@@ -52,7 +52,7 @@ MAP_HATCH_COLOUR = "0.35"
 def draw_arm_map(request: FigureRequest) -> str:
     """Draws the main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
     view = replace(request, what=None).only_view()
-    long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
+    long = [name for name in view.over if len(view.variables[name]) > 1]
     if DRAG in long and long[1:]:  # drawn as a band, or for the likeliest drag
         long.remove(DRAG)
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
@@ -81,10 +81,11 @@ def draw_arm_map(request: FigureRequest) -> str:
 
 
 def can_draw(request: FigureRequest) -> bool:
-    """Whether the figure is a map over an arm's quantities: no other figure is asked for."""
+    """Whether the figure is a map over an arm's quantities: some vary, and no other figure is asked for."""
     view = request.views[0]
     chosen = request.what not in (None, *MAPS) or request.points or request.roots
-    return bool(view.over) and view.task in PANELS and not chosen
+    several = any(len(view.variables[name]) > 1 for name in view.over)
+    return several and view.task in PANELS and not chosen
 
 
 def _axis(view: View, name: str) -> tuple[Array, str]:

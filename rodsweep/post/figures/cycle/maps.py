@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....config.arm.axes import MOVES
 from ....results.file.view import View
+from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ....sweep.points.points import ParameterLine
 from ...hopf_points import LocatedChange, StoredChanges
 from ..style import (
@@ -35,7 +36,7 @@ from ..style import (
 )
 from .amplitudes.hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, cell_edges, in_its_scale, point_map
-from .selection import CYCLE_WORDS, outcomes, shared_and_own_of_arms
+from .selection import shared_and_own_of_arms
 from .units import units_over
 
 STATUS_LOOKS = {
@@ -64,7 +65,7 @@ QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     """Draws the period and the largest y of the tip, with Hopf points; narrow: whether panels are stacked."""
     points = point_map(view)
-    words = outcomes(view)[points.at]
+    words = view.outcomes[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
     require(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)

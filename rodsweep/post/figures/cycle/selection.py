@@ -20,8 +20,6 @@ from .units import PLAIN_UNITS, REQUIRED, CycleUnits, units_of
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into a single figure."""
-CYCLE_WORDS = ("cycle", "unstable")
-"""Statuses of points with a cycle, stable or unstable."""
 SHAPES = ("shape_x", "shape_y", "shape_theta")
 """Variables of the shapes over a period."""
 ENERGIES = ("energy", "injection", "dissipation")
@@ -105,15 +103,10 @@ class Selection:
     """Clause of the message on cycles without room; empty if all are shown."""
 
 
-def outcomes(view: View) -> NDArray[np.str_]:
-    """Word of the status of every point, shape (points,)."""
-    return np.array([view.flags.get(int(s), "missing") for s in view.variables["status"].ravel()])
-
-
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
     """Cycles at the points chosen by the user, else the first cycles; InputError where the file has none."""
     _refuse_missing(view, needs)
-    words = outcomes(view)
+    words = view.outcomes
     _refuse_bad_points(view, points)
     for number in points:
         if words[number - 1] != "cycle":
@@ -144,7 +137,7 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
 def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> Selection:
     """Selection of points by number, else of the first drawable ones; drawable: shape (points,)."""
     available = np.flatnonzero(drawable)
-    words = outcomes(view)
+    words = view.outcomes
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
         raise InputError(f"{view.path} holds no {what} that could be drawn; its points are: {states}")

@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ....results.file.view import View
+from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ..style import FIRST, SECOND
-from .selection import CYCLE_WORDS, TRACE, StoredCycle, chosen_traces
+from .selection import TRACE, StoredCycle, chosen_traces
 from .units import CycleUnits
 
 LEVEL_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}

@@ -14,8 +14,9 @@ from ....arrays import Array
 from ....model.parameters import CRUSHING
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ....results.layouts.rods import has_covering
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....results.layouts.variables import has_covering, number_of
+from ....results.layouts.variables import number_of
 from ....wording import plural
 from ..lists import number_points, shared_parameters
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, parameter_text, require

@@ -44,14 +44,8 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     table = _table(view, along, other)
     style.require(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST_SHADE, len(table)))
-    handles = []
     for values, shade in zip(table, shades, strict=True):
-        for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
-            look: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade if other else colour}
-            look |= {"ls": line} if other else {}
-            _plot(axes, _abscissa(view, along), forces, look)
-            if not other and np.isfinite(forces).any():
-                handles.append(Line2D([], [], label=word, **look))
+        handles = _draw(axes, _abscissa(view, along), values, {"color": shade} if other else {"ls": "-"})
     if other:
         handles = _kinds(table) + [
             Line2D([], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number(value)}$")
@@ -72,9 +66,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     tables = np.concatenate([_table(view, along, None) for view in views])
     handles = _kinds(tables)
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
-        for forces, (_, _, _, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
-            look = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade, "ls": line}
-            _plot(axes, _abscissa(view, along), forces, look)
+        _draw(axes, _abscissa(view, along), values, {"color": shade})
         handles.append(Line2D([], [], color=shade, lw=2, label=style.name_in(view, views)))
     longest = max(views, key=lambda view: len(view.axes[along]))
     _label(axes, longest, along, tables)
@@ -114,9 +106,7 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
     table = _table(view, along, other)
     some = _far_apart(table)
     for line, alike in zip(LINE_STYLES, _alike({at: table[at] for at in some}), strict=False):
-        for forces, (_, _, colour, marker, _) in zip(table[alike[0]], CRITICAL_FORCES, strict=True):
-            look = {"color": colour, "marker": marker, "ms": 2, "lw": 1.2, "ls": line}
-            _plot(panel, _abscissa(view, along), forces, look)
+        _draw(panel, _abscissa(view, along), table[alike[0]], {"ls": line, "ms": 2})
         values = ", ".join(style.number(float(view.axes[other][at]), 3) for at in alike)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
@@ -144,10 +134,19 @@ def _abscissa(view: View, along: str) -> Array:
     return 1 / values if along == "gamma3" else values
 
 
-def _plot(axes: Axes, x: Array, forces: Array, look: dict) -> None:
-    """Draws a line through the known forces, (n,), with gaps at unknown ones."""
+def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
+    """Draws the three critical forces, (3, n), with gaps at unknown ones; returns entries of those known.
+
+    look: replaces the colour, the style or the marks of the thresholds.
+    """
     place = np.isfinite(x)
-    axes.plot(x[place], forces[place], **look)
+    handles = []
+    for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
+        own: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": colour, "ls": line} | look
+        axes.plot(x[place], forces[place], **own)
+        if np.isfinite(forces).any():
+            handles.append(Line2D([], [], label=word, **own))
+    return handles
 
 
 def _label(axes: Axes, view: View, along: str, table: Array) -> None:

@@ -3,21 +3,22 @@
 Numbers are in the units typed by the user, frequencies in Hz.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
 from ....config.arm.axes import NOT_SLENDER
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import SCALE_OF
+from ....model.arm.quantities import SCALE_OF, UNITS
 from ....results.file.view import View
-from ....results.layouts.arm import EFFECTS, NOT_KNOWN, VALIDITY
+from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import counted, some_of
-from ..ranges import rounded
-from .arm import errors_in_si, load_of, own_unit, region_of_arms
+from .arm import errors_in_si, in_own_unit, load_of, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
+from .validity import plane_lines, validity_sentence
 
+Lines = list[str]
 ANSWER_DIGITS = 3
 """Largest number of digits in an answer; a larger error leaves fewer."""
 FAILED = "failed"
@@ -31,28 +32,14 @@ NO_CYCLE = {
     FAILED: "is not known: the integration failed",
 }
 """Words about arms without a stable cycle, by status."""
-OTHER_PLANE = (
-    "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
-    "other plane, at a lower load: exchange width and height to see it"
-)
-"""Warning about a rectangular section of greater height than width."""
 
 
-def arm_answer(view: View, done: np.ndarray) -> list[str]:
+def arm_answer(view: View, done: np.ndarray) -> Lines:
     """Lines about the points in `done`, a mask of the points' shape; empty without an arm."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
 
 
-def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
-    """Warning if some rectangular section flutters first in the plane that is not computed; else empty.
-
-    quantities: quantities of an arm, in SI units, each a number or (n,).
-    """
-    height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
-    return [OTHER_PLANE] if np.max(height) > np.min(width) else []
-
-
-def _applied(view: View, done: np.ndarray) -> list[str]:
+def _applied(view: View, done: np.ndarray) -> Lines:
     """Lines about points, with the validity of the model."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
@@ -68,61 +55,39 @@ def _applied(view: View, done: np.ndarray) -> list[str]:
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
-    """Sentence on the validity of the model at points, with the largest neglected effect.
-
-    validity: the variables of VALIDITY, (n,). when: condition of the validity, as a clause.
-    """
-    applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
-    unknown = applies == NOT_KNOWN
-    if unknown.all():
-        where = f" at all {len(applies)} points" if len(applies) > 1 else ""
-        return f"whether the model applies is not known{where}{when}: a motion may have been missed"
-    rest = f"; not known at {some_of(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
-    worst = Validity(int(applies.max()))
-    affected = applies == worst
-    at = f" at {some_of(int(affected.sum()), len(applies), 'point')}"
-    if affected.all():
-        at = "" if len(applies) == 1 else f" at all {len(applies)} points"
-    if worst == Validity.applies:
-        everywhere = " at all points" if len(applies) > 1 else ""
-        return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
-    verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
-    place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
-    name = EFFECTS[int(effect[place])].replace("_", " ")
-    size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {size} times its limit{rest}"
-
-
 def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
-    """Range of values in an SI unit, of any shape, in the arm's own unit.
-
-    errors: absolute errors of the same shape, or 0; they limit the number of digits.
-    """
-    is_finite = np.isfinite(values)
-    finite = values[is_finite]
-    known = np.broadcast_to(errors, values.shape)[is_finite]
-    factor, unit = own_unit(view, si, float(np.abs(finite).max()))
-    ends = (int(finite.argmin()), int(finite.argmax()))
-    low, high = (rounded(factor * float(finite[i]), factor * float(known[i]), ANSWER_DIGITS) for i in ends)
-    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+    """`in_own_unit` with the digits of an answer; values, errors: of any one shape."""
+    return in_own_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
     """Range of loads in SI units, (n,), in the unit of the arm's load."""
-    return spanned(view, loads, "N" if "force" in view.quantities else "Pa")
+    return spanned(view, loads, UNITS[load_of(view)][0])
 
 
-def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
+def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
+    """Lines of a task that searches: the answer of points with a result, failed points, further lines.
+
+    answer: from (view, mask of points with a result) to (lines of the answer, further lines).
+    """
+
+    def lines(view: View, rods: np.ndarray) -> Lines:
+        failed = rods & view.with_status(FAILED)
+        unsolved = [f"not known{_share(failed, rods)}: the search failed"] if failed.any() else []
+        if (failed == rods).all():
+            return unsolved
+        first, further = answer(view, rods & ~failed)
+        return [*first, *unsolved, *further]
+
+    return lines
+
+
+def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Lines about the loads at which arms flutter, oscillate and are stable again."""
-    searched, lines = _solved(view, rods)
-    if not searched.any():
-        return lines
-    rods = searched
     load = load_of(view)
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
-    lines = [*_flutter(view, hopf, end, rate), *lines, *_where(view, rods, hopf)]
+    lines = _where(view, rods, hopf)
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
@@ -130,10 +95,10 @@ def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
     if len(hopf) > 1 and np.isfinite(back).any():
         points = some_of(int(np.isfinite(back).sum()), len(back), "point")
         lines.append(f"is straight again at {points}, from {load_spanned(view, back)} on")
-    return lines
+    return _flutter(view, hopf, end, rate), lines
 
 
-def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> list[str]:
+def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
     """Lines about the arms with the smallest and the largest of loads in SI units, (n,), and about drag."""
     if np.isfinite(loads).sum() < 2:
         return []
@@ -148,30 +113,13 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> list[str]:
     return [*lines, *drag_lines(view, whole)]
 
 
-def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
+def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Lines about the loads and frequencies of first Hopf points."""
-    rods, unsolved = _solved(view, rods)
-    if not rods.any():
-        return unsolved
     v = view.variables
-    first = _first_hopf(view, rods)
     load = load_of(view)
-    end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(len(first), np.nan)
-    frequency = _at(v["crossing_frequency_hz"][rods], first)
-    return [*_flutter(view, _at(v[f"crossing_{load}"][rods], first), end, frequency), *unsolved]
-
-
-def _solved(view: View, rods: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """(mask of the points whose search ended with a result, line about the others, if there are any)."""
-    failed = rods & _with_status(view, FAILED)
-    if not failed.any():
-        return rods, []
-    return rods & ~failed, [f"not known{_share(failed, rods)}: the search failed"]
-
-
-def _with_status(view: View, *words: str) -> np.ndarray:
-    """Mask of the points with one of these statuses, of the points' shape."""
-    return np.isin(view.variables["status"], [value for value, word in view.flags.items() if word in words])
+    end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
+    loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
+    return _flutter(view, loads, end, frequency), []
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
@@ -179,7 +127,7 @@ def _share(some: np.ndarray, rods: np.ndarray) -> str:
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
-def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> list[str]:
+def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
     """Lines about flutter of n arms. hopf: loads; end: ends of the search; frequency: in Hz; (n,) each."""
     flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
@@ -193,14 +141,14 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
     return lines
 
 
-def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
+def _of_cycles(view: View, rods: np.ndarray) -> Lines:
     """Lines about the frequency and the amplitude of cycles."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
-    cycles = rods & _with_status(view, "cycle")
+    cycles = rods & view.with_status("cycle")
     if not cycles.any():  # where some arms beat, the line with all outcomes counts the others
-        masks = {words: rods & _with_status(view, status) for status, words in NO_CYCLE.items()}
+        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE.items()}
         return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
@@ -213,14 +161,14 @@ def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
     return [motion, *_decided(view, rods), *drag_lines(view, numbers)]
 
 
-def _decided(view: View, rods: np.ndarray) -> list[str]:
+def _decided(view: View, rods: np.ndarray) -> Lines:
     """Line on the number of arms and loads for which drag decides whether there is a cycle; may be empty."""
     arms = arms_of_drags(view)
     if arms is None:
         return []
-    if (rods & ~_with_status(view, "cycle", "straight")).any():
+    if (rods & ~view.with_status("cycle", "straight")).any():
         return []
-    beats = _with_status(view, "cycle").ravel()
+    beats = view.with_status("cycle").ravel()
     of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)
@@ -230,7 +178,7 @@ def _decided(view: View, rods: np.ndarray) -> list[str]:
     return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 
 
-def _of_modes(view: View, rods: np.ndarray) -> list[str]:
+def _of_modes(view: View, rods: np.ndarray) -> Lines:
     """Lines about the stability of arms and the frequency of their leading modes."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
@@ -246,53 +194,43 @@ def _of_modes(view: View, rods: np.ndarray) -> list[str]:
     return lines
 
 
-def _of_branches(view: View, rods: np.ndarray) -> list[str]:
+def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Line about loads and frequencies of the cycles on branches."""
-    rods, unsolved = _solved(view, rods)
-    if not rods.any():
-        return unsolved
     loads = view.variables[f"branch_{load_of(view)}"][rods]
     if not np.isfinite(loads).any():
-        return ["has no branch of cycles from a Hopf point in the range searched", *unsolved]
+        return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
     rate = spanned(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"beats at {load_spanned(view, loads)}, at {rate}", *unsolved]
+    return [f"beats at {load_spanned(view, loads)}, at {rate}"], []
 
 
-def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
+def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Lines about the loads and frequencies of the first Hopf points on rows over F."""
-    if "F" in view.parameters:  # the rows are over another parameter
-        return []
-    rods, unsolved = _solved(view, rods)
-    if not rods.any():
-        return unsolved
-    first = _first_hopf(view, rods)
     v = view.variables
-    scale = SCALE_OF[load_of(view)]
-    loads = _at(v["crossing_at"][rods], first) * np.broadcast_to(v[scale], rods.shape)[rods]
+    scale = np.broadcast_to(v[SCALE_OF[load_of(view)]], rods.shape)[rods]
+    forces, frequency = _at_first_hopf(view, rods, "crossing_at")
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
-    ends = last * np.broadcast_to(v[scale], rods.shape)[rods]
-    return [*_flutter(view, loads, ends, _at(v["crossing_frequency_hz"][rods], first)), *unsolved]
+    return _flutter(view, forces * scale, last * scale, frequency), []
 
 
-def _first_hopf(view: View, rods: np.ndarray) -> np.ndarray:
-    """Place of the first Hopf point among the crossings of each point, (n,); -1 without a Hopf point."""
+def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """(a variable, frequency in Hz) at the first Hopf point of each point, (n,); NaN without a Hopf point."""
     hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
-    return np.where(hopf.any(axis=-1), np.argmax(hopf, axis=-1), -1)
+    at = np.arange(len(hopf)), np.argmax(hopf, axis=-1)
+    values, frequency = (
+        np.where(hopf.any(axis=-1), view.variables[each][rods][at], np.nan)
+        for each in (name, "crossing_frequency_hz")
+    )
+    return values, frequency
 
 
-def _at(values: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Values at one place of each row of a table, (n, crossings), as (n,); NaN for place -1."""
-    return np.where(places < 0, np.nan, values[np.arange(len(places)), np.maximum(places, 0)])
-
-
-ANSWERS: dict[str, Callable[[View, np.ndarray], list[str]]] = {
+ANSWERS: dict[str, Callable[[View, np.ndarray], Lines]] = {
     "spectrum": _of_modes,
     "modes": _of_modes,
-    "thresholds": _of_thresholds,
-    "criticality": _of_crossings,
+    "thresholds": _of_search(_of_thresholds),
+    "criticality": _of_search(_of_crossings),
     "limit_cycle": _of_cycles,
-    "branch": _of_branches,
-    "phase_diagram": _of_diagram,
+    "branch": _of_search(_of_branches),
+    "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _of_search(_of_diagram)(view, rods),
 }
 """Function of each task from (view, mask of computed points with a rod) to the lines of its answer."""

@@ -20,7 +20,7 @@ from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedChange
 from ...tables.rows import quantities_at_points
 from ..errors import errors_of, is_known
-from ..ranges import rounded, span
+from ..ranges import RANGE_DIGITS, rounded, span
 
 WIDTH = 80
 """Width of lines in SI units, in characters."""
@@ -59,10 +59,19 @@ def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     return 1.0, si
 
 
-def in_own_unit(view: View, values: np.ndarray, si: str) -> str:
-    """Range of numbers in an SI unit, of any shape, in the arm's own unit."""
+def in_own_unit(
+    view: View,
+    values: np.ndarray,
+    si: str,
+    errors: np.ndarray | float = 0.0,
+    most: int = RANGE_DIGITS,
+) -> str:
+    """Range of numbers in an SI unit, of any shape, in the arm's own unit.
+
+    errors: absolute errors of the same shape, or 0; they limit the number of digits, at most `most`.
+    """
     factor, unit = own_unit(view, si, _largest(values))
-    return f"{span(factor * values)} {unit}"
+    return f"{span(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
 
 
 def _largest(values: np.ndarray) -> float:

@@ -13,8 +13,9 @@ from .....config.arm.axes import MOVES
 from .....config.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
+from .....results.layouts.limit_cycle import CYCLE_WORDS
 from ...style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, plain, require, scale
-from ..selection import CYCLE_WORDS, shared_and_own, shared_and_own_of_arms
+from ..selection import shared_and_own, shared_and_own_of_arms
 from ..units import units_over
 from .branches import AmplitudeBranch, abscissa, branches_of
 from .hopf_marks import draw_laws, mark_hopf_points

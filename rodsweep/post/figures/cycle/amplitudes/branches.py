@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import View
+from .....results.layouts.limit_cycle import CYCLE_WORDS
 from .....sweep.points.points import lines_over
 from ....hopf_points import LocatedChange, StoredChanges
-from ..selection import CYCLE_WORDS, outcomes
 from ..units import PLAIN_UNITS, CycleUnits
 from .square_root import SquareRootLaw, square_root_laws
 
@@ -65,7 +65,7 @@ def abscissa(view: View) -> str:
 
 def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
     """Branches of a file, a branch for each combination of the parameters without `name`."""
-    words = outcomes(view)
+    words = view.outcomes
     v = view.variables
     straight = words == "straight"
     cycle = np.isin(words, CYCLE_WORDS)
