@@ -4,6 +4,7 @@ import ast
 import re
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import rodsweep
@@ -11,7 +12,6 @@ import rodsweep
 ROOT = Path(rodsweep.__file__).parents[1]
 FILES = [path for folder in ("rodsweep", "benchmarks") for path in sorted((ROOT / folder).rglob("*.py"))]
 SOURCES = {path.relative_to(ROOT): path.read_text() for path in FILES}
-TREES = {path: ast.parse(text) for path, text in SOURCES.items()}
 LONGEST_FUNCTION = 40
 """Lines of code, without its docstring, comments and empty lines."""
 ARRAYS = re.compile(r"\b(NDArray|ndarray|Array|Complex|Vector)\b")
@@ -32,6 +32,12 @@ ONE_MEANING = {
     "ROUND_OFF",
     "PREFIX",
 }
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """The sources parsed, which takes seconds: each worker of pytest-xdist collects this module."""
+    return {path: ast.parse(text) for path, text in SOURCES.items()}
 
 
 def functions(node: ast.AST, outer: str = "") -> Iterator[tuple[ast.FunctionDef, str]]:
@@ -62,7 +68,7 @@ def place(path: Path, node: ast.FunctionDef) -> str:
 def test_public_functions_name_the_shapes_of_their_arrays():
     """In their docstring or their class's."""
     silent = []
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for function, outer in functions(tree):
             given = (argument.annotation for argument in (*function.args.args, *function.args.kwonlyargs))
             types = " ".join(ast.unparse(kind) for kind in (*given, function.returns) if kind)
@@ -75,7 +81,7 @@ def test_public_functions_name_the_shapes_of_their_arrays():
 def test_no_function_is_long():
     long = [
         place(path, function)
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for function, _ in functions(tree)
         if lines_of_code(function, SOURCES[path]) > LONGEST_FUNCTION
     ]
@@ -99,7 +105,7 @@ def test_modules_are_named_for_what_they_hold():
 def test_a_name_has_one_meaning():
     """No two classes share a name, nor constants of the solvers, nor constants whose names say little."""
     owners = defaultdict(list)
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in tree.body:
             if isinstance(node, ast.ClassDef):
                 owners[node.name].append(str(path))

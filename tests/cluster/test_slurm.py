@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from conftest import BIN, RANK, ROOT, Command
 from contents import content, same
+from faults.isolated import Isolated
 from ranks import PATIENCE
 from slow_runs import FOR_EVER, slowly
 
@@ -20,7 +21,7 @@ from .slurm import CannotStart, Slurm, started_slurm, wait_for
 CONFIG = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 21}
+  F: {start: 0, stop: 60, num: 9}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
@@ -86,12 +87,7 @@ def slurm(running, out_of_time, tmp_path):
 def quick_slurm(running, out_of_time, tmp_path, loaded):
     """The same, with ranks forked from a loaded process: for what depends on jobs, not on their start."""
     running.directory = clone_in(tmp_path)
-    own = tmp_path / ".venv" / "bin"
-    own.unlink()
-    own.mkdir()
-    (own / "mpiexec").symlink_to(BIN / "mpiexec")
-    (own / "rodsweep").write_text(f'#!/bin/sh\nexec {sys.executable} -SE {RANK} {loaded.ranks} "$@"\n')
-    (own / "rodsweep").chmod(0o755)
+    fork_ranks(tmp_path, loaded)
     return running
 
 
@@ -103,6 +99,16 @@ def clone_in(directory: Path) -> Path:
     (directory / "patch").mkdir()
     (directory / "patch" / "sitecustomize.py").write_text(SLOWLY)
     return directory
+
+
+def fork_ranks(clone: Path, loaded: Isolated) -> None:
+    """Lets the command of a clone be forked from a loaded process."""
+    own = clone / ".venv" / "bin"
+    own.unlink()
+    own.mkdir()
+    (own / "mpiexec").symlink_to(BIN / "mpiexec")
+    (own / "rodsweep").write_text(f'#!/bin/sh\nexec {sys.executable} -SE {RANK} {loaded.ranks} "$@"\n')
+    (own / "rodsweep").chmod(0o755)
 
 
 def halted(slurm: Slurm, *more: str) -> str:
@@ -125,9 +131,10 @@ def log(slurm: Slurm) -> str:
     return "".join(path.read_text() for path in sorted(slurm.directory.glob("rodsweep*.log")))
 
 
-def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
+def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path, loaded):
     """Without Slurm: what the script does in it, with a `scontrol` that only notes how it is called."""
     clone_in(tmp_path)
+    fork_ranks(tmp_path, loaded)
     (tmp_path / "scontrol").write_text('#!/bin/sh\necho "$@" > asked\n')
     (tmp_path / "scontrol").chmod(0o755)
     variables = {"SLURM_SUBMIT_DIR": str(tmp_path), "SLURM_NTASKS": "2", "SLURM_JOB_ID": "7"}
@@ -148,7 +155,7 @@ def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
 
 
 def test_job_gives_the_content_of_a_plain_run_and_submitted_again_has_nothing_to_do(slurm, expected):
-    for said in ("252 of 252 points to do", "c.h5 is complete, nothing to do"):
+    for said in ("108 of 108 points to do", "c.h5 is complete, nothing to do"):
         job = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
         assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
         assert said in (slurm.directory / f"rodsweep-{job}.log").read_text()
@@ -174,7 +181,7 @@ def test_job_requeued_in_the_middle_finishes_by_itself(quick_slurm, expected):
     quick_slurm("scontrol", "requeue", job)
     assert quick_slurm.end(job) == "COMPLETED 0:0", log(quick_slurm)
     assert quick_slurm.about(job, "Restarts") == "1"
-    assert log(quick_slurm).count("252 points to do") == 2  # the log of both times
+    assert log(quick_slurm).count("108 points to do") == 2  # the log of both times
     assert log(quick_slurm).count(" kept") == 1
     assert same(content(quick_slurm.directory / "c.h5"), expected)
 
@@ -201,9 +208,9 @@ def test_shards_of_an_array_are_merged_when_all_have_ended(quick_slurm, expected
     quick_slurm.warn(f"{array}_2")
     assert quick_slurm.end(last) == "COMPLETED 0:0", log(quick_slurm)
     assert log(quick_slurm).count(STOPPED) == 1
-    assert "252 points from 3 files, 0 missing" in log(quick_slurm)
+    assert "108 points from 3 files, 0 missing" in log(quick_slurm)
     parts = [content(path)["status"] for path in quick_slurm.directory.glob("c-*-of-3.h5")]
-    assert [(part != MISSING).sum() for part in parts] == [84, 84, 84]
+    assert [(part != MISSING).sum() for part in parts] == [36, 36, 36]
     assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 

@@ -299,6 +299,7 @@ def load(solving: bool, configs: list[str]) -> None:
     import encodings.ascii  # noqa: F401
 
     import rich._emoji_codes  # noqa: F401
+    import scipy
 
     import rodsweep.cli.checking
     import rodsweep.cli.run.running
@@ -309,6 +310,8 @@ def load(solving: bool, configs: list[str]) -> None:
     from rodsweep.sweep.team import Team
     from rodsweep.tasks.running.job import make_job
 
+    for name in ("interpolate", "ndimage", "spatial"):
+        getattr(scipy, name)
     for path in configs:
         job = make_job(Path(path), ())
         job.task.cost()

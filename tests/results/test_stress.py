@@ -52,7 +52,7 @@ accuracy: 1.0e-4
 """
 DIAGRAM = """
 task: phase_diagram
-parameters: {F: {start: 60, stop: 110, num: 11}, k1: [149.5, 150.5, 152], k2: 1.0e4, gamma3: 1.0e-4}
+parameters: {F: {start: 60, stop: 110, num: 6}, k1: [149.5, 152], k2: 1.0e4, gamma3: 1.0e-4}
 phase_diagram: {cycles: true}
 """
 LONG_BRANCHES = """

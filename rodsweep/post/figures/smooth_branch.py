@@ -3,9 +3,9 @@
 from itertools import pairwise
 
 import numpy as np
+import scipy  # loads a subpackage at its first use: scipy.interpolate takes a quarter of a second
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline, barycentric_interpolate
 
 from ...arrays import Array
 from ..branch_curves import StoredBranch
@@ -77,7 +77,7 @@ def _smooth(own: Array, extent: Array) -> Array:
     s = min(variables, key=lambda variable: _roughness(variable, whole / extent))
     ends = s[first : first + len(own)]
     finer = np.append(np.linspace(ends[:-1], ends[1:], PIECES, endpoint=False, axis=1).ravel(), ends[-1])
-    places: Array = CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
+    places: Array = scipy.interpolate.CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
     return places
 
 
@@ -101,8 +101,10 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
             angles = [float(rise.deriv()(root.real)) for rise in rises]
             is_between = abs(root.imag) < COINCIDENT and 0 < root.real < 1
             if is_between and angles[1] > MIN_ANGLE and angles[1] > ANGLE_RATIO * max(map(abs, angles[::2])):
-                place = barycentric_interpolate(x, own[window], root.real)
-                place[1] = barycentric_interpolate(x[x < 0.5], own[window][x < 0.5, 1], root.real)
+                place = scipy.interpolate.barycentric_interpolate(x, own[window], root.real)
+                place[1] = scipy.interpolate.barycentric_interpolate(
+                    x[x < 0.5], own[window][x < 0.5, 1], root.real
+                )
                 found[i] = angles[1], place
     return {
         i: place
@@ -132,7 +134,10 @@ def _roughness(s: Array, places: Array) -> float:
     """Largest distance of a place from the cubic through two places on each side; places: (n, columns)."""
     beside = (-2, -1, 1, 2)
     off = [
-        places[i] - barycentric_interpolate(s[[i + k for k in beside]], places[[i + k for k in beside]], s[i])
+        places[i]
+        - scipy.interpolate.barycentric_interpolate(
+            s[[i + k for k in beside]], places[[i + k for k in beside]], s[i]
+        )
         for i in range(2, len(s) - 2)
     ]
     return float(np.abs(off).max()) if off else 0.0

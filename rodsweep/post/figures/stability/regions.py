@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy  # loads a subpackage at its first use
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, label
-from scipy.spatial import cKDTree
 
 from ....arrays import Array
 from ..style import is_logarithmic
@@ -62,7 +61,7 @@ def coloured(computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequ
     for curve in curves:
         row, column = _pixels(_dense(curve)).T
         walls[row, column] = True
-    regions, count = label(~walls)
+    regions, count = scipy.ndimage.label(~walls)
     known, region_of_known = computed.within(regions)
     sources = [(known, region_of_known), further.within(regions), (known, None)]
     table = np.zeros((PIXELS, PIXELS), computed.classes.dtype)
@@ -74,7 +73,7 @@ def coloured(computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequ
                 table[pixels] = _nearest(pixels, source.at[own], source.classes[own])
                 break
     if walls.any() and not walls.all():
-        nearest = distance_transform_edt(walls, return_distances=False, return_indices=True)
+        nearest = scipy.ndimage.distance_transform_edt(walls, return_distances=False, return_indices=True)
         table = table[tuple(nearest)]
     return table
 
@@ -84,7 +83,7 @@ def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[A
     if (classes == classes[0]).all():
         return classes[0]
     centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXELS
-    return classes[cKDTree(places).query(centres)[1]]
+    return classes[scipy.spatial.cKDTree(places).query(centres)[1]]
 
 
 def _pixels(places: Array) -> NDArray[np.intp]:
