@@ -11,12 +11,8 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.accuracy.refinement import (
-    RefinedCycle,
-    matrix_distance,
-    newton_tolerance,
-    with_calibrated_errors,
-)
+from ..cycle.accuracy.refined_cycle import RefinedCycle
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
 from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
