@@ -18,7 +18,9 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered import BorderedMatrix, Condition, Scale, bordered, deflection_of, moved
+from .bordered.condition import Condition, moved
+from .bordered.matrix import BorderedMatrix, bordered
+from .bordered.scale import Scale, deflection_of
 from .errors import BranchCalibration, Place
 
 ARC_STEPS = StepControl(
