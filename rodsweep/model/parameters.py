@@ -7,7 +7,9 @@ figures come from this table.
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf, isfinite
+from typing import TypeVar
 
+Decorated = TypeVar("Decorated")
 STIFFNESSES = ("k1", "k2")
 """Parameters that the equations contain as a compliance, 1/value."""
 
@@ -166,6 +168,10 @@ OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if pa
 """Names of the optional parameters."""
 SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
 """(parameter, multiplied stiffness or drag) for every parameter with `scales`."""
+OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+"""Names of all parameters that the transverse problem may contain."""
+ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
+"""(name, range check) of each parameter, prepared once because sweeps create many rods."""
 CRUSHING = ("F", "k1")
 """Force and stiffness: the rod is crushed if the first reaches the second."""
 
@@ -173,3 +179,15 @@ CRUSHING = ("F", "k1")
 def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
     """The parameters except `varied`; by default parameters of the linear problem."""
     return tuple(name for name in names if name != varied)
+
+
+def with_parameters(cls: type[Decorated]) -> type[Decorated]:
+    """Class decorator: adds all parameters of the table as fields, in the table's order with its defaults."""
+    own = dict(cls.__annotations__)
+    cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
+        n: a for n, a in own.items() if n not in PARAMETERS
+    }
+    for name, parameter in PARAMETERS.items():
+        if parameter.default is not None:
+            setattr(cls, name, parameter.default)
+    return cls

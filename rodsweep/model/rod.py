@@ -7,20 +7,15 @@ drag by the name of a parameter, because other parameters may multiply the stiff
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
 from .balance import Material, first_component
 from .material.build import STANDARD, Build, LocalCoefficients, Sections
-from .parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
-
-Decorated = TypeVar("Decorated")
-OF_TRANSVERSE_PROBLEM = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Names of all parameters that the transverse problem may contain."""
-ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
-"""(name, range check) of each parameter, prepared once because sweeps create many rods."""
+from .parameters import ALLOWED, OF_TRANSVERSE_PROBLEM, PARAMETERS, STIFFNESSES, with_parameters
+from .scaling import compression_factor, scaled
 
 
 class Crushed(ValueError):
@@ -45,37 +40,7 @@ def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
     own = scaled(values)
     F = own["F"]
     k1 = own["k1"]
-    return Coefficients(F, _compression(F, k1), 1 / own["k2"], own["gamma3"])
-
-
-def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Loads, stiffnesses and drags by name: each value times the parameters that scale it in the table."""
-    if not SCALINGS:
-        return values
-    own = dict(values)
-    for factor, of in SCALINGS:
-        own[of] = own[of] * values[factor]
-    return own
-
-
-def _compression(F: Any, k1: Any) -> Any:
-    """nu = 1 - F/k1 without cancellation for F close to k1; floats or arrays."""
-    if isinstance(k1, np.ndarray):
-        with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
-            return np.where(np.isinf(k1), 1.0, (k1 - F) / k1)
-    return (k1 - F) / k1 if k1 < inf else 1.0
-
-
-def with_parameters(cls: type[Decorated]) -> type[Decorated]:
-    """Class decorator: adds all parameters of the table as fields, in the table's order with its defaults."""
-    own = dict(cls.__annotations__)
-    cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
-        n: a for n, a in own.items() if n not in PARAMETERS
-    }
-    for name, parameter in PARAMETERS.items():
-        if parameter.default is not None:
-            setattr(cls, name, parameter.default)
-    return cls
+    return Coefficients(F, compression_factor(F, k1), 1 / own["k2"], own["gamma3"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -146,7 +146,8 @@ class LimitCycleTask(Task):
         return Estimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
 
     def solver(self) -> Solver:
-        from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle
+        from ..solve.cycle.reference_rod import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         request = self.request()

@@ -11,7 +11,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..determinant.certificate.covering import cover, first_boxes
+from ..determinant.certificate.covering import cover
+from ..determinant.certificate.first_boxes import first_boxes
 from ..determinant.newton import Zero
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..errors import InputError

@@ -12,8 +12,9 @@ from rodsweep.determinant.certificate.box import (
     squared_amplification,
     squared_amplification_over,
 )
-from rodsweep.determinant.certificate.covering import cover, distance, examine, first_boxes, slabs
+from rodsweep.determinant.certificate.covering import cover, distance, examine
 from rodsweep.determinant.certificate.discs import bound_on_bidisc, centre_at
+from rodsweep.determinant.certificate.first_boxes import first_boxes, slabs
 from rodsweep.determinant.newton import eigenvalue_newton
 from rodsweep.determinant.parameter_path import Path, changes, coefficients_at, determinant_along
 from rodsweep.determinant.value import scaled_determinant

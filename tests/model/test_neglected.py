@@ -17,9 +17,9 @@ from rodsweep.model.arm.neglected import (
     effects_of,
     fastest_rate,
     least_drag,
-    unsteady_phase,
     worst_validity,
 )
+from rodsweep.model.arm.unsteady_drag import unsteady_phase
 
 WATER = {"length": 0.12, "radius": 0.006, "young": 80e3, "poisson": 0.49, "viscosity": 1e-3}
 """A soft arm in water, in SI units."""

@@ -623,8 +623,10 @@ def solve_cycle(point, request, start=None, along=None, workspace=None):
 fake = ModuleType("rodsweep.solve.cycle.limit_cycle")
 fake.CycleStatus, fake.Neighbour, fake.solve_cycle = CycleStatus, Neighbour, solve_cycle
 fake.CycleRequest = fake.Rod = SimpleNamespace
-fake.warm_up = lambda: None
 sys.modules[fake.__name__] = fake
+reference = ModuleType("rodsweep.solve.cycle.reference_rod")
+reference.warm_up = lambda: None
+sys.modules[reference.__name__] = reference
 '''
 
 

@@ -12,7 +12,7 @@ from math import inf, isfinite, log, nan
 import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
-from ...solve.cycle.limit_cycle import warm_up
+from ...solve.cycle.reference_rod import warm_up
 from ...solve.motion.leading_mode import leading_mode
 from ..peers import Peers
 from ..study import (

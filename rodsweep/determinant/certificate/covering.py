@@ -1,7 +1,8 @@
 """All crossings of the imaginary axis along a path of rods, with a proof of completeness.
 
 Along a path p -> rod a pair crosses where D(i eta; p) = 0, two real equations in (eta, p). The a-priori
-bounds leave a finite part of the (eta, p) plane, which is divided into boxes until each box is
+bounds leave a finite part of the (eta, p) plane (`first_boxes`), which is divided into boxes until each box
+is
 
 * empty: with the centre c and half-widths (h_w, h_p) of the box, f = D exp(-L dw - K dp) is at most M in the
   bidisc of radii (h_w, h_p)/t. Cauchy's estimate on complex lines gives
@@ -19,41 +20,15 @@ exponentials in D, which stays bounded near a zero of D.
 
 import cmath
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
-
-import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..exponents import LEAST_DIVISOR
 from ..newton import FAILED, Zero, crossing_newton
-from ..parameter_path import Path, changes, coefficients_at, determinant_along
-from .box import BOX_MARGIN, quiet_radius, squared_amplification_over
+from ..parameter_path import changes, coefficients_at, determinant_along
 from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, centre_at
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CoveringSettings:
-    """Settings for the first boxes of a covering."""
-
-    slabs: int = 8
-    """Minimum number of initial intervals of p."""
-    first_ratio: float = 4.0
-    """Ratio of the upper to the lower end of the initial boxes in eta."""
-    nu_step: float = 0.5
-    """Largest decrease of nu over an initial interval, in units of nu."""
-    least_step: float = 1e-6
-    """Length of an initial interval near p = 0, where drags and compliances double, in units of the first
-    length."""
-    last_step: float = 1e-3
-    """Length of a last interval, in units of its predecessor, that is joined to its predecessor."""
-    padding: float = 1e-6
-    """Added to the upper bound of eta, in 1/tau2: the bound is 0 at F = 0."""
-
-
-COVERING = CoveringSettings()
 
 LARGEST_RADIUS_SHARE = 0.45
 """Largest trial share t: half-width of a box over radius of the bidisc."""
@@ -225,37 +200,3 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
 def _half_widths_away(zero: Zero, eta: float, p: float, half: tuple[float, float]) -> float:
     """Distance of a zero from the centre (eta, p) of a box, in units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])
-
-
-def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
-    """Intervals of p from start to stop; in each, nu at most halves, a drag or compliance at most doubles."""
-    edges = [start]
-    width = (stop - start) / COVERING.slabs
-    while edges[-1] < stop:
-        p = edges[-1]
-        step = width
-        nu = coefficients_at(p, path.origin, path.direction).nu
-        slope = path.direction.nu
-        if slope < 0:  # the rod is crushed at nu = 0
-            step = min(step, COVERING.nu_step * nu / -slope)
-        if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, COVERING.least_step * width))
-        end = p + step
-        edges.append(stop if stop - end < COVERING.last_step * step else end)
-    return list(zip(edges[:-1], edges[1:], strict=True))
-
-
-def first_boxes(path: Path, start: float, stop: float) -> Array | None:
-    """Boxes that contain every crossing with p from start to stop, shape (n, 4); None without a bound."""
-    boxes = []
-    for a, b in slabs(path, start, stop):
-        top = BOX_MARGIN * squared_amplification_over(path, a, b) + COVERING.padding
-        if not math.isfinite(top):
-            return None
-        low = quiet_radius(path, a, b, top)
-        if low == 0.0:
-            return None
-        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.first_ratio)))
-        edges = np.geomspace(low, top, count + 1)
-        boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
-    return np.array(boxes).reshape(-1, 4)

@@ -10,7 +10,7 @@ Sentences about the effects belong to `rodsweep.verdict`.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
-from math import exp, inf, isnan, log, pi
+from math import inf, isnan, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ from ...arrays import Array
 from .arm import SlenderArm
 from .drag import Drag
 from .section import Tube
+from .unsteady_drag import frequency_of_phase, unsteady_phase
 
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
@@ -44,12 +45,6 @@ SELF_BUCKLING = 7.837
 """Weight in k3/L^2 at which an upright rod buckles under its own weight (Greenhill 1881)."""
 FLUTTER_WAVENUMBER = 4.694
 """Wavenumber times length of the second bending mode of a clamped rod, the approximate shape of flutter."""
-LEAST_S = 1e-6
-"""Smallest frequency of the flow, in eta k^2/rho: rounding error would hide the phase, 1e-6, of a smaller."""
-SECTIONS = 64
-"""Parts into which an interval of ln s is cut at once."""
-SECTIONINGS = 10
-"""Number of cuts: 2^60 parts of an interval 20 to 30 wide, down to rounding error, by few calls on arrays."""
 HALF_LENGTH = 0.5
 """Amplitude of the tip in wide beating, over the length of the arm."""
 
@@ -155,38 +150,8 @@ def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
         name="inertia of the fluid",
         value=unsteady_phase(s, logarithm),
         limit=INERTIA_LIMIT,
-        viscosity_factor=np.sqrt(s / _frequency_of_phase(INERTIA_LIMIT, logarithm)),
+        viscosity_factor=np.sqrt(s / frequency_of_phase(INERTIA_LIMIT, logarithm)),
     )
-
-
-def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
-    """Phase lag of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
-
-    s = rho omega/(eta k^2), any shape. logarithm: Lambda = 4 pi eta/gamma2.
-
-    The mobility across the line is, with two-dimensional wave vectors q,
-
-        int d^2q/(2 pi)^2 (q^2/2 + k^2)/(eta (q^2 + k^2) (q^2 + k^2 + i s k^2))
-            = (Lambda - 1/2 - (1 - 1/(i s)) ln(1 + i s)/2)/(4 pi eta)
-
-    and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
-    """
-    z = 1j * np.maximum(np.asarray(s, float), LEAST_S)
-    with np.errstate(invalid="ignore"):  # nan where nothing moves
-        mobility = logarithm - 0.5 - (1 - 1 / z) * np.log1p(z) / 2
-    return np.asarray(-np.angle(mobility))
-
-
-def _frequency_of_phase(phase: float, logarithm: float) -> float:
-    """The s at which `unsteady_phase` equals `phase` < pi/2, by sections of ln s."""
-    low = log(LEAST_S)  # there the real part of the mobility is -1/2
-    high = 2 * logarithm
-    for _ in range(SECTIONINGS):
-        edges = np.linspace(low, high, SECTIONS + 1)
-        below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
-        low = float(edges[below])
-        high = float(edges[below + 1])
-    return exp(high)
 
 
 def compression(arm: SlenderArm, F: Array) -> Effect:

@@ -11,18 +11,16 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.accuracy.refinement import (
-    RefinedCycle,
-    matrix_distance,
-    newton_tolerance,
-    with_calibrated_errors,
-)
+from ..cycle.accuracy.refined_cycle import RefinedCycle
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
 from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered import BorderedMatrix, Condition, Scale, bordered, deflection_of, moved
+from .bordered.condition import Condition, moved
+from .bordered.matrix import BorderedMatrix, bordered
+from .bordered.scale import Scale, deflection_of
 from .errors import BranchCalibration, Place
 
 ARC_STEPS = StepControl(

@@ -24,7 +24,8 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..point import Unsolvable
 from .arc import ArcPoint
-from .bordered import Condition, Scale, deflection_of
+from .bordered.condition import Condition
+from .bordered.scale import Scale, deflection_of
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 

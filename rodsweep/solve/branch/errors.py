@@ -23,7 +23,8 @@ from ..orbit.newton import Converged, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
-from .bordered import Condition, Scale, moved
+from .bordered.condition import Condition, moved
+from .bordered.scale import Scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

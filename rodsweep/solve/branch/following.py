@@ -5,31 +5,24 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
 
-import numpy as np
-
 from ...model.parameters import PARAMETERS
 from ...watch import SolvePosition, report
 from ...wording import counted
-from ..continuation.follower import zero_along
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_between, cycle_ahead, next_point, point_at, tangent_at
+from .arc import ARC_STEPS, ArcPoint, arc_between, next_point, point_at
 from .beginning import HopfBirth, beginning, special_hopf
-from .bordered import Condition, bordered
 from .branch_curve import BranchCurve, BranchEnd
+from .range_end import cycle_at_range_end, range_end_condition
 from .settling import measurement_due
 from .special.least_stretch import stretch_at
-from .special.locating import Segment, located
+from .special.locating import located
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
 from .symmetry import ENDINGS, Breaking, beginning_without_symmetry, mirrored, symmetric_end
 from .trail import Trail, end_at
 from .work import share_done
-
-ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
-"""Direction of `Scale.place` along the parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,9 +133,9 @@ def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | Bra
             # Beyond the point of symmetry the branch runs back through its own mirror images.
             return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
         outside = _beyond(end, limits)
-        range_end = _range_end(start, limits, outside) if outside >= 0 else None
+        range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
-            end = _at_range_end(start, end, range_end, limits)
+            end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _hides_corner(start, end):
             range_end = None  # after the cycle half way
             end = point_at(start, arc_between(start, end) / 2, limits.accuracy)
@@ -236,26 +229,3 @@ def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> Ar
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric at a cycle of a branch that was not followed"
     return BranchEnd(end_at(start, EndReason.no_cycle_found, why), complete=False)
-
-
-def _range_end(start: ArcPoint, limits: BranchLimits, which: int) -> Condition:
-    """The condition for the cycle at an end of the range."""
-    return Condition(start.scale, ALONG_PARAMETER, limits.ends[which] / start.scale.coordinate)
-
-
-def _at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, limits: BranchLimits) -> ArcPoint:
-    """The cycle at an end of the range, between two cycles; raises Unsolvable."""
-    scale = start.scale
-    segment = Segment(start, end)
-
-    def beyond(length: float) -> float:
-        # On the predicted cubic, without solving a cycle: the condition itself is solved for once below.
-        return -range_end.residual(segment.predicted(length))
-
-    ends = beyond(0.0), beyond(segment.length)
-    length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)
-    tolerance = newton_tolerance(limits.accuracy)
-    predicted = segment.predicted(length)
-    found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(limits.accuracy))
-    tangent = tangent_at(found.orbit, scale, start.ahead, bordered(found))
-    return cycle_ahead(start, found, tangent, length, length, limits.accuracy)

@@ -12,7 +12,9 @@ from ..orbit.newton import Converged, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, placed, tangent_at
-from .bordered import Condition, Scale, bordered
+from .bordered.condition import Condition
+from .bordered.matrix import bordered
+from .bordered.scale import Scale
 from .errors import BranchCalibration, measured_errors, slope_at
 
 

@@ -24,7 +24,9 @@ from ..orbit.symmetry import NONE
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_between
 from .beginning import DEFLECTION
-from .bordered import BorderedMatrix, Condition, Scale, deflection_of, moved
+from .bordered.condition import Condition, moved
+from .bordered.matrix import BorderedMatrix
+from .bordered.scale import Scale, deflection_of
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..point import Unsolvable
 from .arc import ArcPoint
-from .bordered import Condition
+from .bordered.condition import Condition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
 from .settling import settled
 from .special.point import EndReason, SpecialKind, SpecialPoint

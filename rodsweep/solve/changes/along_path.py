@@ -9,7 +9,8 @@ order of the parameter. The winding number confirms the number of unstable modes
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.certificate.covering import Box, cover, first_boxes
+from ...determinant.certificate.covering import Box, cover
+from ...determinant.certificate.first_boxes import first_boxes
 from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable

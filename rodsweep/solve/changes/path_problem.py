@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...determinant.arm.along_path import ArmAlongPath
-from ...determinant.certificate.covering import slabs
+from ...determinant.certificate.first_boxes import slabs
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.newton import Zero, double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at

@@ -15,15 +15,13 @@ from math import nan
 import numpy as np
 
 from ...discretization.stress.form import StressForm
-from ...errors import EnvironmentIncomplete
 from ...model.rod import Rod
-from ..backend.petsc import options
 from ..motion.held_tip import held_by_tip
 from ..motion.integrator import forget_integrators
-from ..motion.time_scheme import CYCLE_PREFIX
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
-from .accuracy.refinement import RefinedCycle, refined_cycle
+from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.refinement import refined_cycle
 from .cycle import Cycle, CycleRequest, MotionShapes, measured, padded
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import Neighbour, followed_cycle
@@ -35,15 +33,11 @@ from .transient.motion_mesh import MOTION_MESH, motion_mesh
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.trace import TipTrace
-from .transient.transient import Transient, TransientOutcome
+from .transient.transient import Transient
+from .transient.transient_outcome import TransientOutcome
 
-__all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "warm_up"]
+__all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle"]
 
-KNOWN_PERIOD = 0.04204870
-"""Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
-displacement-form code."""
-KNOWN_WITHIN = 1e-3
-"""Relative deviation from this period that `warm_up` accepts."""
 STORED_MULTIPLIERS = 6
 """Number of stored Floquet multipliers."""
 MIN_STORED_MULTIPLIER = 1e-6
@@ -77,27 +71,6 @@ def solve_cycle(
         return _with_second_state(rod, _checked_by_spectrum(cycle, stability), stability)
 
     return solved(solve, failed)
-
-
-def warm_up() -> None:
-    """Loads compiled code and fills caches, so that the first point takes no extra time.
-
-    Raises EnvironmentIncomplete if PETSc options with the prefix cycle_ spoil the cycle of a reference rod.
-    """
-    rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
-    request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
-    cycle = solve_cycle(rod, request, None, "F")
-    if cycle.neighbour is not None:
-        solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
-    deviation = abs(cycle.measures.period / KNOWN_PERIOD - 1)
-    reproduced = cycle.status == CycleStatus.cycle and deviation < KNOWN_WITHIN
-    given = options(CYCLE_PREFIX)
-    if given and not reproduced:
-        outcome = f"{cycle.status.name} {cycle.message}".strip()
-        raise EnvironmentIncomplete(
-            f"with the PETSc options '{given}' the reference rod, whose cycle is known, ends as '{outcome}', "
-            "so the task limit_cycle cannot run; remove these options"
-        )
 
 
 def _solve(

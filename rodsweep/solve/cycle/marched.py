@@ -29,6 +29,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NONE
 from ..point import solved
 from .accuracy.cycle_errors import CycleErrors
+from .accuracy.integration_errors import errors_of_pair
 from .cycle import Cycle, CycleRequest, measured
 from .marching_settings import MARCHING
 from .status import MarchedStatus
@@ -103,7 +104,7 @@ class _Marching:
                 settled = self._refined(settled)
                 before = path
                 path = self._path(settled)
-                errors = _errors(before, path, MARCHING.settled_distance * self.request.accuracy)
+                errors = errors_of_pair(before, path, MARCHING.settled_distance * self.request.accuracy)
                 if errors.largest <= enough:
                     break
             if in_limit:
@@ -228,7 +229,7 @@ class _Marching:
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relaxed(self.beam, settled.z, self.mode.period)
-        more = _errors(path, self._path(self._settled(z)), 0.0)
+        more = errors_of_pair(path, self._path(self._settled(z)), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,
             errors.amplitude_error + more.amplitude_error,
@@ -246,21 +247,3 @@ class _Marching:
             periods=self.waited,
         )
         return measured(cycle, self.request, path, measures_of(path), errors)
-
-
-def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
-    """Errors by the difference of two integrations, plus `share`, the distance left of a settled motion."""
-    a = one.extrema
-    b = other.extrema
-    size = abs(b["tip_y_max"])
-    period = abs(one.orbit.period / other.orbit.period - 1)
-    height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
-    worst = max(abs(a[name] - b[name]) for name in a) / size
-    # The distance left is relative to each extremum, of which theta may be several times y.
-    left = share * max(1.0, abs(b["tip_theta_max"]) / size)
-    return CycleErrors(
-        float(MARCHING.pair_factor * period + share),
-        float(MARCHING.pair_factor * height + share),
-        float(MARCHING.pair_factor * worst + left),
-        nan,
-    )

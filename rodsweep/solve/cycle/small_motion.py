@@ -12,11 +12,12 @@ from ...model.rod import Rod
 from ..hopf.normal_form import accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable
-from .accuracy.refinement import RefinedCycle, refined_cycle
+from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit
 from .status import CycleStatus
-from .transient.transient import TRANSIENT
+from .transient.transient_settings import TRANSIENT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,7 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.bordered import deflection_of
+from rodsweep.solve.branch.bordered.scale import deflection_of
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
 

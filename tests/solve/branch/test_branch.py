@@ -11,12 +11,13 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch import beginning as begun
-from rodsweep.solve.branch import bordered, branches, following
+from rodsweep.solve.branch import branches, following
 from rodsweep.solve.branch.beginning import beginning, hopf_point
-from rodsweep.solve.branch.bordered import BorderedMatrix
+from rodsweep.solve.branch.bordered import matrix
+from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
-from rodsweep.solve.branch.special.augmented import crossing_pair
+from rodsweep.solve.branch.special.augmented.functions import crossing_pair
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
@@ -259,8 +260,8 @@ def test_search_that_fails_is_a_status(monkeypatch):
 def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     """Half of the eliminations are done at a share of a fifth to four fifths; no clock is asked."""
     done, places = [], []
-    eliminate = bordered.eliminate
-    monkeypatch.setattr(bordered, "eliminate", lambda *values: done.append(1) or eliminate(*values))
+    eliminate = matrix.eliminate
+    monkeypatch.setattr(matrix, "eliminate", lambda *values: done.append(1) or eliminate(*values))
     with reporting_to(lambda place: places.append((len(done), *place()))):
         solve_branches(
             Rod(F=0.0, k1=4000, k2=300, gamma3=1e-3), BranchRequest("F", 0, 150, 1e-5, True, 500, 50)

@@ -2,7 +2,6 @@
 
 import re
 from functools import partial
-from math import inf
 from pathlib import Path as Place
 
 import numpy as np
@@ -18,9 +17,9 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point, point_at
 from rodsweep.solve.branch.beginning import beginning, hopf_point
-from rodsweep.solve.branch.following import BranchLimits, _at_range_end, _range_end
+from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
 from rodsweep.solve.branch.settling import measurement_due, refined
-from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
@@ -77,9 +76,8 @@ def branch_of_this(rod, kind, F):
             if point.kind == kind:
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:
-            limits = BranchLimits([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500, NewtonWorkspace())
-            edge = _range_end(here, limits, 0)
-            return special, refined(_at_range_end(here, there, edge, limits), ACCURACY, edge)
+            edge = range_end_condition(here, F)
+            return special, refined(cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge)
         here = refined(there, ACCURACY) if measurement_due(there) else there
 
 

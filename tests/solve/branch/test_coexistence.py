@@ -17,10 +17,12 @@ from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
-from rodsweep.solve.branch.bordered import BorderedMatrix, Condition, Scale
+from rodsweep.solve.branch.bordered.condition import Condition
+from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
-from rodsweep.solve.branch.special.augmented import FoldFunction
+from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind

@@ -12,7 +12,8 @@ from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import boundary_curves
 from rodsweep.solve.changes.boundaries import curves_through, seed_of
-from rodsweep.solve.changes.boundary_curves import BoundaryEnd, trace
+from rodsweep.solve.changes.boundary_curves import trace
+from rodsweep.solve.changes.boundary_problem import BoundaryEnd
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind

@@ -22,7 +22,8 @@ from rodsweep.solve.cycle.accuracy.minimal_period import (
     over_minimal_period,
     undecided_divisor,
 )
-from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.reference_rod import warm_up
 from rodsweep.solve.cycle.transient import schemes, transient
 from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.compiled_measures import powers
@@ -421,7 +422,7 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
 
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
-    monkeypatch.setattr("rodsweep.solve.cycle.accuracy.refinement.undecided_divisor", lambda *given: 2)
+    monkeypatch.setattr("rodsweep.solve.cycle.accuracy.refined_cycle.undecided_divisor", lambda *given: 2)
     c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled
     assert "2 times shorter cannot be excluded" in c.message

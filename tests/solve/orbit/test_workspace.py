@@ -9,7 +9,8 @@ import pytest
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
+from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import WORKSPACE, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit

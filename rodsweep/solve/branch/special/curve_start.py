@@ -11,7 +11,8 @@ from ...orbit.orbit_mesh import mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import BEGINNING, DEFLECTION
-from ..bordered import BorderedMatrix, Scale, deflection_of
+from ..bordered.matrix import BorderedMatrix
+from ..bordered.scale import Scale, deflection_of
 from .family import CycleFamily
 from .on_curve import ACROSS_CURVE, OnCurve
 from .point import SpecialPoint

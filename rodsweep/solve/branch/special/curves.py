@@ -15,13 +15,13 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
-from ..bordered import BorderedMatrix
-from .augmented import crossing_pair
+from ..bordered.matrix import BorderedMatrix
+from .augmented.functions import crossing_pair
 from .curve_start import first_on_curve
 from .cycle_curves import CURVE_IDENTITY, CurveEnd, weights_at
 from .family import CycleFamily
 from .least_stretch import stretch_of
-from .on_curve import OnCurve, errors_between, with_parameters
+from .on_curve import OnCurve, errors_between, lengths_of, slope_of, with_parameters
 from .point import SpecialKind, SpecialPoint
 
 CURVE_STEPS = StepControl(
@@ -236,17 +236,3 @@ class CurveLimits:
             if pair is None or abs(pair.imag) < CYCLE_CURVES.almost_real * abs(pair):
                 return CurveEnd.resonance
         return CurveEnd.not_followed
-
-
-def lengths_of(points: Sequence[OnCurve]) -> Array:
-    """Arc lengths of points relative to the last, (points,), none positive."""
-    steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
-    # Counted from the last point, so that a prediction is at a positive length.
-    lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
-    return lengths
-
-
-def slope_of(one: OnCurve, other: OnCurve) -> float:
-    """d(line's value)/d(place) between two points; 0 at equal places."""
-    apart = other.place - one.place
-    return (other.at - one.at) / apart if apart else 0.0

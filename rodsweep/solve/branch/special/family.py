@@ -22,8 +22,11 @@ from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..bordered import BorderedMatrix, Condition, Scale, moved
-from .augmented import AUGMENTED, FoldFunction, NearbyCycles, TorusFunction
+from ..bordered.condition import Condition, moved
+from ..bordered.matrix import BorderedMatrix
+from ..bordered.scale import Scale
+from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
+from .augmented.nearby_cycles import NearbyCycles
 from .on_curve import ACROSS_CURVE, Across, CurveErrors, OnCurve, with_parameters
 from .point import SpecialKind
 

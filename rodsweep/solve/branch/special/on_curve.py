@@ -11,7 +11,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
-from ..bordered import Scale
+from ..bordered.scale import Scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -180,3 +180,17 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     if form.omega_unknown != orbit.form.omega_unknown:
         raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} changes the unknowns of the discretization")
     return replace(orbit, form=form)
+
+
+def lengths_of(points: Sequence[OnCurve]) -> Array:
+    """Arc lengths of points relative to the last, (points,), none positive."""
+    steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
+    # Counted from the last point, so that a prediction is at a positive length.
+    lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
+    return lengths
+
+
+def slope_of(one: OnCurve, other: OnCurve) -> float:
+    """d(line's value)/d(place) between two points; 0 at equal places."""
+    apart = other.place - one.place
+    return (other.at - one.at) / apart if apart else 0.0

@@ -5,80 +5,24 @@ exceed the accuracy, these errors choose the cheapest sufficient mesh.
 """
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, log
 
 import numpy as np
 
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.measures import CyclePath, Measures, measures_of
+from ...orbit.measures import CyclePath, measures_of
 from ...orbit.newton import ORBIT_NEWTON, Converged, at_orbit, linearised, multipliers_of, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
-from ..status import CycleStatus
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
-from .cycle_errors import CycleErrors
 from .finer_meshes import calibrated
-from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period, undecided_divisor
+from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
+from .refined_cycle import RefinedCycle
 from .refinement_settings import REFINEMENT
-
-
-@dataclass(frozen=True, eq=False)
-class RefinedCycle:
-    """A cycle with its measures, multipliers and errors.
-
-    calibration: source of the errors. multipliers: nontrivial multipliers, (rank - 1,), by descending
-    modulus. trivial_error: distance of the trivial multiplier from 1.
-    """
-
-    fine: Converged
-    calibration: Calibration
-    path: CyclePath
-    measures: Measures
-    multipliers: Complex
-    trivial_error: float
-    errors: CycleErrors
-
-    @property
-    def orbit(self) -> Orbit:
-        return self.fine.orbit
-
-    @property
-    def largest_multiplier(self) -> float:
-        """Largest modulus of the nontrivial multipliers."""
-        return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
-
-    @property
-    def divisor(self) -> int:
-        """Factor by which the minimal period may be shorter; 1 proves the period minimal."""
-        return undecided_divisor(self.path, self.errors.extrema_error)
-
-    @property
-    def margin(self) -> float:
-        """Error of the largest multiplier's modulus: a modulus nearer to 1 leaves the stability open."""
-        return max(self.trivial_error, self.errors.multiplier_error)
-
-    @property
-    def stable(self) -> bool | None:
-        """Whether all nontrivial multipliers lie in the unit circle; None if the margin leaves this open."""
-        beyond = self.largest_multiplier - 1
-        return None if abs(beyond) <= self.margin else beyond < 0
-
-    def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
-        """(status of the cycle, the reason why it is not a stable cycle)."""
-        if self.measures.least_stretch <= 0:
-            return CycleStatus.left_the_model, f"h1 = {self.measures.least_stretch:.3g} on the cycle"
-        if self.errors.largest > accuracy:
-            return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
-        if self.divisor != 1:
-            shorter = f"a period that is {self.divisor} times shorter cannot be excluded"
-            return CycleStatus.not_settled, shorter
-        if self.stable is None:
-            return CycleStatus.not_settled, f"its largest multiplier is 1 within {self.margin:.0e}"
-        return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
 
 
 def with_calibrated_errors(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:

@@ -16,10 +16,12 @@ import numpy as np
 
 from ....arrays import Array
 from ...point import Unsolvable
-from ..accuracy.refinement import RefinedCycle, refined_cycle
+from ..accuracy.refined_cycle import RefinedCycle
+from ..accuracy.refinement import refined_cycle
 from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus
-from .transient import Transient, TransientOutcome
+from .transient import Transient
+from .transient_outcome import TransientOutcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

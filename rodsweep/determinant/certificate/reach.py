@@ -1,0 +1,85 @@
+"""The reach of a node: the radius of a disc about a point within which D has no zero.
+
+About a node c the function f(w) = D(w) exp(-L (w - c)), L = D'(c)/D(c), has f'(c) = 0, so Cauchy's estimate
+on the disc of radius rho, where |f| <= M, gives
+
+    |f(w) - f(c)| <= M r^2/(rho (rho - r)),   r = |w - c|.
+
+If the bound is below 0.9 |D(c)| minus the rounding error of D, no zero lies within r and the phase of f
+changes by less than pi/2. (The remaining tenth allows for the rounding error of L, and therefore of f'(c).)
+The largest such r is the reach. It is 0 if the rounding error of D cannot separate a zero of D from the node.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+from ...model.compiled.compilation import compiled
+from ...model.rod import Coefficients
+from ..exponents import LEAST_DIVISOR
+from ..parameter_path import Changes
+from ..value import branches, scaled_determinant
+from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc, centre_at
+
+STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""Zero changes along a path, for bounds of a single rod."""
+BRANCH_DISTANCE = 3.0
+"""Distance to the nearest branch point in units of the radius of a disc, at least."""
+FACTOR_CHANGE = 0.4
+"""Largest relative change of z+- over a disc, for which its exponents change by order one."""
+NO_ROOT = 1e-3
+"""Modulus of z+- below which its root does not limit the radius of a disc."""
+
+
+class Node(NamedTuple):
+    """A point w with D exp(-S), L = D'/D, and the reach: the distance within which D has no zero."""
+
+    w: complex
+    D: complex
+    L: complex
+    reach: float
+
+
+@compiled
+def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> float:
+    """Radius of a disc about w that avoids branch points and over which exponents change by order one."""
+    F, nu, c2, gamma3 = coefficients
+    _, P1, P2, plus, minus = branches(w, coefficients)
+    stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
+    rho = abs(w) / BRANCH_DISTANCE
+    if c2 * gamma3 > 0:
+        rho = min(rho, stiffness / (BRANCH_DISTANCE * c2 * gamma3))
+    rho = min(rho, (S + 1) / max(abs(L), LEAST_DIVISOR))
+    # Both exponentials count by what they contribute: a recessive one, with much slack, may change faster.
+    for sign, z in ((1.0, plus), (-1.0, minus)):
+        slope = c2 + gamma3 + sign * 2 * P1
+        root = cmath.sqrt(z)
+        slack = S - root.real + 1
+        rho = min(rho, FACTOR_CHANGE * max(abs(z), 2.0) / max(abs(slope), LEAST_DIVISOR))
+        if abs(z) > NO_ROOT:
+            rate = slope / (2 * root)
+            rho = min(rho, slack / max(abs(rate - L), LEAST_DIVISOR))
+            rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
+    return rho
+
+
+@compiled
+def node_at(w: complex, coefficients: Coefficients) -> Node:
+    """The node at w. The phase of f changes by less than pi/2 within the node's reach."""
+    D, D_w, S, noise = scaled_determinant(w, coefficients)
+    room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
+    # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
+    if not room > 0:
+        return Node(w, D, 0j, 0.0)
+    L = D_w / D
+    centre = centre_at(w, coefficients, STILL, S)
+    best = 0.0
+    rho = radius(w, coefficients, L, S)
+    for _ in range(2):
+        M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
+        q = room / M
+        # The largest r with M r^2/(rho (rho - r)) < room, from Cauchy's estimate of the remainder on the
+        # disc.
+        best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
+        rho /= 2
+    return Node(w, D, L, best)

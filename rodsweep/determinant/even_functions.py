@@ -1,0 +1,156 @@
+"""The functions s and d, even in P, from a series for small exponents or from the roots q.
+
+With z+- the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are entire in M = (z+ + z-)/2
+and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* = (dd/dP^2)/4, because
+ds/dP^2 = 4 d'. Both methods state the rounding errors of s and d, in units of a relative rounding error.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+from ..model.compiled.compilation import compiled
+from .exponents import Hyperbolic, hyperbolic, modulus
+
+MAX_SERIES_TERMS = 13
+"""Number of terms of the series; the next term is below rounding error."""
+
+
+class EvenFunctions(NamedTuple):
+    """s, d, s' = s_M, d' = d_M and d* = d_P, all times exp(-S)."""
+
+    S: float
+    s: complex
+    d: complex
+    s_M: complex
+    d_M: complex
+    d_P: complex
+
+
+@compiled
+def _noise_by_roots(
+    squares: tuple[complex, complex, complex, complex],
+    apart: complex,
+    of_u: Hyperbolic,
+    of_v: Hyperbolic,
+    results: tuple[complex, complex],
+    blurs: tuple[float, float, float],
+) -> tuple[float, float]:
+    """Rounding errors of s and d in `by_roots`, to first order.
+
+    squares: (M, P^2, u, v). apart: u - v. of_u, of_v: functions of the roots. results: (s, d). blurs:
+    exp(-S), rounding errors of M and P^2. Errors are in units of a relative rounding error.
+    """
+    M = modulus(squares[0])
+    square = modulus(squares[1])
+    u = modulus(squares[2])
+    v = modulus(squares[3])
+    s = modulus(results[0])
+    d = modulus(results[1])
+    one, blur_M, blur_square = blurs
+    c1 = modulus(of_u.cosh)
+    f1 = modulus(of_u.sinhc)
+    g1 = modulus(of_u.slope)
+    c2 = modulus(of_v.cosh)
+    f2 = modulus(of_v.sinhc)
+    g2 = modulus(of_v.slope)
+    per_root = 1 / modulus(apart)
+    blur_u = (u * blur_M + blur_square) * per_root + u
+    blur_v = (v * blur_M + blur_square) * per_root + v
+    C = c1 * c2 + one
+    H = f1 * f2
+    blur_C = (f1 * c2 * blur_u + c1 * f2 * blur_v) / 2 + C
+    blur_H = (g1 * f2 * blur_u + f1 * g2 * blur_v) / 2 + H
+    blur_R = 2 * M * (blur_M + M) + 4 * (blur_square + square)
+    noise_s = 2 * (blur_M * C + M * blur_C + 2 * (blur_square * H + square * blur_H)) + s * blur_R
+    noise_d = (blur_M * H + M * blur_H) / 2 + blur_C + d * blur_R
+    return noise_s * per_root * per_root, noise_d * per_root * per_root
+
+
+@compiled
+def by_roots(
+    M: complex, square: complex, blur_M: float, blur_square: float
+) -> tuple[EvenFunctions, float, float]:
+    """(the functions, noise of s, noise of d) from the roots q, if neither z+ nor z- is small.
+
+    square = P^2; u = q1^2 and v = q2^2 solve t^2 - M t + P^2 = 0; with C = cosh q1 cosh q2 - 1,
+    H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 = (u - v)^2,
+
+        s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
+    """
+    R = M * M - 4 * square
+    apart = cmath.sqrt(R)
+    # The sign without cancellation in M + apart; the smaller root follows from the product.
+    if (M.conjugate() * apart).real < 0:
+        apart = -apart
+    u = (M + apart) / 2
+    v = square / u
+    q1 = cmath.sqrt(u)
+    q2 = cmath.sqrt(v)
+    S = q1.real + q2.real
+    # The 1 that is subtracted from cosh q1 cosh q2, scaled by exp(-S) like the product.
+    one = math.exp(-S)
+    of_u = hyperbolic(u, q1)
+    of_v = hyperbolic(v, q2)
+    cosh1, first1, second1 = of_u
+    cosh2, first2, second2 = of_v
+    # With z+- = (q1 +- q2)^2 the even functions of P are symmetric functions of q1^2 and q2^2.
+    C = cosh1 * cosh2 - one
+    H = first1 * first2
+    per_R = 1 / R
+    half = 1 / (2 * apart)
+    C_M = (first1 * cosh2 * u - cosh1 * first2 * v) * half
+    H_M = (second1 * first2 * u - first1 * second2 * v) * half
+    C_square = (cosh1 * first2 - first1 * cosh2) * half
+    H_square = (first1 * second2 - second1 * first2) * half
+    s = 2 * (M * C - 2 * square * H) * per_R
+    d = (M * H / 2 - C) * per_R
+    s1 = 2 * (C + M * (C_M - s) - 2 * square * H_M) * per_R
+    d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
+    dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
+    squares = (M, square, u, v)
+    blurs = (one, blur_M, blur_square)
+    noise_s, noise_d = _noise_by_roots(squares, apart, of_u, of_v, (s, d), blurs)
+    return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
+
+
+@compiled
+def by_series(
+    M: complex, P: complex, blur_M: float, blur_square: float
+) -> tuple[EvenFunctions, float, float]:
+    """(the functions, noise of s, noise of d) by series for small z+ and z-: E = sum z^n/(2n + 2)!."""
+    plus = M + 2 * P
+    minus = M - 2 * P
+    S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)
+    size = math.exp(-S)
+    s = complex(size)
+    s1 = 0j
+    d = 0j
+    d1 = 0j
+    dd = 0j
+    power_plus = 1 + 0j
+    power_minus = 1 + 0j
+    # Complete homogeneous symmetric polynomials, without factorials.
+    pair = 1 + 0j  # of (z+, z-), degree n - 1
+    last = 0j  # of (z+, z-), degree n - 2
+    three = 0j  # of (z+, z+, z-)
+    four = 0j  # of (z+, z+, z-, z-)
+    factor = size / 2
+    for n in range(1, MAX_SERIES_TERMS):
+        # 1/(2n + 2)!, updated from term to term.
+        factor /= (2 * n + 1) * (2 * n + 2)
+        s1 += n * factor * (power_plus + power_minus)
+        d += factor * pair
+        d1 += n * factor * last
+        dd += factor * four
+        three = plus * three + last
+        four = minus * four + three
+        last = pair
+        power_plus = plus * power_plus
+        power_minus = minus * power_minus
+        pair = minus * pair + power_plus
+        s += factor * (power_plus + power_minus)
+    # Bounds of the first terms of the series, times the rounding errors of M and P^2.
+    noise_s = size * (1 + blur_M / 10 + blur_square / 80)
+    noise_d = size * (0.1 + blur_M / 300 + blur_square / 8000)
+    return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d

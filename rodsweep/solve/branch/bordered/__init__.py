@@ -1,0 +1,1 @@
+"""Cycles of a branch, solved together with the parameter: units, bordered matrix, closing condition."""

@@ -1,0 +1,153 @@
+"""Newton's matrix for a cycle together with a parameter: one more column for the parameter, one more row."""
+
+from functools import cached_property
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ...orbit.matrix.elimination import eliminate
+from ...orbit.matrix.linearisation import (
+    change_along,
+    jump_of,
+    over_period,
+    partial_multipliers,
+    reduced_residuals,
+    reduced_variations,
+)
+from ...orbit.matrix.phase import phase, phase_change, phase_row
+from ...orbit.matrix.right_sides import right_sides
+from ...orbit.matrix.substitution import substitute
+from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
+from ...orbit.newton import Converged
+from ...orbit.orbit import Orbit
+from .scale import Scale, deflection_row
+
+
+class BorderedMatrix:
+    """Newton's matrix at an orbit with the parameter as a further unknown; the caller gives the last row.
+
+    Steps, (N + 1,), are an orbit's values and the parameter's coordinate. Solving raises RuntimeError once
+    another matrix was assembled in the same workspace; the multipliers stay valid.
+    """
+
+    def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
+        self.orbit = orbit
+        self.scale = scale
+        self.workspace = workspace
+        self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
+        p = orbit.semidiscrete
+        along = change_along(orbit.form, scale.name)
+        K, s, n = orbit.states.shape
+        V = np.empty((K, s, 3, len(p.matrices.weights)))
+        self._columns = np.empty((K, s, 3, n))
+        self._memory = MatrixMemory(workspace, K, s, n)
+        right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
+        shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
+        self._matrix = np.zeros((n + 2, n + 2))
+        self._matrix[:n, :n] = self._memory.propagator - p.symmetry
+        self._matrix[:n, n] = ends[0]
+        self._matrix[:n, n + 1] = ends[2]
+        row = np.empty(n)
+        phase_row(orbit.start, p.rod, p.matrices, row)
+        self._matrix[n, :n] = row
+        # `phase_change` is negated as a right side; here it is a column of the matrix.
+        self._matrix[n, n + 1] = -shift
+        self._right = self._jump(orbit, ends[1])
+
+    def step(self, border: Array, length: float) -> Array:
+        """Newton's step under the condition that `border` . place, (3,), grows by a length, (N + 1,)."""
+        return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+
+    def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
+        """`step` at a neighbouring orbit, of any nearby parameter, by the factors of this matrix."""
+        factors = self._memory.factors
+        p = self.orbit.semidiscrete
+        columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
+        right = np.append(self._jump(orbit, ends[0]), length)
+        return self.solved(border, right, columns[:, :, 0], 1.0)
+
+    def direction(self, border: Array) -> Array:
+        """Tangent, (N + 1,), of unit length in `Scale.place`, on the side of a border, (3,)."""
+        # The null vector of the first n + 1 rows, normalised by the border: residuals do not enter.
+        right = np.append(np.zeros(len(self._right)), 1.0)
+        change = self.solved(border, right, self._columns[:, :, 1], 0.0)
+        return change / np.linalg.norm(self.scale.moved(self.orbit, change))
+
+    def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
+        """Derivatives of residuals along variations, (m, N + 1), reduced, (K, s, m, n); of the end, (m,
+        n)."""
+        along = change_along(orbit.form, self.scale.name)
+        rod = orbit.semidiscrete
+        p = self.orbit.semidiscrete
+        changed: tuple[Array, Array] = reduced_variations(
+            orbit.values, rod, along, variations, p, self._memory.factors
+        )
+        return changed
+
+    def back_substitute(self, starts: Array, columns: Array) -> Array:
+        """Changes of states, (m, N + 1), from those of the start, (m, n), and reduced sides, (K, s, m, n)."""
+        out = np.empty_like(columns)
+        substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
+        stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
+        # Eigenvectors of the flow change neither the period nor the parameter.
+        return np.hstack([starts, stages, np.zeros((len(starts), 2))])
+
+    @property
+    def propagator(self) -> Array:
+        """Monodromy matrix P over the solved interval, (n, n)."""
+        return self._memory.propagator
+
+    @cached_property
+    def partial_multipliers(self) -> Complex:
+        """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
+        return partial_multipliers(self.propagator, self.orbit)
+
+    def multipliers(self) -> Complex:
+        """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
+        return over_period(self.partial_multipliers, self.orbit)
+
+    def approximate_null_vector(self) -> Array:
+        """Singular vector of the least singular value at a fixed parameter, (N + 1,), of any length and sign.
+
+        At a crossing of branches it points along the branch that the tangent does not follow.
+        """
+        matrix = self._matrix.copy()
+        # The last row fixes the parameter: the least singular vector then is a direction of cycles at one
+        # parameter.
+        matrix[-1, -1] = 1.0
+        return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
+
+    def _jump(self, orbit: Orbit, end: Array) -> Array:
+        """Right side of an orbit's start and phase, (n + 1,); `end`: contribution of its stages, (n,)."""
+        p = orbit.semidiscrete
+        jump = jump_of(orbit.points, p) - end
+        return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
+
+    def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+        """Change, (N + 1,), for right sides of the ends, (n + 2,), and a share of those of the stages, (K, s,
+        n)."""
+        n = len(self.orbit.start)
+        matrix = self._matrix.copy()
+        matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
+        # The border acts on log T, whose derivative is 1/T.
+        matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
+        return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
+
+    def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
+        """Change of all, (N + 1,), from that of the ends, (n + 2,), and a share of right sides, (K, s, n)."""
+        n = len(self.orbit.start)
+        stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
+        stages = np.ascontiguousarray(stages[:, :, None])
+        out = np.empty_like(stages)
+        factors = self._memory.factors
+        start = found[None, :n].copy()
+        substitute(start, stages, self.orbit.semidiscrete, factors, out)
+        return np.concatenate([found[:n], out.ravel(), found[n:]])
+
+
+def bordered(found: Converged) -> BorderedMatrix:
+    """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
+    if not isinstance(found.matrix, BorderedMatrix):
+        raise TypeError("the orbit was solved without the parameter as an unknown")
+    return found.matrix

@@ -1,0 +1,37 @@
+"""The last cycle of a branch, at an end of the range of its parameter."""
+
+import numpy as np
+
+from ..continuation.follower import zero_along
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from .arc import ArcPoint, cycle_ahead, tangent_at
+from .bordered.condition import Condition
+from .bordered.matrix import bordered
+from .special.segment import Segment
+from .symmetry import ENDINGS
+
+ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
+"""Direction of `Scale.place` along the parameter."""
+
+
+def range_end_condition(start: ArcPoint, limit: float) -> Condition:
+    """The condition for the cycle at a limit of the parameter's coordinate."""
+    return Condition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate)
+
+
+def cycle_at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, accuracy: float) -> ArcPoint:
+    """The cycle at an end of the range, between two cycles; raises Unsolvable."""
+    scale = start.scale
+    segment = Segment(start, end)
+
+    def beyond(length: float) -> float:
+        # On the predicted cubic, without solving a cycle: the condition itself is solved for once below.
+        return -range_end.residual(segment.predicted(length))
+
+    ends = beyond(0.0), beyond(segment.length)
+    length = zero_along(beyond, ends, segment.length, 0.0, ENDINGS.range_end_bracket)
+    tolerance = newton_tolerance(accuracy)
+    predicted = segment.predicted(length)
+    found = range_end.solved(predicted, tolerance, start.workspace, matrix_distance(accuracy))
+    tangent = tangent_at(found.orbit, scale, start.ahead, bordered(found))
+    return cycle_ahead(start, found, tangent, length, length, accuracy)

@@ -1,0 +1,38 @@
+"""A rod whose cycle is known: it warms up the solver and checks the environment."""
+
+from dataclasses import replace
+
+from ...errors import EnvironmentIncomplete
+from ...model.rod import Rod
+from ..backend.petsc import options
+from ..motion.time_scheme import CYCLE_PREFIX
+from .cycle import CycleRequest
+from .limit_cycle import solve_cycle
+from .status import CycleStatus
+
+KNOWN_PERIOD = 0.04204870
+"""Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
+displacement-form code."""
+KNOWN_WITHIN = 1e-3
+"""Relative deviation from this period that `warm_up` accepts."""
+
+
+def warm_up() -> None:
+    """Loads compiled code and fills caches, so that the first point takes no extra time.
+
+    Raises EnvironmentIncomplete if PETSc options with the prefix cycle_ spoil the cycle of a reference rod.
+    """
+    rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
+    request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
+    cycle = solve_cycle(rod, request, None, "F")
+    if cycle.neighbour is not None:
+        solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
+    deviation = abs(cycle.measures.period / KNOWN_PERIOD - 1)
+    reproduced = cycle.status == CycleStatus.cycle and deviation < KNOWN_WITHIN
+    given = options(CYCLE_PREFIX)
+    if given and not reproduced:
+        outcome = f"{cycle.status.name} {cycle.message}".strip()
+        raise EnvironmentIncomplete(
+            f"with the PETSc options '{given}' the reference rod, whose cycle is known, ends as '{outcome}', "
+            "so the task limit_cycle cannot run; remove these options"
+        )
