@@ -42,7 +42,7 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
 
 def film_of_motion(state: PageState, tip: Tip) -> dict[str, Any]:
     """gif: the film of the motion from there."""
-    from ...post.figures.cycle.motion_film import motion_film  # matplotlib, which only films need
+    from ...post.figures.cycle.motion_film import motion_film  # only films need it
 
     return {"gif": motion_film(filmed(state, motion(state, tip)))}
 

@@ -112,7 +112,7 @@ def film(state: PageState) -> Found:
 
 def film_of(cycle: Answer | Dataset) -> Found:
     """gif: the film of a cycle whose shapes are solved."""
-    from ...api.answers.picture import plot  # matplotlib, which only films need
+    from ...api.answers.picture import plot  # only films need it
 
     return {"gif": plot(cycle, what="animation").image}
 
