@@ -8,7 +8,8 @@ from surveyed import RODS
 
 from rodsweep.determinant.arm.count import count_right_of
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.hull import Hull, clearance, hull_of
+from rodsweep.determinant.arm.hull import hull_of
+from rodsweep.determinant.arm.region import Hull, clearance
 from rodsweep.determinant.arm.roots import refined, root_error, roots
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform

@@ -23,7 +23,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from .determinant import ArmDeterminant
-from .hull import Hull
+from .region import Hull
 from .value import chain_value
 
 POWERS = (6, 3)

@@ -33,7 +33,7 @@ from ..certificate.winding_number import COUNT, Count
 from ..value import Value
 from .completeness import is_whole
 from .determinant import ArmDeterminant
-from .hull import Hull, clearance
+from .region import Hull, clearance
 from .value import chain_size, chain_value
 
 LARGEST_TURN = 1.5

@@ -25,7 +25,7 @@ from ..roots import (
 )
 from ..value import ROUND_OFF, SECOND_STEP
 from .determinant import ArmDeterminant
-from .hull import Hull
+from .region import Hull
 from .value import ROOT_NOISE, ROOT_RESIDUAL
 
 Mask = NDArray[np.bool_]

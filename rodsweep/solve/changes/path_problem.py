@@ -10,7 +10,7 @@ from ...determinant.certificate.first_boxes import slabs
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.newton import Zero, double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at
-from ..spectrum.arm_stretch import FollowedArms
+from ..spectrum.followed_arms import FollowedArms
 from ..spectrum.problem import ArmProblem
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus

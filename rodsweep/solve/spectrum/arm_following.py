@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
 from ...determinant.arm.family import CONVERGED, ArmFamily, propagators_at
-from ...determinant.arm.hull import Hull, Hulls, hull_at
+from ...determinant.arm.region import Hull, Hulls, hull_at
 from ...determinant.arm.value import ROOT_NOISE, chain_along, chain_value
 from ...determinant.roots import roots_of_parabola, sort_descending
 from ...determinant.value import SECOND_STEP, second_difference

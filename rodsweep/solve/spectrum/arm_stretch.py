@@ -5,7 +5,6 @@ easy. The propagators of all arms are interpolated from a few arms (`rodsweep.de
 interval short enough for smooth polynomials.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -17,7 +16,8 @@ from ...determinant.arm.completeness import POWERS, is_whole, none_is_missing, r
 from ...determinant.arm.count import count_right_of
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of, is_smooth
-from ...determinant.arm.hull import Hulls, hull_at, hulls_along
+from ...determinant.arm.hull import hulls_along
+from ...determinant.arm.region import Hulls, hull_at
 from ...determinant.parameter_path import Path
 from ...determinant.roots import Roots
 from ..backend.kept import forget_all
@@ -25,10 +25,9 @@ from ..point import FAILURES
 from .arm_following import follow_arms
 from .candidates import behind, lines
 from .carried_count import judge_points, leading
-from .prediction import KnownRoots, Track, part, track_from
+from .prediction import Track, part, track_from
 from .search import Search
-from .spectrum import Reached, Spectrum, SpectrumRequest
-from .status import SpectrumStatus
+from .spectrum import Reached, SpectrumRequest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,23 +35,21 @@ class ArmStretchSettings:
     """Settings for arms along a path: followed modes, families of arms, and their hulls."""
 
     further_modes: tuple[int, ...] = (3, 9)
-    """Numbers of modes followed in addition to the wanted modes; the larger number is tried if too few points
-    are proved."""
+    """Numbers of modes followed beyond the wanted ones; the larger if too few points are proved."""
     proved_enough: float = 0.5
-    """Fraction of points that must be proved complete; below this fraction more modes are followed, if they
-    prove a point."""
+    """Fraction of points proved complete below which more modes are followed, if they prove a point."""
     headroom: float = 2.0
     """Largest |w| of the propagators, in units of the largest |w| of the first point."""
     reused_headroom: float = 1.25
-    """`headroom` of the propagators of an earlier interval that serve again."""
+    """`headroom` of propagators of an earlier interval."""
     points_growth: int = 2
-    """Largest number of points for which a family is tried, in units of those reached with the last one."""
+    """Largest number of points for which a family is tried, in units of those reached by the last."""
     fewest_points: int = 4
     """Minimum number of points of a family of arms."""
     accuracy: float = 1e-8
     """Relative accuracy of eigenvalues along a path."""
     modes_beyond_growing: int = 2
-    """Number of modes beyond the growing ones that a search for crossings asks for."""
+    """Modes beyond the growing ones that a search for crossings asks for."""
     steps_from_nearest: tuple[int, ...] = (1, 4)
     """Numbers of steps tried from the nearest point of the path to a point between."""
     hull_arms: int = 7
@@ -65,8 +62,8 @@ ARM_STRETCH = ArmStretchSettings()
 class Interval(NamedTuple):
     """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`.
 
-    arms: number of points inside the family, of which `p` are those that are followed. further: number of
-    modes that were followed beyond those wanted.
+    arms: number of points inside the family; `p` are those followed. further: modes followed beyond those
+    wanted.
     """
 
     p: Array
@@ -83,19 +80,18 @@ class Interval(NamedTuple):
 
 
 def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | None:
-    """Spectra at the points p, (n,), up to the last point reached from the first; None if no point is
-    reached."""
-    found = _interval(path, p, request)
+    """Spectra at the points p, (n,), up to the last one reached from the first; None if none is reached."""
+    found = interval_of(path, p, request)
     if found is None:
         return None
     for i in np.flatnonzero(found.known < request.modes).tolist():
         here = part(found.track, i, i + 1)
-        found.known[i] = _counted(path, found.hulls, float(found.p[i]), request.modes, here)
+        found.known[i] = counted(path, found.hulls, float(found.p[i]), request.modes, here)
     good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
     return Reached(*leading(found.track, request.modes), unstable, good)
 
 
-def _interval(
+def interval_of(
     path: Path, p: Array, request: SpectrumRequest, before: Interval | None = None
 ) -> Interval | None:
     """The points of p, (n,), that are reached with one family of arms; None if following fails at the first.
@@ -149,7 +145,7 @@ def _proves_more(path: Path, found: Interval, request: SpectrumRequest, further:
 def _followed(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: Interval | None
 ) -> Interval | None:
-    """`_interval` with `further` modes in addition to the wanted modes."""
+    """`interval_of` with `further` modes in addition to the wanted modes."""
     first = _carried_on(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
@@ -208,8 +204,7 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
 
 
 def _carried_on(before: Interval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues at the last point of an interval that is proved throughout, (m,), for the next interval
-    from this point on; else None."""
+    """Eigenvalues, (m,), at the end p of an interval proved throughout, for the next one; else None."""
     if before is None or before.further != further or before.p[-1] != p:
         return None
     if before.proved(request.modes) < len(before.p):
@@ -236,139 +231,7 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     return None if search.best is None else search.best.found.roots
 
 
-class FollowedArms:
-    """Leading eigenvalues along a path, followed once from point to point; any p between is reached from the
-    nearest point.
-
-    Points are followed as far as a p is asked for. After a point at which following ends, a new interval
-    starts.
-    """
-
-    def __init__(self, path: Path, p: Array, modes: int):
-        """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
-        self.path, self.request = path, SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
-        self.intervals: list[Interval] = []
-        self._judged: dict[float, list[JudgedPlace]] = {}
-        self._p = p
-        self._place = 0
-        self._patience = 1
-
-    def _follow_to(self, p: float) -> None:
-        """Follows the points up to p, or up to the first one beyond."""
-        while self._place < len(self._p) and (self._place == 0 or self._p[self._place] < p):
-            before = self.intervals[-1] if self.intervals else None
-            found = _interval(self.path, self._p[self._place :], self.request, before)
-            if found is not None:
-                self.intervals.append(found)
-            # Intervals share their end points. Where following fails it often fails at the next points too,
-            # so every further failure skips twice as many.
-            self._place += max(len(found.p) - 1, 1) if found is not None else self._patience
-            self._patience = 1 if found is not None else 2 * self._patience
-
-    def family(self, p: float) -> ArmFamily | None:
-        """The family of arms that contains p."""
-        self._follow_to(p)
-        return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
-
-    def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """(dw/dp, error of w) of an eigenvalue that `spectrum` gave at p; None if it gave none."""
-        for one in self._judged.get(p, []):
-            for k in np.flatnonzero(one.here.w[0] == w).tolist():
-                return complex(one.here.slope[0, k]), float(one.here.error[0, k])
-        return None
-
-    def spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The leading eigenvalues at p; None unless followed, accurate and proved complete."""
-        self._follow_to(p)
-        judged = self._judged.setdefault(p, [])
-        if not any(modes <= one.asked for one in judged):
-            judged += self._judge(p, modes)
-        found = (one.spectrum(modes, self.request.accuracy) for one in judged)
-        return next((spectrum for spectrum in found if spectrum is not None), None)
-
-    def roots(self, p: float) -> KnownRoots | None:
-        """Eigenvalues followed to p, which need not be all; None if following fails."""
-        self._follow_to(p)
-        for one in self.intervals:
-            if one.p.min() <= p <= one.p.max():
-                here, _ = self._from_nearest(one, p, self.request.modes)
-                if here is not None:
-                    return KnownRoots(here.w[0], here.error[0])
-        return None
-
-    def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
-        """Yields the eigenvalues at p of every interval that contains p, up to the first that are complete.
-
-        Two modes more than grow are judged at once, because they are asked for next.
-        """
-        for one in self.intervals:
-            followed = one.track.w.shape[1]
-            if not one.p.min() <= p <= one.p.max() or followed < modes:
-                continue
-            here = None
-            known = 0
-            wanted = 0
-            growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
-            while wanted < (needed := min(max(modes, growing + ARM_STRETCH.modes_beyond_growing), followed)):
-                wanted = needed
-                here, known = self._from_nearest(one, p, wanted)
-                growing = 0 if here is None else int((here.w.real > 0).sum())
-            if here is None:
-                continue
-            for number in sorted({wanted, modes}, reverse=True):
-                if known < number:
-                    known = max(known, _counted(self.path, one.hulls, p, number, here))
-            yield JudgedPlace(max(modes, min(known, wanted)), here, known)
-            if known >= modes:
-                return
-
-    def _from_nearest(self, one: Interval, p: float, modes: int) -> tuple[Track | None, int]:
-        """(eigenvalues at p followed from the nearest point, how many are proved complete there).
-
-        The track is of p alone, None where following fails.
-        """
-        i = int(np.argmin(np.abs(one.p - p)))
-        start = float(one.p[i])
-        if p == start and modes <= self.request.modes:
-            return part(one.track, i, i + 1), int(one.known[i])
-        for steps in ARM_STRETCH.steps_from_nearest:
-            grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track = track_from(one.track.w[i], len(grid))
-            known = np.zeros(len(grid), np.int64)
-            track.order[0] = one.track.order[i]
-            if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-                return part(track, len(grid) - 1, len(grid)), int(known[-1])
-        return None, 0
-
-
-class JudgedPlace(NamedTuple):
-    """Eigenvalues at one place of a path, of which the leading `known` are proved complete.
-
-    asked: the number for which they need not be judged again.
-    """
-
-    asked: int
-    here: Track
-    known: int
-
-    def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
-        """The leading eigenvalues if followed, accurate and complete; else None."""
-        if self.here.w.shape[1] < modes:
-            return None
-        good, unstable = judge_points(self.here, np.array([self.known]), modes, accuracy)
-        if not good[0]:
-            return None
-        w, error = leading(self.here, modes)
-        return Spectrum(
-            status=SpectrumStatus.ok,
-            eigenvalues=w[0],
-            error_estimate=error[0],
-            unstable_count=int(unstable[0]),
-            certified=True,
-        )
-
-
-def _counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
+def counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
     """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
     unconfirmed.
 

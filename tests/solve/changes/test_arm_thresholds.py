@@ -20,7 +20,7 @@ from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
-from rodsweep.solve.spectrum import arm_stretch
+from rodsweep.solve.spectrum import followed_arms
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
 ACROSS = (Kind.hopf, Kind.hopf_reverse, Kind.restabilization)
@@ -175,13 +175,13 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
     """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
-    counted, whole = [], arm_stretch._counted
+    counted, whole = [], followed_arms.counted
 
     def count(path, hulls, p, modes, here):
         counted.append(p)
         return whole(path, hulls, p, modes, here)
 
-    monkeypatch.setattr(arm_stretch, "_counted", count)
+    monkeypatch.setattr(followed_arms, "counted", count)
     rod = STEPPED.changed(k2=100.0)
     found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
     assert found.status == ThresholdStatus.ok

@@ -9,7 +9,8 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.arm_stretch import FollowedArms, followed_arms
+from rodsweep.solve.spectrum.arm_stretch import followed_arms
+from rodsweep.solve.spectrum.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
 
