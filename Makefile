@@ -169,7 +169,7 @@ endef
 	# Compile the formulas now, not in the first run, on two cores.
 	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
 	warm_up spectrum.stretch & spectra=$$!
-	warm_up cycle.limit_cycle
+	warm_up cycle.reference_rod
 	wait $$spectra
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

@@ -4,6 +4,7 @@ import ast
 import re
 import sys
 import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import h5py
@@ -51,6 +52,13 @@ def test_images_copy_what_make_install_reads(file):
     text = (ROOT / "install" / file).read_text()
     for path in ("Makefile", "pyproject.toml", PROJECT["readme"], "LICENSE", "rodsweep"):
         assert re.search(rf"(COPY|^   ).* ?{path} ", text, re.MULTILINE), path
+
+
+def test_make_install_compiles_what_the_package_has():
+    modules = re.findall(r"^\twarm_up ([\w.]+)", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert len(modules) == 2
+    for module in modules:
+        assert callable(import_module(f"rodsweep.solve.{module}").warm_up)
 
 
 def test_a_wheel_has_every_file_of_the_package():
