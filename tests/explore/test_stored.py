@@ -72,7 +72,7 @@ def test_the_film_of_a_stored_cycle_is_drawn_from_its_stored_shapes(command, mon
     question = solvers.questions[-1]
     stored = rs.open(command.directory / "result.h5").sel(F=[40])
     assert (question.kind, question.stored["shape_y"].equals(stored["shape_y"])) == ("film", True)
-    monkeypatch.setattr("rodsweep.api.answers.picture.plot", lambda cycle, what: Filmed(cycle))
+    monkeypatch.setattr("rodsweep.explore.solving.questions.plot", lambda cycle, what: Filmed(cycle))
     monkeypatch.setattr(rs.Rod, "cycle", None)  # no solve is needed
     assert answer_to(question)["gif"] is question.stored
 

@@ -1,21 +1,19 @@
 """The arm bent by the tip, and the motion after the release."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...api.arm import Arm
 from ...errors import InputError
+from ...post.figures.cycle.motion_film import FilmedMotion, motion_film
 from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
 from ..scales import length_axis
 from ..state import LAWS, PageState, rod_of
-
-if TYPE_CHECKING:
-    from ...post.figures.cycle.motion_film import FilmedMotion
 
 Tip = tuple[float, float]
 """Place (x, y) of the tip, in lengths of the arm."""
@@ -42,15 +40,11 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
 
 def film_of_motion(state: PageState, tip: Tip) -> dict[str, Any]:
     """gif: the film of the motion from there."""
-    from ...post.figures.cycle.motion_film import motion_film  # only films need it
-
     return {"gif": motion_film(filmed(state, motion(state, tip)))}
 
 
-def filmed(state: PageState, found: Mapping[str, Any]) -> "FilmedMotion":
+def filmed(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
     """A motion in the units of the page. found: answer to the question `motion`."""
-    from ...post.figures.cycle.motion_film import FilmedMotion
-
     subject = state.subject()
     length = length_axis(state)
     tau2, time = (subject.tau2, "s") if isinstance(subject, Arm) else (1.0, "tau2")

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...api.answers.answer import Answer
+from ...api.answers.picture import plot
 from ...api.arm import Arm
 from ...api.dataset import view_of
 from ...api.sweeping import sweep
@@ -112,8 +113,6 @@ def film(state: PageState) -> Found:
 
 def film_of(cycle: Answer | Dataset) -> Found:
     """gif: the film of a cycle whose shapes are solved."""
-    from ...api.answers.picture import plot  # only films need it
-
     return {"gif": plot(cycle, what="animation").image}
 
 
