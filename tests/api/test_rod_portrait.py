@@ -133,6 +133,16 @@ def test_branches_without_all_special_points_are_counted(portrait):
     assert "1 of its branches of cycles is not drawn: not all special points are" in text
 
 
+def test_a_search_that_ended_early_is_not_said_to_end_where_the_rod_is_crushed(portrait):
+    view = portrait.results.views["thresholds"]
+    early = next(value for value, word in view.flags.items() if word == "ended_early")
+    ended = {name: np.full_like(view.variables[name], x) for name, x in (("status", early), ("F_end", 60.0))}
+    views = {**portrait.results.views, "thresholds": replace(view, variables={**view.variables, **ended})}
+    text = paragraph(replace(portrait.results, views=views))
+    assert "searched up to F = 60, not to F = 200: the search ended early" in text
+    assert "crushed" not in text.split(".")[0]
+
+
 def test_cycles_are_those_of_the_limit_cycle_task(portrait):
     assert len(portrait.cycles) == 3
     for F, cycle in portrait.cycles.items():

@@ -58,7 +58,9 @@ def _rod(results: RodResults) -> Iterator[str]:
     if not isfinite(end):
         searched = "could not be searched"
     elif reached != wanted:
-        searched += f", not to {wanted}: beyond it the {kind} is crushed, or its modes cannot be counted"
+        early = results.views["thresholds"].with_status("ended_early").all()
+        ends = "the search ended early: the list was full, or modes could not be counted"
+        searched += f", not to {wanted}: {ends if early else f'beyond it the {kind} is crushed'}"
     yield f"The {kind} with {results.rod.words} {searched}."
     if results.rod.arm:
         yield from _arm(results)
