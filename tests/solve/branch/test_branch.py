@@ -299,6 +299,19 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     assert float(orbit.form.tip(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
 
 
+@survey_only
+@pytest.mark.parametrize("start, stop", [(78.0, 200.0), (99.0, 200.0), (181.0, 182.8)])
+def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_range(start, stop):
+    """Their first cycles, and the errors beyond F = 174, were lost in rounding errors of Newton's steps."""
+    rod = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
+    crossing = pair_crossings(Path(rod, "F"), start, start + 5).crossings[0]
+    ends = ((0.0, stop), (EndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
+    curve = follow_branch(0, BranchLimits([hopf_point(Path(rod, "F"), crossing)], *ends))
+    assert curve.complete
+    assert curve.special[-1].at == pytest.approx(stop)
+    assert max(point.multiplier for point in curve.points) > 1e20
+
+
 def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
     """Another maximum of y(t) becomes the largest at a corner, which a figure locates from both sides."""
     rod = Rod(F=0.0, k1=419.6, k2=23447.0, gamma3=0.1237, gamma1=0.645)

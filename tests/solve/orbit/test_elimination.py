@@ -10,10 +10,12 @@ from rodsweep.discretization.plane import jacobian
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.orbit.matrix.elimination import eliminate
 from rodsweep.solve.orbit.matrix.inversion import PANEL, invert
-from rodsweep.solve.orbit.matrix.linearisation import change_along
-from rodsweep.solve.orbit.matrix.phase import phase, phase_change
+from rodsweep.solve.orbit.matrix.linearisation import change_along, jump_of
+from rodsweep.solve.orbit.matrix.phase import phase, phase_change, phase_row
 from rodsweep.solve.orbit.matrix.right_sides import equations, residuals, right_sides
 from rodsweep.solve.orbit.matrix.substitution import substitute
 from rodsweep.solve.orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
@@ -120,3 +122,46 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     assert np.abs(right.ravel() - limit[:-1]).max() < 1e-6 * np.abs(right).max() + rounding
     assert abs(shift - limit[-1]) < 1e-6 * abs(shift) + rounding
     assert np.abs(right).max() > 0
+
+
+def whole_matrix(matrix):
+    """Newton's matrix without its last row, of all states, period and parameter, (N, N + 1)."""
+    orbit = matrix.orbit
+    p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
+    along, columns = change_along(orbit.form, matrix.scale.name), np.empty((K, s, 3, n))
+    right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
+    A = np.zeros((len(orbit.values), len(orbit.values) + 1))
+    A[:n, :n] -= p.symmetry
+    A[:n, -2 - n : -2] += np.eye(n)
+    for k in range(K):
+        rows, start = slice(n + k * s * n, n + (k + 1) * s * n), slice(k * s * n, k * s * n + n)
+        A[rows, rows] = dense_matrix(orbit, k)
+        A[rows, start] += np.kron(p.differentiation[:, :1], np.diag(p.mass))
+        A[rows, -2:] = -columns[k][:, [0, 2]].transpose(0, 2, 1).reshape(s * n, 2)
+    phase_row(orbit.start, p.rod, p.matrices, A[-1, :n])
+    A[-1, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
+    jump, shift = jump_of(orbit.points, p), phase(orbit.start, p.rod, p.matrices)
+    return A, np.array([*jump, *columns[:, :, 1].ravel(), -shift])
+
+
+@pytest.mark.parametrize("period, growth", [(0.03, 1e5), (0.05, 1e12)])
+def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth):
+    form = StressForm(RODS["soft"].changed(F=150.0, gamma1=0.7), mesh(1, 8))
+    states = 0.3 * np.random.default_rng(3).normal(size=(61, form.unknowns))
+    states -= 150 * form.layout.row({"n1": np.ones(8)})  # beside the straight rod, which is unstable
+    orbit, border = Orbit.of(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
+    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 0.1), NewtonWorkspace())
+    assert np.linalg.norm(matrix.propagator) > growth
+    A, right = whole_matrix(matrix)
+    tangent = matrix.direction(border)
+    for change, sides in (
+        (matrix.step(border, 0.1), right),
+        (matrix.correction(orbit, border, 0.1), right),
+        (tangent, 0 * right),
+    ):
+        assert np.abs(A @ change - sides).max() < 1e-9 * (np.abs(A) @ np.abs(change)).max()
+    assert border @ matrix.scale.moved(orbit, matrix.step(border, 0.1)) == pytest.approx(0.1, rel=1e-9)
+    expected = np.linalg.solve(np.vstack([A, tangent]), np.append(right, 0.0))
+    found = matrix.step(border, 0.1)
+    found = found - tangent * (tangent @ found) / (tangent @ tangent)
+    assert np.abs(found - expected).max() < 1e-8 * np.abs(expected).max()

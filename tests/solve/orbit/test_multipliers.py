@@ -1,9 +1,14 @@
 """Eigenvalues of matrices of low rank, against NumPy's of the whole matrix and against exact ones."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from rodsweep.discretization.state_layout import plane_layout
+from rodsweep.solve.orbit.matrix.legs import Legs
 from rodsweep.solve.orbit.matrix.multipliers import MULTIPLIERS, compressed, nonzero_eigenvalues
+from rodsweep.solve.orbit.symmetry import REFLECTION
 
 
 def by_modulus(values):
@@ -43,3 +48,20 @@ def test_what_is_not_finite_is_refused(bad):
     A[1, 2] = bad
     with pytest.raises(np.linalg.LinAlgError, match="not finite"):
         nonzero_eigenvalues(A)
+
+
+def test_multipliers_over_legs_keep_their_digits_below_a_product_of_1e15():
+    """Each leg is similar to a diagonal matrix, so that the product has known eigenvalues."""
+    n, legs, rng = 12, 4, np.random.default_rng(2)
+    layout = plane_layout(4)
+    assert layout.unknowns == n
+    bases = [np.eye(n) + 0.3 * rng.standard_normal((n, n)) / np.sqrt(n) for _ in range(legs)]
+    growths = 10.0 ** rng.uniform(-1, 1, (legs, n)) * np.geomspace(1e15, 1e-7, n) ** (1 / legs)
+    turned = [*bases[1:], REFLECTION.matrix(layout) @ bases[0]]
+    maps = [
+        after @ np.diag(growth) @ np.linalg.inv(before)
+        for before, growth, after in zip(bases, growths, turned, strict=True)
+    ]
+    orbit = SimpleNamespace(symmetry=REFLECTION, form=SimpleNamespace(layout=layout))
+    found = np.sort(Legs(tuple(range(legs + 1)), np.array(maps)).multipliers(orbit).real)
+    assert found == pytest.approx(np.sort(growths.prod(axis=0)), rel=1e-8)

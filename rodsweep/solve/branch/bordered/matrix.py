@@ -6,6 +6,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.matrix.elimination import eliminate
+from ...orbit.matrix.legs import legs_of
 from ...orbit.matrix.linearisation import (
     change_along,
     jump_of,
@@ -43,17 +44,26 @@ class BorderedMatrix:
         self._memory = MatrixMemory(workspace, K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
-        shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
-        self._matrix = np.zeros((n + 2, n + 2))
-        self._matrix[:n, :n] = self._memory.propagator - p.symmetry
-        self._matrix[:n, n] = ends[0]
-        self._matrix[:n, n + 1] = ends[2]
+        self._legs = legs_of(self._memory.factors, p.mass)
+        m = len(self._legs.maps)
+        self._matrix = np.zeros((m * n + 2, m * n + 2))
+        for j in range(m):
+            rows = slice(j * n, (j + 1) * n)
+            self._matrix[rows, rows] = self._legs.maps[j]
+            # A leg ends where the next leg starts; the last leg ends at the image of the first start.
+            if j < m - 1:
+                self._matrix[rows, (j + 1) * n : (j + 2) * n] = -np.eye(n)
+            else:
+                self._matrix[rows, :n] -= p.symmetry
+        for place, c in ((-2, 0), (-1, 2)):
+            own = slice(c, c + 1)
+            self._matrix[:-2, place] = -self.closing(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
-        self._matrix[n, :n] = row
+        self._matrix[-2, :n] = row
         # `phase_change` is negated as a right side; here it is a column of the matrix.
-        self._matrix[n, n + 1] = -shift
-        self._right = self._jump(orbit, ends[1])
+        self._matrix[-2, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
+        self._right = self._jump(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
         """Newton's step under the condition that `border` . place, (3,), grows by a length, (N + 1,)."""
@@ -64,12 +74,12 @@ class BorderedMatrix:
         factors = self._memory.factors
         p = self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
-        right = np.append(self._jump(orbit, ends[0]), length)
+        right = np.append(self._jump(orbit, columns, ends), length)
         return self.solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """Tangent, (N + 1,), of unit length in `Scale.place`, on the side of a border, (3,)."""
-        # The null vector of the first n + 1 rows, normalised by the border: residuals do not enter.
+        # The null vector of all rows but the last, normalised by the border: residuals do not enter.
         right = np.append(np.zeros(len(self._right)), 1.0)
         change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
@@ -101,7 +111,9 @@ class BorderedMatrix:
     @cached_property
     def partial_multipliers(self) -> Complex:
         """Multipliers over the solved interval: half a period and the reflection if symmetric, (rank,)."""
-        return partial_multipliers(self.propagator, self.orbit)
+        if len(self._legs.maps) == 1:
+            return partial_multipliers(self.propagator, self.orbit)
+        return self._legs.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers above rounding, the trivial one included, by descending modulus, (rank,)."""
@@ -118,32 +130,44 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
-    def _jump(self, orbit: Orbit, end: Array) -> Array:
-        """Right side of an orbit's start and phase, (n + 1,); `end`: contribution of its stages, (n,)."""
+    def closing(self, jump: Array, columns: Array, ends: Array) -> Array:
+        """Right sides of the ends of all legs, (m n,), from the jump of the last end, (n,).
+
+        columns: reduced right sides of the stages, (K, s, 1, n). ends: change of the last end by these for a
+        fixed start, (1, n).
+        """
+        p = self.orbit.semidiscrete
+        sides = -self._legs.ends(self._memory.factors, columns, ends, p)[:, 0]
+        sides[-1] += jump
+        return sides.ravel()
+
+    def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
+        """Right side of the ends of an orbit's legs and of its phase, (m n + 1,); arguments as in
+        `closing`."""
         p = orbit.semidiscrete
-        jump = jump_of(orbit.points, p) - end
-        return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
+        right = self.closing(jump_of(orbit.points, p), columns, ends)
+        return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
     def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
-        """Change, (N + 1,), for right sides of the ends, (n + 2,), and a share of those of the stages, (K, s,
-        n)."""
+        """Change, (N + 1,), for right sides of the ends, (m n + 2,), and a share of those of the stages, (K,
+        s, n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
-        matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
+        matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
         return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
     def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
-        """Change of all, (N + 1,), from that of the ends, (n + 2,), and a share of right sides, (K, s, n)."""
+        """Change of all, (N + 1,), from that of the starts of legs, period and parameter, (m n + 2,), and a
+        share of right sides, (K, s, n)."""
         n = len(self.orbit.start)
-        stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
-        stages = np.ascontiguousarray(stages[:, :, None])
-        out = np.empty_like(stages)
+        stages = found[-2] * self._columns[:, :, 0] + share * sides + found[-1] * self._columns[:, :, 2]
+        columns = np.ascontiguousarray(stages[:, :, None])
+        starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        start = found[None, :n].copy()
-        substitute(start, stages, self.orbit.semidiscrete, factors, out)
-        return np.concatenate([found[:n], out.ravel(), found[n:]])
+        out = self._legs.substituted(factors, starts, columns, self.orbit.semidiscrete)
+        return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 
 def bordered(found: Converged) -> BorderedMatrix:

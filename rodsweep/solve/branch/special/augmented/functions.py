@@ -85,10 +85,9 @@ class FoldFunction:
         phase_row(orbit.start, p.rod, p.matrices, row)
         along = orbit.form.change(matrix.scale.name)
         shift = phase_change(orbit.start, along, p.rod, p.matrices)
-        right = np.empty(len(row) + 2)
-        right[:-2] = jump_of(change.points, p) - ends[0]
-        right[-2] = shift * tangent[-1] - row @ change.start
-        right[-1] = 1 - self.border @ matrix.scale.moved(orbit, tangent)
+        closing = matrix.closing(jump_of(change.points, p), columns, ends)
+        of_phase = shift * tangent[-1] - row @ change.start
+        right = np.array([*closing, of_phase, 1 - self.border @ matrix.scale.moved(orbit, tangent)])
         self.vectors = tangent + matrix.solved(self.border, right, columns[:, :, 0], 1.0)
 
 
