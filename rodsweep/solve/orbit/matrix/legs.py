@@ -75,10 +75,12 @@ class Legs:
         not finite.
         """
         *others, last = self.maps
-        ahead = np.eye(len(last))
+        ahead = triangle = np.eye(len(last))
         for _ in range(LEGS.sweeps):
-            start = ahead
-            triangle = np.eye(len(start))
+            # Directions that vanish over a period would only cost time.
+            lasting = np.flatnonzero(np.abs(np.diag(triangle)) > LEGS.negligible_multiplier)
+            start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
+            triangle = np.eye(start.shape[1])
             for A in (*others, orbit.symmetry.returned(last, orbit.form.layout)):
                 ahead, R = np.linalg.qr(A @ ahead)
                 triangle = R @ triangle
