@@ -130,14 +130,17 @@ def multipliers_of(found: Converged) -> tuple[Complex, float]:
 
 
 def multiplier_change(multipliers: Complex, others: Complex) -> float:
-    """Distance of the largest of the multipliers, (m,), from the nearest of another mesh's multipliers, (l,).
+    """Distance of the largest of the multipliers, (m,), from the nearest of another mesh's multipliers, (l,),
+    at least the difference of the largest moduli; both by descending modulus.
 
-    Neither the multiplier of the same index nor the moduli are compared: on another mesh two multipliers may
-    exchange their places, or two moduli may agree by coincidence.
+    The multiplier of the same index is not compared, nor are the moduli alone: on another mesh two
+    multipliers may exchange their places, or two moduli may agree by coincidence.
     """
     if not (len(multipliers) and len(others)):
         return 0.0
-    return float(np.abs(others - multipliers[0]).min())
+    nearest = np.abs(others - multipliers[0]).min()
+    # Of strongly unstable cycles the largest multiplier changes by factors, and the nearest one is another.
+    return float(max(nearest, abs(abs(others[0]) - abs(multipliers[0]))))
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:

@@ -8,6 +8,7 @@ import pytest
 from rodsweep.discretization.state_layout import plane_layout
 from rodsweep.solve.orbit.matrix.legs import Legs
 from rodsweep.solve.orbit.matrix.multipliers import MULTIPLIERS, compressed, nonzero_eigenvalues
+from rodsweep.solve.orbit.newton import multiplier_change
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
 
@@ -65,3 +66,9 @@ def test_multipliers_over_legs_keep_their_digits_below_a_product_of_1e15():
     orbit = SimpleNamespace(symmetry=REFLECTION, form=SimpleNamespace(layout=layout))
     found = np.sort(Legs(tuple(range(legs + 1)), np.array(maps)).multipliers(orbit).real)
     assert found == pytest.approx(np.sort(growths.prod(axis=0)), rel=1e-8)
+
+
+def test_change_of_the_largest_multiplier_is_not_its_distance_from_a_smaller_one():
+    assert multiplier_change(np.array([4e15, 1e3]), np.array([3e17, 5e15, 1e3])) == 3e17 - 4e15
+    assert multiplier_change(np.array([1.1j, -1.1j, 0.2]), np.array([1.0j, -1.0j])) == pytest.approx(0.1)
+    assert multiplier_change(np.array([0.9, -0.8]), np.array([-0.9, 0.7])) == pytest.approx(0.2)
