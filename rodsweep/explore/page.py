@@ -128,7 +128,6 @@ class Page:
 
     def _change_to(self, state: PageState) -> None:
         self.state = state
-        self.contents.controls.show(state)
         try:
             subject = state.subject()
             state.largest_force()
@@ -136,13 +135,15 @@ class Page:
             if F is None:
                 raise InputError(f"parameters.{state.load} is missing; give the load")
         except InputError as error:
+            self.contents.controls.show(state)
             self._refuse(str(error))
             return
-        self.contents.show_point(state, F)
         for kind in (*OF_TIP, *ON_REQUEST):
             self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
+        self.contents.controls.show(state)
+        self.contents.show_point(state, F)
         self._show_solving()
         self._rest()
 
@@ -233,8 +234,10 @@ class Page:
 
     def _show_solving(self) -> None:
         shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)
-        self.contents.working.text = sign([kind for kind in shown if kind in self.solving], self.progress)
-        self.contents.buttons["stop"].visible = any(kind in self.solving for kind in STOPPABLE)
+        self.contents.sign.update(
+            text=sign([kind for kind in shown if kind in self.solving], self.progress),
+            is_stoppable=any(kind in self.solving for kind in STOPPABLE),
+        )
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

@@ -98,7 +98,7 @@ def test_a_click_in_the_diagram_moves_the_point_and_everything_follows(browser):
     assert (F, k2) == (pytest.approx(55, abs=1), pytest.approx(300, rel=0.1))
     answer = rs.Rod(F=F, k1=1e4, k2=k2, gamma3=0.01).spectrum()
     assert numbers(browser)["growth_rate"] == written(answer.growth_rate)
-    assert browser.run("return location.search").startswith(f"?tab=rod&F={F:g}&")
+    browser.wait_for(f"location.search.startsWith('?tab=rod&F={F:g}&')")  # written when the page has rested
 
 
 def test_a_click_on_the_thresholds_moves_the_load(browser):

@@ -37,7 +37,9 @@ class BeatingPicture:
         figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
         for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
             figure.scatter("x", "y", visible=False, source=source)  # so that the source is on the page
-        figure.line("x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm)
+        self.line = figure.line(
+            "x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm, visible=False
+        )  # fmt: skip
         figure.scatter([0], [0], marker="square", size=12, color=POINT)
         for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
             arguments = {"figure": figure, "grip": self.grip, "phase": phase}
@@ -49,7 +51,8 @@ class BeatingPicture:
         """Code that the browser runs once when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
-        return CustomJS(args=sources | {"period": SECONDS}, code=read("beating.js"))
+        more = {"period": SECONDS, "figure": self.card.figure, "colour": STABLE}
+        return CustomJS(args=sources | more, code=read("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
         """Registers the function called after a drag of the tip: kind of question, place of the tip in L."""

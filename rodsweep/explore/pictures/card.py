@@ -45,7 +45,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
     """A vertical line over the full height of a figure."""
-    return Span(location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5)
+    return Span(location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay")
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:

@@ -33,7 +33,7 @@ GROUPS = {
     "cycles": "diagram",
 }  # fmt: skip
 """Process group of each kind of question, so that fast questions never wait for slow questions."""
-NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
+NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
 """Niceness of the process of each group: pictures that follow a slider have the highest priority."""
 INTERRUPT_RETRY = 0.1
 """Seconds until a cancellation that came before the process was ready is repeated."""
@@ -117,7 +117,7 @@ class SolverProcess:
         words = [sys.executable, "-m", f"{__package__}.worker", str(theirs.fileno()), str(watched)]
         words.append(str(self.niceness))
         self._process = subprocess.Popen(
-            words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), start_new_session=True
+            words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), process_group=0
         )
         self.starts += 1
         self.is_ready = False
