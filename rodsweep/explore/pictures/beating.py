@@ -11,7 +11,7 @@ from ...arrays import Array
 from ..look import read
 from ..scales import PictureAxis
 from ..solving.letting_go import Tip
-from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of, show_range
+from .card import NEUTRAL, POINT, STABLE, Card, columns, empty_source, new_figure, sentence_of, show_range
 
 SECONDS = 2.0
 """Duration of one period on the screen."""
@@ -74,7 +74,9 @@ class BeatingPicture:
             x, y = (found[name][None] * length.factor for name in "xy")
         self.shapes.data = source_of(x, y)
         tips = (x[:, -1], y[:, -1]) if has_cycle else (x[:0, -1], y[:0, -1])
-        self.path.data = {name: np.append(tip, tip[:1]) for name, tip in zip("xy", tips, strict=True)}
+        self.path.data = columns(
+            **{name: np.append(tip, tip[:1]) for name, tip in zip("xy", tips, strict=True)}
+        )
         self._fit(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
             f"{n} ({length.label})" for n in "xy"
@@ -102,7 +104,7 @@ class BeatingPicture:
         self.motion.tags = [SECONDS * step / turn, SECONDS]
         self.reached.data = source_of(shape_x, shape_y)
         self.motion.data = source_of(x, y)
-        self.path.data = {"x": x[:, -1], "y": y[:, -1]}
+        self.path.data = columns(x=x[:, -1], y=y[:, -1])
         self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = ENDS.get(found["status"], found["sentence"])

@@ -44,13 +44,22 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A vertical line over the full height of a figure."""
-    return Span(location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay")
+    """A vertical line over the full height of a figure, on its upper canvas: where it moves, the browser paints
+    nothing else again.
+    """
+    return Span(
+        location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
+    )  # fmt: skip
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
     """A data source with empty columns `names`."""
     return ColumnDataSource({each: [] for each in names}, name=name)
+
+
+def columns(**arrays: Array) -> dict[str, list[Any]]:
+    """Columns of a data source as lists, for short arrays: the server sends each array in two messages more."""
+    return {name: array.tolist() for name, array in arrays.items()}
 
 
 def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
