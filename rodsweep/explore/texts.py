@@ -1,5 +1,5 @@
-"""Texts that change with every answer, in elements outside of Bokeh's layout: each change of a `Div` lays out the
-whole page again.
+"""Texts that change with every answer, in elements outside of Bokeh's layout: each change of a `Div` is a new
+layout of the whole page.
 """
 
 from collections.abc import Sequence

@@ -44,9 +44,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A vertical line over the full height of a figure, on its upper canvas: where it moves, the browser paints
-    nothing else again.
-    """
+    """A vertical line over the full height of a figure; moving it paints only the figure's upper canvas again."""
     return Span(
         location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
     )  # fmt: skip
@@ -58,7 +56,7 @@ def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSou
 
 
 def columns(**arrays: Array) -> dict[str, list[Any]]:
-    """Columns of a data source as lists, for short arrays: the server sends each array in two messages more."""
+    """Columns of a data source as lists, for short arrays: each array takes two messages of its own."""
     return {name: array.tolist() for name, array in arrays.items()}
 
 

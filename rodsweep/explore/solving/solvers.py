@@ -34,7 +34,9 @@ GROUPS = {
 }  # fmt: skip
 """Process group of each kind of question, so that fast questions never wait for slow questions."""
 NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
-"""Niceness of the process of each group: pictures that follow a slider have the highest priority."""
+"""Niceness of the process of each group. Only the spectrum has the priority of page and browser, which show it
+while the others solve.
+"""
 INTERRUPT_RETRY = 0.1
 """Seconds until a cancellation that came before the process was ready is repeated."""
 WARMED_UP = ("spectrum", "cycle", "thresholds")
@@ -116,6 +118,8 @@ class SolverProcess:
         watched, self._life = os.pipe()
         words = [sys.executable, "-m", f"{__package__}.worker", str(theirs.fileno()), str(watched)]
         words.append(str(self.niceness))
+        # A process group of its own is out of reach of Ctrl-C. In a session of its own, Linux would ignore niceness
+        # beside the page.
         self._process = subprocess.Popen(
             words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), process_group=0
         )
