@@ -42,7 +42,7 @@ class UndelayedServer(HTTPServer):
 
 
 class BatchConnection(ServerConnection):
-    """A connection that sends all changes of a callback in one message; Bokeh's own sends one message each."""
+    """A connection that sends all changes of a callback in one message, not in one message each."""
 
     def __init__(self, *arguments: Any):
         super().__init__(*arguments)

@@ -44,7 +44,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A vertical line over the full height of a figure; moving it paints only the figure's upper canvas again."""
+    """A vertical line over the full height of a figure; a move paints only the figure's upper canvas."""
     return Span(
         location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
     )  # fmt: skip

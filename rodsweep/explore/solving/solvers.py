@@ -34,8 +34,8 @@ GROUPS = {
 }  # fmt: skip
 """Process group of each kind of question, so that fast questions never wait for slow questions."""
 NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
-"""Niceness of the process of each group. Only the spectrum has the priority of page and browser, which show it
-while the others solve.
+"""Niceness of the process of each group. Only the spectrum has the priority of the page and of the browser.
+It is painted while the others solve.
 """
 INTERRUPT_RETRY = 0.1
 """Seconds until a cancellation that came before the process was ready is repeated."""
@@ -118,8 +118,7 @@ class SolverProcess:
         watched, self._life = os.pipe()
         words = [sys.executable, "-m", f"{__package__}.worker", str(theirs.fileno()), str(watched)]
         words.append(str(self.niceness))
-        # A process group of its own is out of reach of Ctrl-C. In a session of its own, Linux would ignore niceness
-        # beside the page.
+        # Ctrl-C does not reach a process group of its own. A session of its own would undo the niceness.
         self._process = subprocess.Popen(
             words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), process_group=0
         )
