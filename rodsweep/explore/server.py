@@ -98,7 +98,7 @@ class ExploreServer:
         return f"http://{ADDRESS}:{self.port}/"
 
     def start(self) -> None:
-        """Starts the solvers; the server answers browsers once the event loop runs."""
+        """Starts the solvers. The server answers browsers once the event loop runs again."""
         self.server.start()
         self.solvers.warm_up()
 
@@ -137,8 +137,8 @@ async def serve(state: PageState, stored: StoredResults | None, port: int, is_op
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stopped.set)
     server = ExploreServer(state, stored, port)
-    server.start()
     print(f"{server.url} shows the page; Ctrl-C ends it", flush=True)
+    server.start()
     if is_opened:
         import webbrowser
 

@@ -3,18 +3,18 @@ kind."""
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import Pipe
 from multiprocessing.connection import Connection
+from multiprocessing.context import ForkServerProcess
 from typing import Any
 
 from tornado.ioloop import IOLoop
 
 from ..state import PageState
+from . import worker
+from .forks import FORKS, prepare
 from .questions import Question, Reply
 
 Key = tuple[str, str]
@@ -70,9 +70,9 @@ class SolverProcess:
         self.starts = 0
         self.is_ready = False
         """Whether the process handles signals; before, SIGINT would end the process."""
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: ForkServerProcess | None = None
         self._connection: Connection[Any, Any] | None = None
-        self._life = -1
+        self._life: Connection[Any, Any] | None = None
 
     @property
     def pid(self) -> int | None:
@@ -114,18 +114,15 @@ class SolverProcess:
         """Starts the process, if none runs."""
         if self._process is not None:
             return
-        self._connection, theirs = Pipe()
-        watched, self._life = os.pipe()
-        words = [sys.executable, "-m", f"{__package__}.worker", str(theirs.fileno()), str(watched)]
-        words.append(str(self.niceness))
-        # Ctrl-C does not reach a process group of its own. A session of its own would undo the niceness.
-        self._process = subprocess.Popen(
-            words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), process_group=0
-        )
+        prepare()
+        self._connection, theirs = FORKS.Pipe()
+        watched, self._life = FORKS.Pipe(duplex=False)
+        self._process = FORKS.Process(target=worker.run, args=(theirs, watched, self.niceness), daemon=True)
+        self._process.start()
         self.starts += 1
         self.is_ready = False
         theirs.close()
-        os.close(watched)
+        watched.close()
         IOLoop.current().add_handler(self._connection.fileno(), self._hear, IOLoop.READ)
 
     def _send_next(self) -> None:
@@ -172,7 +169,8 @@ class SolverProcess:
         if not self.is_ready:
             IOLoop.current().call_later(INTERRUPT_RETRY, lambda: self._interrupt(number))
             return
-        self._process.send_signal(signal.SIGINT)
+        assert self._process.pid is not None
+        os.kill(self._process.pid, signal.SIGINT)
         IOLoop.current().call_later(self.patience.kill, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
@@ -183,14 +181,15 @@ class SolverProcess:
         self._send_next()
 
     def _end(self) -> None:
-        if self._process is None or self._connection is None:
+        if self._process is None or self._connection is None or self._life is None:
             return
         IOLoop.current().remove_handler(self._connection.fileno())
         self._connection.close()
-        os.close(self._life)
+        self._life.close()
         self._process.kill()
-        self._process.wait()
-        self._process = self._connection = None
+        self._process.join()
+        self._process.close()
+        self._process = self._connection = self._life = None
 
 
 class Solvers:
