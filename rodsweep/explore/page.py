@@ -128,6 +128,7 @@ class Page:
 
     def _change_to(self, state: PageState) -> None:
         self.state = state
+        self.contents.controls.show(state)
         try:
             subject = state.subject()
             state.largest_force()
@@ -135,14 +136,12 @@ class Page:
             if F is None:
                 raise InputError(f"parameters.{state.load} is missing; give the load")
         except InputError as error:
-            self.contents.controls.show(state)
             self._refuse(str(error))
             return
         for kind in (*OF_TIP, *ON_REQUEST):
             self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
-        self.contents.controls.show(state)
         self.contents.show_point(state, F)
         self._show_solving()
         self._rest()
@@ -233,11 +232,9 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)
-        self.contents.sign.update(
-            text=sign([kind for kind in shown if kind in self.solving], self.progress),
-            is_stoppable=any(kind in self.solving for kind in STOPPABLE),
-        )
+        kinds = [kind for kind in (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST) if kind in self.solving]
+        is_stoppable = any(kind in STOPPABLE for kind in kinds)
+        self.contents.sign.update(text=sign(kinds, self.progress), is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

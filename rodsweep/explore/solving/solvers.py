@@ -169,8 +169,8 @@ class SolverProcess:
         if not self.is_ready:
             IOLoop.current().call_later(INTERRUPT_RETRY, lambda: self._interrupt(number))
             return
-        assert self._process.pid is not None
-        os.kill(self._process.pid, signal.SIGINT)
+        if self._process.is_alive() and self._process.pid is not None:
+            os.kill(self._process.pid, signal.SIGINT)
         IOLoop.current().call_later(self.patience.kill, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
@@ -186,7 +186,8 @@ class SolverProcess:
         IOLoop.current().remove_handler(self._connection.fileno())
         self._connection.close()
         self._life.close()
-        self._process.kill()
+        if self._process.is_alive():
+            self._process.kill()
         self._process.join()
         self._process.close()
         self._process = self._connection = self._life = None
