@@ -145,7 +145,8 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Cost of spectra along stretches, from that of points solved alone; standard: uniform, linear rods."""
+    """Cost of spectra along stretches, from the cost of points solved alone; standard: uniform, linear
+    rods."""
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
     each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS

@@ -176,7 +176,8 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def _profile(config: Config, profile: Profile) -> str:
-    """A profile in words; that of a cone in SI units is made by rodsweep, from the drag at each radius."""
+    """A profile in words. The profile of a cone in SI units is made by rodsweep, from the drag at each
+    radius."""
     if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)

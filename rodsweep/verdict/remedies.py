@@ -30,7 +30,7 @@ def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
     return says
 
 
-def kinds_in_words(effects: Iterable[Effect]) -> str:
+def effect_kinds_in_words(effects: Iterable[Effect]) -> str:
     """Kinds of neglected effects, joined by "and"."""
     return " and ".join(dict.fromkeys(map(kind_of, effects)))
 

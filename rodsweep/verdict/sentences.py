@@ -9,7 +9,7 @@ from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, Span
 from .load import Load, rounded, rounded_percent
 from .planes import PlaneOfMotion, Planes
-from .remedies import does_not_apply, kinds_in_words
+from .remedies import does_not_apply, effect_kinds_in_words
 from .validity import Assessment
 
 
@@ -23,7 +23,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
         return [*_verdict(plane), *_other_plane(planes, "is")]
     headline = does_not_apply(plane.arm, assessment)
     if assessment.of_thresholds == Validity.does_not_apply:
-        return [*headline, *_without(plane, kinds_in_words(beyond)), *_other_plane(planes, "would be")]
+        return [*headline, *_without(plane, effect_kinds_in_words(beyond)), *_other_plane(planes, "would be")]
     flutter = plane.found.force(Kind.hopf)
     known = "No flutter was found" if flutter is None else f"Flutter, at {_where(plane, flutter)},"
     return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]

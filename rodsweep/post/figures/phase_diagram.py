@@ -131,7 +131,8 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the plane is that of F and k1, with rods that are crushed at F = k1, as arms are not."""
+    """Whether the axes are F and k1, and F = k1 crushes the rods, as it does if they are uniform and
+    linear."""
     return (line, row) == CRUSHING and has_covering(view.config)
 
 

@@ -176,9 +176,9 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the cost of the searches, if it is counted; done: a mask of the points' shape.
+    """Line on the cost of the searches; done: a mask of the points' shape.
 
-    Of a search by counts of unstable modes no number is counted.
+    Empty for searches by counts of unstable modes, which record no cost.
     """
     if not has_covering(view.config):
         return []

@@ -60,7 +60,7 @@ class View:
     attributes: dict[str, Any]
     variables: Mapping[str, np.ndarray]
     parameters: tuple[str, ...]
-    """Parameters of a point: dimensions of a grid, or columns along `point`."""
+    """Names of the parameters of a point, which are the dimensions of a grid or columns along `point`."""
     flags: dict[int, str]
     """Values of `status` and their words."""
     journalled: int

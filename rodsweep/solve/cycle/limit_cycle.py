@@ -20,7 +20,7 @@ from ..motion.held_tip import held_by_tip
 from ..motion.integrator import forget_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
-from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import Cycle, CycleRequest, MotionShapes, measured, padded
 from .hopf_start import hopf_point_below, orbit_from_hopf

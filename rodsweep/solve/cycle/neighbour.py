@@ -24,7 +24,7 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NONE, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
-from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
 from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
 

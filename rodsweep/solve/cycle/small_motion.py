@@ -12,7 +12,7 @@ from ...model.rod import Rod
 from ..hopf.normal_form import accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable
-from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit

@@ -107,6 +107,8 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
     """
     solver = problem.solver(mesh)
     wanted = modes + TWO_MESHES.first_spare
+    # The solver finds the eigenvalues nearest the shift, which need not lead: ask for more until the leading
+    # ones stay.
     before = np.empty(0, complex)
     while True:
         raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)

@@ -41,8 +41,8 @@ class Points:
     build: Build = STANDARD
     """Law and profile of all rods."""
     builds: tuple[Build, ...] = ()
-    """Law and profile of each arm of a grid over quantities, in the order of the points, if arms differ by
-    them; each is that of equally many points. Empty if `build` is that of all."""
+    """Law and profile of each arm of a grid over quantities, in the order of the points; each serves equally
+    many points. Empty if `build` serves all."""
     coverage: NDArray[np.int8] | None = None
     """Whether the rod model covers each point of an arm, (points,): SLENDER, or the reason why not, from
     `rodsweep.config.arm.axes`."""
@@ -113,7 +113,7 @@ class Points:
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """(different builds, number of the one of each rod of `of_rods`, (rods,)), of a list of rods."""
+        """(distinct builds, index of the build of each rod of `of_rods`, (rods,))."""
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]

@@ -19,7 +19,8 @@ class CrossingSettings:
     """Settings of the corrections across a curve of special points, and of the errors of its points."""
 
     accuracy: float = 1e-7
-    """Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
+    """Relative accuracy of the line's parameter at the points of a curve. Special points on rows are solved
+    to 1e-9."""
     max_unmeasured: int = 3
     """The error is measured at least at every third point."""
     small_fold_cycle: float = 0.05

@@ -19,9 +19,9 @@ from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
+from .cycle_verdict import RefinedCycle
 from .finer_meshes import calibrated
 from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
-from .refined_cycle import RefinedCycle
 from .refinement_settings import REFINEMENT
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...point import Unsolvable
-from ..accuracy.refined_cycle import RefinedCycle
+from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus

@@ -27,7 +27,7 @@ BRANCH_LOOKS = tuple(
 MIN_ARROW_POINTS = 4
 """Least number of points of a line that gets an arrow."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Open markers, over those of the branch, for unstable cycles."""
+"""Open markers for unstable cycles, drawn over the markers of the branch."""
 
 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
