@@ -120,7 +120,8 @@ def each_point(points: Points, clause: str) -> str:
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """Parts of the rod that move for the given values of k1, k2 and gamma3, each of any shape."""
+    """What `check` lists: each deformation and the rotational drag, and whether the given values, of any
+    shape, include it."""
     dragged = bool((columns["gamma3"] > 0).any())
     return [
         *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),

@@ -69,7 +69,7 @@ class Assessment:
         """Validity of the model for the verdict on the load."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
-    def those(self, validity: Validity) -> list[Effect]:
+    def effects_with(self, validity: Validity) -> list[Effect]:
         """Effects with the given validity by decreasing excess, without effects on cycles only."""
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(counted, key=lambda effect: -float(effect.excess))

@@ -175,7 +175,7 @@ def mesh_of(order: int) -> Resolution:
 
 
 def shift_of(rod: Rod) -> float:
-    """Shift of rodsweep's own shift-and-invert."""
+    """The shift that rodsweep's spectrum solver chooses for a rod."""
     return KRYLOV.shift_above_growth * most_amplified_wave(rod)[0]
 
 

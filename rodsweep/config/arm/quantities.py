@@ -51,7 +51,7 @@ def _read(name: str, value: Any) -> float:
         raise ValueError(str(error)) from None
 
 
-def with_shares(given: Mapping[str, Any]) -> dict[str, Any]:
+def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     """Keys of an arm, with a load relative to flutter moved to its key in RELATIVE.
 
     Raises ValueError if only a part of the load is relative, or if both keys are given.

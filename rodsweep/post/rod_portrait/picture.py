@@ -18,7 +18,7 @@ from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, draw_clamp, for
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .results import RodResults
-from .units import draw_in
+from .units import rescale_panel
 
 SIZE = (10.0, 10.4)
 """Width and height of the picture, in inches."""
@@ -73,7 +73,7 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
         if units.load and axes.axison:
-            draw_in(axes, units.force.factor, y)
+            rescale_panel(axes, units.force.factor, y)
     panels[0].set_xlim(0, units.force.factor * end)
 
 

@@ -110,7 +110,7 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
     return PortraitUnits(force=units[0], length=units[1], time=units[2], frequency=hertz, load=load)
 
 
-def draw_in(axes: Axes, x: float, y: float) -> None:
+def rescale_panel(axes: Axes, x: float, y: float) -> None:
     """Multiplies all that a panel has drawn, curves, marks and upright areas, by factors of x and y."""
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))

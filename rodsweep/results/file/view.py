@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED
 from .content import is_users
-from .recent import journalled_points, journalled_reasons, put_in, unfolded
+from .recent import journalled_points, journalled_reasons, put_in, read_unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
@@ -162,7 +162,7 @@ def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
 
 def read_view(path: Path) -> View:
     """View of a file, which stays open, with journalled points; InputError if the file is no result."""
-    return unfolded(path, lambda: _view(path))
+    return read_unfolded(path, lambda: _view(path))
 
 
 def _view(path: Path) -> View:

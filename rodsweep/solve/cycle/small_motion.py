@@ -47,7 +47,7 @@ def small_cycle(
     return found if settled and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
 
 
-def decay(rod: Rod, w: complex, amplitude: float) -> str:
+def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     """The reason why a small motion in the leading mode decays; empty if only an integration can decide."""
     if not (w.real < 0 < w.imag):
         return ""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import SLENDER, moved_by
+from ...config.arm.axes import SLENDER, parameter_of_axis
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
@@ -62,7 +62,7 @@ class Points:
     @property
     def moved(self) -> tuple[str, ...]:
         """The parameter that varies along each axis; empty for several parameters or no parameter."""
-        return self.names if self.is_grid else tuple(map(moved_by, self.over))
+        return self.names if self.is_grid else tuple(map(parameter_of_axis, self.over))
 
     @property
     def identity(self) -> list[Array]:

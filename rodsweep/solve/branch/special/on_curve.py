@@ -15,7 +15,7 @@ from ..bordered.scale import Scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CrossingSettings:
+class AcrossCurveSettings:
     """Settings of the corrections across a curve of special points, and of the errors of its points."""
 
     accuracy: float = 1e-7
@@ -57,7 +57,7 @@ class CrossingSettings:
     """Maximum number of finer meshes for one point."""
 
 
-ACROSS_CURVE = CrossingSettings()
+ACROSS_CURVE = AcrossCurveSettings()
 
 
 @dataclass(frozen=True, eq=False)
