@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from math import floor, isnan, log10, nan
+from math import ceil, floor, isnan, log10, nan
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import (
@@ -133,4 +133,4 @@ def rounded_down(value: float) -> float:
 def rounded_up(value: float) -> float:
     """Rounds a positive number up to DIGITS_OF_FACTORS digits."""
     unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
-    return -floor(-value / unit) * unit
+    return ceil(value / unit) * unit

@@ -90,7 +90,9 @@ def as_drags(value: Any) -> Axis:
     """Axis of indices in DRAGS from a drag's name, a list of names, or "range"; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
-    names = list(DRAGS) if value == RANGE_OF_DRAG else value if isinstance(value, list | tuple) else [value]
+    names = value if isinstance(value, list | tuple) else [value]
+    if value == RANGE_OF_DRAG:
+        names = list(DRAGS)
     if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
         raise ValueError(
             f"{short(value)} is not a drag; write {RANGE_OF_DRAG}, one of {', '.join(DRAGS)}, or a list of "

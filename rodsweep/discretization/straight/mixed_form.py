@@ -204,7 +204,7 @@ def axial_field(values: Array) -> Array:
 
 def integral_to_tip(grid: Mesh, values: Array) -> Array:
     """Integrals from each node to the tip of a field given at all nodes, both (nodes + 1,)."""
-    ends = reconstruction(grid.order)[3]
+    ends = reconstruction(grid.order).ends
     total = np.zeros(grid.nodes + 1)
     for e, length in enumerate(grid.lengths):
         element = slice(e * grid.order, (e + 1) * grid.order + 1)

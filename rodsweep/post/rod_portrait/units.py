@@ -71,8 +71,8 @@ class PortraitUnits:
         """Labels of the axes of the load, the largest y of the tip, and the period."""
         if not self.load:
             return style.LABELS["F"], "largest $y/L$ of the tip", r"period$/\tau_2$"
-        length, time = self.length.name, self.time.name
-        return f"{self.load} ({self.force.name})", f"largest $y$ of the tip ({length})", f"period ({time})"
+        y = f"largest $y$ of the tip ({self.length.name})"
+        return f"{self.load} ({self.force.name})", y, f"period ({self.time.name})"
 
     def mode_title(self, kind: str, F: float) -> str:
         """Title of the panel of the mode at the threshold of a kind."""

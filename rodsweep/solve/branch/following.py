@@ -119,7 +119,9 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
 def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
     """Index of the end of the range that a cycle lies beyond, -1 within the range."""
     low, high = limits.ends
-    return 0 if point.at < low else 1 if point.at > high else -1
+    if point.at < low:
+        return 0
+    return 1 if point.at > high else -1
 
 
 def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:

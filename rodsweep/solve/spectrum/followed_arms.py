@@ -26,7 +26,8 @@ class FollowedArms:
 
     def __init__(self, path: Path, p: Array, modes: int):
         """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
-        self.path, self.request = path, SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
+        self.path = path
+        self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
         self.intervals: list[Interval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
         self._p = p

@@ -182,17 +182,14 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
+    # The unstable range begins behind a bracketed loss of stability, and ends before a bracketed return.
     starts, ends = (
         [
-            change.position
-            if isinstance(change, LocatedChange)
-            else change.high
-            if kind == "hopf"
-            else change.low
+            change.position if isinstance(change, LocatedChange) else getattr(change, inner)
             for change in found
             if change.kind == kind
         ]
-        for kind in ("hopf", "restabilization")
+        for kind, inner in (("hopf", "high"), ("restabilization", "low"))
     )
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))

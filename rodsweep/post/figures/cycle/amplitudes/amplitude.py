@@ -126,7 +126,8 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
             continue
         ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
         start, end = ends if upward else ends[::-1]
-        tip, tail = (branch.x[end], values[end]), (branch.x[start], values[start])
+        tip = branch.x[end], values[end]
+        tail = branch.x[start], values[start]
         axes.annotate("", tip, tail, arrowprops=arrow, zorder=4)
 
 
