@@ -43,7 +43,7 @@ QUANTITIES = {
     "drag": Quantity("1", "which member of the range of drags"),
     **{
         f"{load}_over_flutter": Quantity(
-            "1", f"{load} over that of the first flutter, with the likeliest drag"
+            "1", f"{load} divided by the {load} at first flutter, with the likeliest drag"
         )
         for load in LOADS
     },

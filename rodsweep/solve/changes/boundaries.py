@@ -19,7 +19,7 @@ from .unstable_modes import Kind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeBoundarySettings:
-    """Changes of rows on curves of a plane."""
+    """Settings for the assignment of the changes on rows to curves."""
 
     same_coordinate: float = 1e-12
     """Two scaled coordinates with a smaller difference are equal."""
