@@ -37,7 +37,7 @@ QUANTITIES = {
     "force": Quantity("N", "follower force at the tip", "0.16 N", signed=True),
     "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
     "density_difference": Quantity(
-        "kg/m^3", "density of the arm less that of the fluid", "-160 kg/m^3", signed=True
+        "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", signed=True
     ),
     "poisson": Quantity("1", "Poisson's ratio of the arm"),
     "drag": Quantity("1", "which member of the range of drags"),
