@@ -11,6 +11,9 @@ from ...model.arm.quantities import RELATIVE, UNITS
 from ...model.units import in_si, share_of_flutter, split, written_in
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
+ENDS = ("start", "stop")
+"""Keys of the ends of a range."""
+
 
 def as_quantities(value: Any, info: ValidationInfo) -> Axis:
     """A quantity, or a list or range of quantities, as an Axis in SI units; ValueError otherwise."""
@@ -74,10 +77,6 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
         found[name] = {**given[load], **dict(zip(ENDS, shares, strict=True))} if is_range else shares
         del found[load]
     return found
-
-
-ENDS = ("start", "stop")
-"""Keys of the ends of a range."""
 
 
 def _shares(value: Any) -> tuple[list[float | None], bool]:
