@@ -119,9 +119,8 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     w = _followed(view, roots)
     if roots != "all":
         x_broken, w = with_gaps(x, w)
-        for i, (colour, width) in enumerate(
-            ((FIRST, 3.0), (SECOND, 1.2))
-        ):  # thin on thick, so that both show where they coincide
+        # Thin on thick, so that both show where they coincide.
+        for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
             axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)

@@ -74,9 +74,8 @@ def refine(
             found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
-            if (
-                aim <= REFINEMENT.finest_accuracy or not orbit.symmetric
-            ):  # only symmetric cycles are born at Hopf points
+            # Only symmetric cycles are born at Hopf points.
+            if aim <= REFINEMENT.finest_accuracy or not orbit.symmetric:
                 raise
             aim = max(REFINEMENT.aim_factor * aim, REFINEMENT.finest_accuracy)
             mesh = wanted_mesh(orbit, aim, orbit.stages)

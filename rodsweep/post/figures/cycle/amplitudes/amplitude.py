@@ -78,9 +78,8 @@ def _draw_branches(
     lost = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
-        if (
-            branch.view is not branches[0].view
-        ):  # open, larger markers leave the markers of the first file visible
+        # Open, larger markers leave the markers of the first file visible.
+        if branch.view is not branches[0].view:
             look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         word, upward = words[branch.view.path]
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
