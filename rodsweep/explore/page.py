@@ -88,8 +88,8 @@ class Page:
         self._show_solving()
 
     def stop(self) -> None:
-        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures of an earlier rod
-        do not stay without a word.
+        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures that show an
+        earlier rod say so.
         """
         for kind in STOPPABLE:
             if kind in self.solving:

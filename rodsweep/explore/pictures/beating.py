@@ -18,7 +18,8 @@ SECONDS = 2.0
 ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
 """Words for ends of motions; for all further ends the sentence of the status is shown."""
 SHAPE = ("x", "y", "number")
-"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each."""
+"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each
+shape."""
 
 
 class BeatingPicture:

@@ -205,7 +205,8 @@ class Solvers:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
     def ask(self, session: str, question: Question, done: Done, progress: Done = not_shown) -> None:
-        """Queues a question of a session; `done` receives the reply, `progress` that of a long solve."""
+        """Queues a question of a session; `done` receives the reply, `progress` the progress of a long
+        solve."""
         self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
     def drop(self, session: str, kind: str) -> None:
