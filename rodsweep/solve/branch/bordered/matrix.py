@@ -96,7 +96,8 @@ class BorderedMatrix:
         return changed
 
     def back_substitute(self, starts: Array, columns: Array) -> Array:
-        """Changes of states, (m, N + 1), from those of the start, (m, n), and reduced sides, (K, s, m, n)."""
+        """Changes of orbits, (m, N + 1), from changes of their starts, (m, n), and reduced right sides, (K,
+        s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
