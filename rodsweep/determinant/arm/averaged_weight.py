@@ -152,7 +152,7 @@ def _fill(
 def _averaged(
     u: Array, log_t: Array, integral: Array, window: tuple[GridPlaces, GridPlaces], h: float
 ) -> tuple[Array, Array, Array]:
-    """(log t at u - h, at u + h, 2 h times its mean between), (points,) each; log t is constant beyond the ends.
+    """(log t at u - h, log t at u + h, 2 h times the mean of log t between), (points,) each.
 
     integral: that of log t from the first point, (points,).
     """
