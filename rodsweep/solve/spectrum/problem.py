@@ -126,10 +126,10 @@ class ArmProblem(TransverseProblem):
     def __init__(self, rod: Rod, to_prove: int = 0):
         self.rod = rod
         self._to_prove = to_prove
-        self.spare = SPARE_FOR_PROOF if to_prove else 0
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
+        self.spare = SPARE_FOR_PROOF if to_prove and self.bounded else 0
         growth, _ = local_growth(rod)
         self.shift = KRYLOV.shift_above_growth * float(growth.max())
 
