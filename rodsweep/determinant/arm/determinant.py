@@ -70,11 +70,14 @@ class ArmSamples(NamedTuple):
 
 
 class ArmDeterminant:
-    """D(w) of one arm. Methods raise FloatingPointError if `max_elements` do not resolve it."""
+    """D(w) of one arm. Methods raise FloatingPointError if `max_elements` do not resolve it.
 
-    def __init__(self, rod: Rod):
+    known: a level that is known already.
+    """
+
+    def __init__(self, rod: Rod, known: Level | None = None):
         self.rod = rod
-        self._levels: list[Level] = []
+        self._levels: list[Level] = [] if known is None else [known]
         points, weights, local = sampled(rod)
         sampled_coefficients = np.array(local)
         self.samples = ArmSamples(float(rod.F), sampled_coefficients, weights)
