@@ -23,7 +23,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
-from .completeness import is_whole
+from .completeness import has_conjugate
 from .determinant import ARM_ELEMENTS, ArmDeterminant, ArmSamples, Level, scales_at
 from .phase_node import FIRST_RADIUS, LARGEST_RADIUS, PhaseNode, phase_node
 from .region import Hull
@@ -88,7 +88,7 @@ def count_right_of(
     if line >= hull.box(max(-line, 0.0))[0]:
         return Count(0, 0)
     known = known[error < SHARP * np.abs(known.real - line)]
-    known = known[is_whole(known)]
+    known = known[has_conjugate(known)]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
@@ -112,7 +112,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     return True
 
 
-def size_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of a line evaluates D."""
     corner = _corner(line, hull)
     return abs(corner) + FIRST_RADIUS * determinant.length(corner)
@@ -132,7 +132,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # Elements for the largest |w| first: they serve most others.
-    level = determinant.level(size_of_count(line, determinant, hull), HIGHEST)
+    level = determinant.level(largest_w_of_count(line, determinant, hull), HIGHEST)
     first = phase_node(corners[0], known, (determinant.length(corners[0]), FIRST_RADIUS), hull, level)
     walk = Walk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:

@@ -34,6 +34,7 @@ def _error(w: complex, value: Value, level: Level) -> float:
     size = abs(value.D_w)
     error = e / max(size, 1e-300)
     if error > BLURRED * abs(w):
+        # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         second = abs(_second_derivative(w, value.S, level))
         if size**2 < 16 * e * second:
             spread = math.sqrt(2 * e / second)

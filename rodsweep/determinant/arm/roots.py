@@ -51,6 +51,7 @@ def roots(
     errors = dict(zip(resolved, _of_each(start, lambda w: root_error(w, determinant)), strict=True))
     chosen = [i for i in resolved if errors[i] <= CLOSE_ROOTS * scales[i][1]]
     close = [errors[i] for i in chosen]
+    # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     moved, reach = _separated([first[i] for i in chosen], close, determinant)
     stands = [k for k, i in enumerate(chosen) if reach[k] < math.inf or close[k] <= A_ROOT * scales[i][1]]
     found = _refined_all([(moved[k], reach[k]) for k in stands], determinant)
@@ -63,6 +64,7 @@ def roots(
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
     leader = w[0].real if len(w) else -math.inf
+    # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
     return Roots(kept, w, error, displacement, wave, axis, ahead)
 
@@ -77,7 +79,8 @@ def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
 
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
-    """Makes elements for all |w| up to a size; those for the largest |w| serve them too, if it is near."""
+    """Makes elements that serve all |w| up to `size`: the elements for `largest` if it is little more, else
+    new ones."""
     if size < largest <= MOST_ABOVE * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)

@@ -81,10 +81,13 @@ class ArmPencil:
             -(weight * nu)[:, :, None] * V,
             -weight * c2,
         ]
+        # The last entry is the follower force at the tip, -F a(1) theta(1).
         entries = np.concatenate([self._constant, *(block.ravel() for block in blocks), [-rod.F]])
+        # Entries of the clamp are summed behind the pattern and dropped.
         summed = np.bincount(self._where, entries, minlength=len(self.rows) + 1)[: len(self.rows)]
         push = self._at_nodes(self._lumped * gamma2)
         turn = self._at_nodes(self._lumped * gamma3)
+        # Without rotational drag theta has no mass, and its scale would be infinite.
         angle = np.maximum(turn, self._least)
         masses = np.concatenate([push, angle, weight.ravel() * PENCIL_NORM.shear_weight**2])
         scale = 1 / np.sqrt(masses)

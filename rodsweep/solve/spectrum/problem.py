@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import cheapest_proof, none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
-from ...determinant.arm.count import is_countable, size_of_count
+from ...determinant.arm.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
@@ -158,7 +158,7 @@ class ArmProblem(TransverseProblem):
         line = min(float(raw[order[self._to_prove - 1]].real), 0.0)
         number, size = cheapest_proof(line, self._hull, raw[order], self._to_prove)
         if not number:
-            return wanted, size_of_count(line, self._determinant, self._hull)
+            return wanted, largest_w_of_count(line, self._determinant, self._hull)
         wanted[order[number:]] = False
         return wanted, size
 
