@@ -93,6 +93,8 @@ class Rod:
     @staticmethod
     def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
         """`local` of n rods of one build, (n, *u.shape), in the time of one."""
+        if len(rods) == 1:
+            return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
         local = rods[0].build.local(values["F"], scaled(values), u)

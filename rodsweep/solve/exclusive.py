@@ -8,6 +8,9 @@ different one.
 
 import inspect
 import signal
+
+# `signal.getsignal` converts its result to an enumeration, which takes a hundred times as long.
+from _signal import getsignal  # type: ignore[import-not-found]
 from collections.abc import Callable
 from functools import wraps
 from threading import RLock, current_thread, main_thread
@@ -79,7 +82,7 @@ class HeldSignals:
             return self
         try:
             for number in _signals:
-                handler = signal.getsignal(number)
+                handler = getsignal(number)
                 if callable(handler):
                     self._handlers[number] = handler
                     signal.signal(number, self._note)
@@ -107,5 +110,5 @@ class HeldSignals:
 
     def _restore(self) -> None:
         for number, handler in self._handlers.items():
-            if signal.getsignal(number) == self._note:  # otherwise a handler has installed another handler
+            if getsignal(number) == self._note:  # otherwise a handler has installed another handler
                 signal.signal(number, handler)

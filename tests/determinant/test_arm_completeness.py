@@ -9,8 +9,8 @@ from surveyed import RODS
 from rodsweep.determinant.arm.completeness import POWERS, none_is_missing, remainder, right_of_hull
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull import hull_of
+from rodsweep.determinant.arm.newton import refined
 from rodsweep.determinant.arm.region import Hull
-from rodsweep.determinant.arm.roots import refined
 from rodsweep.model.rod import Rod
 
 

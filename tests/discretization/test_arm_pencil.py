@@ -5,7 +5,7 @@ import pytest
 from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.roots import refined
+from rodsweep.determinant.arm.newton import refined
 from rodsweep.discretization.elements.elements import Elements
 from rodsweep.discretization.straight.arm_pencil import ArmMesh, ArmPencil
 from rodsweep.discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh

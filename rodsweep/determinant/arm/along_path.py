@@ -17,7 +17,7 @@ from ..roots import BLURRED
 from ..value import ROUND_OFF, SECOND_STEP, Value
 from .determinant import ArmDeterminant, arm_determinant
 from .family import ROUNDING, ArmFamily, eigenvalue_in, value_in
-from .roots import refined, root_error
+from .newton import refined_root
 
 CENTRAL = ((1, 0.5), (-1, -0.5))
 FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
@@ -66,9 +66,9 @@ class ArmAlongPath:
             if error <= BLURRED * abs(w):
                 return w, slope, error
         here = self.determinant(p)
-        w = refined(guess, here)
+        w, error = refined_root(guess, here)
         value = here.value(w)
-        return w, -self.derivative(w, p, value.S) / value.D_w, root_error(w, here)
+        return w, -self.derivative(w, p, value.S) / value.D_w, error
 
     def derivative(self, w: complex, p: float, S: float) -> complex:
         """dD/dp exp(-S) at w and p."""

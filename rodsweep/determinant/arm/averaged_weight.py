@@ -12,8 +12,10 @@ by theta(0) = 0; or the drag bounds both.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
@@ -30,6 +32,13 @@ BESIDE = 1e-12
 """Distance from the places where a slope jumps, in L, of the points on both their sides."""
 
 
+class GridPlaces(NamedTuple):
+    """Intervals of a grid, (n,), and shares of their lengths, (n,)."""
+
+    interval: NDArray[np.int64]
+    share: Array
+
+
 @compiled
 def averaged_regions(u: Array, local: Array, F: float) -> Array:
     """(a, c) of each trial, (trials, 2), inf where it gives none.
@@ -41,11 +50,13 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     row = 0
     for h in HALF_WIDTHS:
         points = _with_places_beside_jumps(u, h)
+        places = _places(points, u)
         there = np.empty((6, len(points)))
         for k in range(6):
-            there[k] = np.interp(points, u, local[k])
+            there[k] = _interpolated(places, local[k])
+        window = (_places(points - h, points), _places(points + h, points))
         for f in FACTORS:
-            _fill(regions[row : row + 2], points, there, (F, f, h))
+            _fill(regions[row : row + 2], points, there, window, (F, f, h))
             row += 2
     return regions
 
@@ -68,8 +79,42 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
 
 
 @compiled
-def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, float]) -> None:
-    """The two regions of a trial (F, f, h): (t - alpha) nu bounded by the clamp, and by the drag."""
+def _places(x: Array, grid: Array) -> GridPlaces:
+    """The places of x, (n,), increasing, among the points of a grid; the ends for x outside."""
+    interval = np.empty(len(x), np.int64)
+    share = np.empty(len(x))
+    i = 0
+    for n in range(len(x)):
+        while i < len(grid) - 2 and grid[i + 1] < x[n]:
+            i += 1
+        width = grid[i + 1] - grid[i]
+        interval[n] = i
+        share[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
+    return GridPlaces(interval, share)
+
+
+@compiled
+def _interpolated(places: GridPlaces, values: Array) -> Array:
+    """Values at places, (n,), from values at the points of the grid."""
+    out = np.empty(len(places.share))
+    for n in range(len(out)):
+        i = places.interval[n]
+        out[n] = values[i] + places.share[n] * (values[i + 1] - values[i])
+    return out
+
+
+@compiled
+def _fill(
+    regions: Array,
+    u: Array,
+    local: Array,
+    window: tuple[GridPlaces, GridPlaces],
+    trial: tuple[float, float, float],
+) -> None:
+    """The two regions of a trial (F, f, h): (t - alpha) nu bounded by the clamp, and by the drag.
+
+    window: the places of u - h and u + h.
+    """
     F, f, h = trial
     count = len(u)
     log_t = np.empty(count)
@@ -79,11 +124,7 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
         log_t[i] = math.log(g / (nu + f * abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)))
         if i > 0:
             integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    ahead = np.interp(u + h, u, log_t)
-    behind = np.interp(u - h, u, log_t)
-    # Beyond its ends the arm continues with its end values, so that every window has the same width.
-    means = np.interp(u + h, u, integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
-    means -= np.interp(u - h, u, integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
+    behind, ahead, means = _averaged(u, log_t, integral, window, h)
     split = 0.0
     whole = 0.0
     bend = 0.0
@@ -106,6 +147,22 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
         before = here
     regions[0] = math.sqrt(split), math.sqrt(share) / 2
     regions[1] = math.sqrt(whole), 0.0
+
+
+@compiled
+def _averaged(
+    u: Array, log_t: Array, integral: Array, window: tuple[GridPlaces, GridPlaces], h: float
+) -> tuple[Array, Array, Array]:
+    """(log t at u - h, log t at u + h, 2 h times the mean of log t between), (points,) each.
+
+    integral: that of log t from the first point, (points,).
+    """
+    behind = _interpolated(window[0], log_t)
+    ahead = _interpolated(window[1], log_t)
+    # Beyond its ends the arm continues with its end values, so that every window has the same width.
+    means = _interpolated(window[1], integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
+    means -= _interpolated(window[0], integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
+    return behind, ahead, means
 
 
 @compiled

@@ -26,17 +26,18 @@ from .determinant import ArmDeterminant
 from .region import Hull
 from .value import chain_value
 
-POWERS = (6, 3)
-"""Numbers k of points that are tried: many where the hull is slim, few where it is wide."""
+POWERS = (3, 6)
+"""Numbers k of points that are tried: few, which are closer, before many, which suffice for a wide hull."""
 FIRST_POINT = 0.35
 """Least distance of the first point from 0, in units of the depth of the line."""
 SPREAD = 1.0
 """Distance of the last point from the first, in units of the first one's from 0."""
 WIDER = 1.3
 """Factor by which the points are moved outwards until every term of R is positive."""
-FARTHEST = 16.0
-"""Largest distance of the last point from 0, in units of the largest known |w|: from farther away, unknown
-eigenvalues contribute like known ones."""
+FARTHEST = {3: 1.5, 6: 6.0}
+"""Largest distance of the last of k points from 0, in units of the largest known |w|: from farther away,
+unknown eigenvalues contribute like known ones. Most proofs that fail lie beyond, and most that succeed do
+not."""
 SLABS = 24
 """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
 ALLOWED = 0.7
@@ -66,10 +67,11 @@ def none_is_missing(
         return False, 0
     # R must be real: an eigenvalue without its conjugate stays among the unknown ones.
     pairs = has_conjugate(known)
+    largest = float(np.abs(known).max())
     examined = 0
     for k in POWERS:
         points = right_of_hull(line, hull.a, hull.c, k)
-        if len(points) and points[-1] <= FARTHEST * np.abs(known).max():
+        if _last(points) <= FARTHEST[k] * largest:
             found = remainder(line, known[pairs], error[pairs], hull, points, determinant.level(points[-1]))
             examined += k
             if proves(found):
@@ -84,13 +86,33 @@ def has_conjugate(known: Complex) -> Array:
 
 
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
-    """The largest |w| at which a proof with the most points evaluates D; inf if this proof is not tried.
+    """The largest |w| of the first proof that is tried, from eigenvalues, (n,); inf if none is tried."""
+    largest = float(np.abs(known).max())
+    tried = ((k, _last(right_of_hull(line, hull.a, hull.c, k))) for k in POWERS)
+    return next((last for k, last in tried if last <= FARTHEST[k] * largest), math.inf)
 
-    known: eigenvalues, (n,).
+
+def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
+    """(how many of the leading eigenvalues to know, largest |w| of a proof with them), at least `modes`.
+
+    known: eigenvalues in their order, (n,). Proofs with smaller |w| need shorter elements. The number is 0 if
+    no proof is tried.
     """
-    points = right_of_hull(line, hull.a, hull.c, POWERS[0])
-    tried = len(points) > 0 and points[-1] <= FARTHEST * np.abs(known).max()
-    return float(points[-1]) if tried else math.inf
+    best = 0, math.inf
+    sizes = np.maximum.accumulate(np.abs(known)).tolist()
+    whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
+    for k in POWERS:
+        last = _last(right_of_hull(line, hull.a, hull.c, k))
+        for number in range(modes, len(sizes) + 1):
+            largest = sizes[number - 1]
+            if last <= FARTHEST[k] * largest and max(last, largest) < best[1] and whole[number - 1]:
+                best = number, max(last, largest)
+    return best
+
+
+def _last(points: Array) -> float:
+    """The last of the points of a proof, (k,); inf without points."""
+    return float(points[-1]) if len(points) else math.inf
 
 
 @compiled

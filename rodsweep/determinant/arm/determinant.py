@@ -1,7 +1,7 @@
 """D(w) of one arm at any w, from elements whose length depends on |w|.
 
-The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements,
-computed at first use. Elements are so short that the fastest local exponential grows at most by
+The propagators of an element are polynomials in w/W for |w| <= W. Each level W has its own elements, computed
+at first use. Elements are so short that the fastest local exponential grows at most by
 exp(`LARGEST_EXPONENT`) and that the Gauss points resolve the coefficients; every break of the profile is an
 end of an element.
 """
@@ -10,6 +10,7 @@ import cmath
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,11 +41,13 @@ class ArmElementSettings:
     Gauss method is about the square of the tail."""
     max_halvings: int = 12
     """Maximum number of halvings of an element, down to 2e-4 of the first length."""
-    min_level: int = 2
-    """The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
-    levels_above: int = 4
-    """Number of levels above the own one whose elements are used if they exist: making elements costs as
-    much as some thirty evaluations on twice as many."""
+    smallest_level: float = 16.0
+    """Smallest W: for smaller |w| the load and the taper limit the elements."""
+    headroom: float = 1.1
+    """W of new elements in units of the |w| they are made for, so that they serve close ones too."""
+    highest: float = 1e3
+    """Largest W, in units of |w|, of existing elements that serve in place of new ones: making elements costs
+    as much as some thirty evaluations on twice as many."""
     max_elements: int = 4000
     """Maximum number of elements of an arm; an arm that needs more counts as unresolved."""
 
@@ -54,15 +57,31 @@ ARMS_KEPT = 16
 """Arms whose propagators are kept: a bound of memory, which changes no number."""
 
 
-class ArmDeterminant:
-    """D(w) of one arm. Methods raise FloatingPointError if `max_elements` do not resolve it."""
+Level = tuple[float, Array]
+"""W, and propagators for |w| <= W, (elements, terms, 25)."""
 
-    def __init__(self, rod: Rod):
+
+class ArmSamples(NamedTuple):
+    """F, `LocalCoefficients` at points along an arm, (6, points), and weights of a quadrature, (points,)."""
+
+    F: float
+    local: Array
+    weights: Array
+
+
+class ArmDeterminant:
+    """D(w) of one arm. Methods raise FloatingPointError if `max_elements` do not resolve it.
+
+    known: a level that is known already.
+    """
+
+    def __init__(self, rod: Rod, known: Level | None = None):
         self.rod = rod
-        self._levels: dict[int, tuple[float, Array]] = {}
+        self._levels: list[Level] = [] if known is None else [known]
         points, weights, local = sampled(rod)
-        self._sampled: Array = np.array(local)
-        self._samples = Samples(points, weights, LocalCoefficients(*self._sampled[:, None]))
+        sampled_coefficients = np.array(local)
+        self.samples = ArmSamples(float(rod.F), sampled_coefficients, weights)
+        self._samples = Samples(points, weights, LocalCoefficients(*sampled_coefficients[:, None]))
 
     def value(self, w: complex) -> Value:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -71,7 +90,7 @@ class ArmDeterminant:
 
     def value_at_level(self, w: complex, factor: float) -> Value:
         """As `value`, with the elements for |w| times a factor of at least 1."""
-        W, polynomials = self.level(factor * abs(w), 0)
+        W, polynomials = self.level(factor * abs(w), 1.5)
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
@@ -80,30 +99,29 @@ class ArmDeterminant:
 
     def wave_number(self, w: complex) -> float:
         """The mean |q| of the fastest exponential along the arm, in 1/L."""
-        return mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[0]
+        return self.scales(w)[0]
 
     def length(self, w: complex) -> float:
         """Change of w that changes an exponent of D, integrated along the arm, by about one."""
-        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
+        return self.scales(w)[1]
 
-    def level(self, size: float, above: int | None = None) -> tuple[float, Array]:
-        """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists.
+    def scales(self, w: complex) -> tuple[float, float]:
+        """(wave number, length) at w."""
+        return scales_at(w, self.samples)
 
-        above: number of levels above the own one that serve in its place if they exist;
-        `ARM_ELEMENTS.levels_above` unless given.
+    def level(self, size: float, highest: float = ARM_ELEMENTS.highest) -> Level:
+        """(W >= size, propagators for |w| <= W, (elements, terms, 25)) with the smallest W that exists.
+
+        highest: largest W, in units of the size, that serves; beyond it new elements are made.
         """
-        if above is None:
-            above = ARM_ELEMENTS.levels_above
-        level = ARM_ELEMENTS.min_level
-        if size > 4.0**ARM_ELEMENTS.min_level:
-            # A power of 4 that rounding has enlarged stays on its own level.
-            level = math.ceil(math.log(size) / math.log(4) - 1e-12)
-        for existing in range(level, level + above + 1):
-            if existing in self._levels:
-                return self._levels[existing]
-        W = max(4.0**level, size)
-        self._levels[level] = W, self._propagators(W)
-        return self._levels[level]
+        size = max(size, ARM_ELEMENTS.smallest_level)
+        for level in self._levels:
+            if size <= level[0] <= highest * size:
+                return level
+        W = ARM_ELEMENTS.headroom * size
+        made = W, self._propagators(W)
+        self._levels = sorted([*self._levels, made], key=itemgetter(0))
+        return made
 
     def _propagators(self, W: float) -> Array:
         found = elements_for([self.rod], self._samples, W)
@@ -185,11 +203,9 @@ def bound_of_waves(W: float, F: Any, local: LocalCoefficients) -> Array:
 
 
 @compiled
-def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[float, float]:
-    """(mean |q| of both pairs of exponents, mean of the larger |dq/dw|) along an arm.
-
-    local: the `LocalCoefficients` at points, (6, points). weights: quadrature weights, (points,).
-    """
+def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
+    """(mean |q| of both pairs of exponents, 1 / mean of the larger |dq/dw|) along an arm."""
+    F, local, weights = samples
     number = 0.0
     rate = 0.0
     for i in range(len(weights)):
@@ -208,7 +224,7 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
         fast = max(abs(T + turn) / max(1.0, first), abs(T - turn) / max(1.0, second)) / 2
         number += weights[i] * (first + second) / 2
         rate += weights[i] * fast * gamma2 * c3
-    return number, rate
+    return number, 1 / max(rate, 1e-300)
 
 
 @lru_cache(maxsize=ARMS_KEPT)

@@ -169,6 +169,14 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
 
 
 @compiled
+def level_at(family: ArmFamily, p: float) -> tuple[float, Array]:
+    """(W, propagators for |w| <= W, shape (elements, terms, ENTRIES)) of the arm at p."""
+    polynomials = np.empty(family.coefficients.shape[1:])
+    propagators_at(family, p, polynomials, np.empty_like(polynomials))
+    return family.W, polynomials
+
+
+@compiled
 def value_in(family: ArmFamily, w: complex, p: float) -> Value:
     """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
     shape = family.coefficients.shape[1:]

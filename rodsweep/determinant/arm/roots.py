@@ -5,100 +5,32 @@ The algorithm is that of `rodsweep.determinant.roots`, with D from propagators.
 
 import cmath
 import math
+from collections.abc import Callable
 from contextlib import suppress
+from itertools import combinations
+from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ..newton import MAX_REFINEMENTS, REAL_BELOW
+from ..newton import REAL_BELOW
 from ..roots import (
     A_ROOT,
-    BLURRED,
     CLOSE_ROOTS,
     EXPANSIONS,
     ON_THE_AXIS,
     REFINED_TOGETHER,
     SAME_ROOT,
     Roots,
-    sort_descending,
 )
-from ..value import ROUND_OFF, SECOND_STEP
 from .determinant import ArmDeterminant
+from .newton import refined_root, root_error, second_derivative, two_roots
 from .region import Hull
-from .value import ROOT_NOISE, ROOT_RESIDUAL
 
-Mask = NDArray[np.bool_]
-ROUNDING_OF_CHAIN = 16 * ROUND_OFF
-"""Relative error of an eigenvalue from the products of propagators, where minors in the middle of an arm are
-large against those at its tip; of 1000 eigenvalues of stepped arms against 19 digits it was 4e-15 at most."""
-
+T = TypeVar("T")
 MOST_ABOVE = 16.0
 """Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four times
 as many as the roots need, and errors from rounding grow with their number."""
-
-
-def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
-    """D'' exp(-S) at w, by a central difference of D'; real for real w."""
-    h = SECOND_STEP * abs(w)
-    after = determinant.value(w + h)
-    before = determinant.value(w - h)
-    second = (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
-    return complex(second.real, 0.0) if w.imag == 0 else second
-
-
-def root_error(w: complex, determinant: ArmDeterminant) -> float:
-    """Estimated distance from w to the nearest root of D, in 1/tau2, valid near a double root too."""
-    D, D_w, S, noise = determinant.value(w)
-    e = ROOT_RESIDUAL * abs(D) + ROOT_NOISE * noise
-    error = e / max(abs(D_w), 1e-300)
-    if error > BLURRED * abs(w):
-        # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
-        second = abs(second_derivative(w, S, determinant))
-        if abs(D_w) ** 2 < 16 * e * second:
-            spread = math.sqrt(2 * e / second)
-            error = min(max(error, spread), abs(D_w) / second + spread)
-    return error + ROUNDING_OF_CHAIN * abs(w)
-
-
-def refined(w: complex, determinant: ArmDeterminant, farthest: float = math.inf) -> complex:
-    """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
-
-    A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
-    """
-    real = w.imag == 0
-    # Only steps that at least halve are taken, the first one included.
-    last = 2 * farthest
-    for _ in range(MAX_REFINEMENTS):
-        value = determinant.value(w)
-        if value.D_w == 0:
-            break
-        step = value.D / value.D_w
-        if real:
-            step = complex(step.real, 0.0)
-        if not abs(step) < last / 2:
-            break
-        last = abs(step)
-        w -= step
-        if abs(w.imag) <= REAL_BELOW * abs(w):
-            w = complex(w.real, 0.0)
-    return w
-
-
-def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
-    """The two roots of the Taylor polynomial of D of second order about `middle`.
-
-    For a real `middle` both roots are real or complex conjugates.
-    """
-    D, D_w, S, _ = determinant.value(middle)
-    if middle.imag == 0:
-        D = complex(D.real, 0.0)
-        D_w = complex(D_w.real, 0.0)
-    second = second_derivative(middle, S, determinant)
-    if second == 0:
-        return middle, middle
-    root = cmath.sqrt(D_w * D_w - 2 * D * second)
-    return middle + (root - D_w) / second, middle - (root + D_w) / second
 
 
 def roots(
@@ -110,41 +42,40 @@ def roots(
     |w| at which D will be needed afterwards. Rounding makes infinite eigenvalues finite; these lie outside
     the hull, beyond the mesh or far from every root.
     """
-    first = np.where(np.abs(raw.imag) <= REAL_BELOW * np.abs(raw), raw.real + 0j, raw)
-    first[~np.isfinite(raw)] = np.inf
-    inside = np.array([_inside(w, hull) for w in first.tolist()], dtype=bool)
-    wave: Array = np.full(len(raw), math.inf)
-    for i in np.flatnonzero(inside).tolist():
-        wave[i] = determinant.wave_number(complex(first[i]))
-    resolved = inside & (wave <= most_waves)
-    _make_elements(determinant, max(map(abs, first[resolved].tolist()), default=0.0), largest)
-    error: Array = np.full(len(raw), math.inf)
-    length: Array = np.ones(len(raw))
-    for i in np.flatnonzero(resolved).tolist():
-        error[i] = root_error(complex(first[i]), determinant)
-        length[i] = determinant.length(complex(first[i]))
-    near = resolved & (error <= CLOSE_ROOTS * length)
-    chosen = np.flatnonzero(near)
-    start = first[chosen]
-    error = error[chosen]
-    length = length[chosen]
+    first = [w.real + 0j if abs(w.imag) <= REAL_BELOW * abs(w) else w for w in raw.tolist()]
+    inside = [i for i, w in enumerate(first) if _inside(w, hull)]
+    scales = dict(zip(inside, _of_each([first[i] for i in inside], determinant.scales), strict=True))
+    resolved = [i for i in inside if scales[i][0] <= most_waves]
+    start = [first[i] for i in resolved]
+    _make_elements(determinant, max(map(abs, start), default=0.0), largest)
+    errors = dict(zip(resolved, _of_each(start, lambda w: root_error(w, determinant)), strict=True))
+    chosen = [i for i in resolved if errors[i] <= CLOSE_ROOTS * scales[i][1]]
+    close = [errors[i] for i in chosen]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    w, reach = _separated(start, error, determinant)
-    stands = np.isfinite(reach) | (error <= A_ROOT * length)
-    _refine(w, start, reach, stands, determinant)
-    kept = np.flatnonzero(stands)
-    order = np.arange(len(kept))
-    sort_descending(w[kept], order)
-    kept = kept[order]
-    w = w[kept]
-    error = np.array([root_error(value, determinant) for value in w.tolist()])
-    wave = np.array([determinant.wave_number(value) for value in w.tolist()])
-    displacement = np.abs(w - start[kept]) / np.maximum(np.abs(w), length[kept])
-    _raise_errors_of_equal_roots(w, error, determinant)
+    moved, reach = _separated([first[i] for i in chosen], close, determinant)
+    stands = [k for k, i in enumerate(chosen) if reach[k] < math.inf or close[k] <= A_ROOT * scales[i][1]]
+    found = _refined_all([(moved[k], reach[k]) for k in stands], determinant)
+    found.sort(key=lambda root: (-root.w.real, -root.w.imag))
+    kept = np.array([chosen[stands[root.place]] for root in found], np.int64)
+    w: Complex = np.array([root.w for root in found], complex)
+    wave: Array = np.array(_of_each(w.tolist(), determinant.wave_number), float)
+    error = _with_equal_roots(found, determinant)
+    length: Array = np.array([scales[i][1] for i in kept.tolist()], float)
+    displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    leader = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
-    ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
-    return Roots(chosen[kept], w, error, displacement, wave, axis, int(ahead))
+    ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
+    return Roots(kept, w, error, displacement, wave, axis, ahead)
+
+
+def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
+    """A function of each number; of conjugates next to each other, which have the same value, once."""
+    values: list[T] = []
+    for k, value in enumerate(w):
+        pair = k > 0 and value == w[k - 1].conjugate()
+        values.append(values[-1] if pair else function(value))
+    return values
 
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
@@ -164,14 +95,18 @@ def _inside(w: complex, hull: Hull) -> bool:
     return w.real <= real and abs(w.imag) <= imag
 
 
-def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[Complex, Array]:
+def _separated(
+    w: list[complex], error: list[float], determinant: ArmDeterminant
+) -> tuple[list[complex], list[float]]:
     """(w, reach) after moving each pair of eigenvalues closer than its errors to the two roots near it.
 
-    w: (n,). error: (n,). reach: half the distance from the other one of the pair, (n,), inf where an
-    eigenvalue is not moved.
+    reach: half the distance from the other one of the pair, inf where an eigenvalue is not moved.
     """
     w = w.copy()
-    reach = np.full(len(w), math.inf)
+    reach = [math.inf] * len(w)
+    each = zip(w, error, strict=True)
+    if not any(abs(a - b) <= REFINED_TOGETHER * (e + f) for (a, e), (b, f) in combinations(each, 2)):
+        return w, reach
     for i in range(len(w)):
         others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
         if reach[i] < math.inf or not others:
@@ -179,7 +114,7 @@ def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[C
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
         if abs(w[partner] - w[i]) <= REFINED_TOGETHER * (error[i] + error[partner]):
             for _ in range(EXPANSIONS):
-                middle = complex(w[i] + w[partner]) / 2
+                middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
                 w[i], w[partner] = two_roots(middle, determinant)
@@ -187,33 +122,36 @@ def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[C
     return w, reach
 
 
-def _refine(w: Complex, start: Complex, reach: Array, stands: Mask, determinant: ArmDeterminant) -> None:
-    """Refines in place each w that approximates a root; conjugates of refined roots are copied.
+class _Root(NamedTuple):
+    """A root with its error, and the place of its guess in the list."""
 
-    w, start: refined and original eigenvalues, (n,). reach: that of `_separated`, (n,). stands: mask of
-    eigenvalues that approximate a root, (n,).
-    """
-    moved = np.isfinite(reach)
-    for i in np.flatnonzero(stands).tolist():
-        pair = i > 0 and stands[i - 1] and w[i].imag != 0 and not moved[i - 1] and not moved[i]
-        if pair and start[i] == start[i - 1].conjugate():
-            w[i] = w[i - 1].conjugate()
+    w: complex
+    error: float
+    place: int
+
+
+def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_Root]:
+    """The root near each guess (w, reach of `_separated`); the conjugate of a root is not refined again."""
+    found: list[_Root] = []
+    for place, (w, reach) in enumerate(guesses):
+        if place > 0 and w.imag != 0 and w == guesses[place - 1][0].conjugate():
+            found.append(_Root(found[-1].w.conjugate(), found[-1].error, place))
         else:
-            w[i] = refined(complex(w[i]), determinant, float(reach[i]))
+            found.append(_Root(*refined_root(w, determinant, reach), place))
+    return found
 
 
-def _raise_errors_of_equal_roots(w: Complex, error: Array, determinant: ArmDeterminant) -> None:
-    """Raises the errors of two eigenvalues at the same root to the distance of the next root, 2 |D'/D''|.
-
-    w, error: (n,).
-    """
-    for i in range(len(w)):
-        for j in range(i + 1, len(w)):
-            apart = abs(w[i] - w[j])
+def _with_equal_roots(found: list[_Root], determinant: ArmDeterminant) -> Array:
+    """Errors of roots, (n,); of two at the same root at least the distance of the next root, 2 |D'/D''|."""
+    error = [root.error for root in found]
+    for i, one in enumerate(found):
+        for j in range(i + 1, len(found)):
+            apart = abs(one.w - found[j].w)
             if apart <= SAME_ROOT * (error[i] + error[j]):
-                value = determinant.value(complex(w[i]))
-                second = abs(second_derivative(complex(w[i]), value.S, determinant))
+                value = determinant.value(one.w)
+                second = abs(second_derivative(one.w, value.S, determinant))
                 next_root = 2 * abs(value.D_w) / max(second, 1e-300)
                 if apart < next_root / 4:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
+    return np.array(error, float)

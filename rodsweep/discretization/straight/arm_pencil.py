@@ -44,11 +44,20 @@ class ArmPencil:
         xg, self._wg = gauss(mesh.order)
         self._value = interpolation(self._x, xg)
         self._slope = self._value @ differentiation(self._x)
-        self._gauss_points: Array = edges[:-1, None] + self._h[:, None] * (xg + 1) / 2
-        self._lobatto_points = mesh.points_inside
+        gauss_points: Array = edges[:-1, None] + self._h[:, None] * (xg + 1) / 2
+        # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
+        self._points = np.concatenate([gauss_points, mesh.points_inside], axis=1)
+        slopes = self._slope.T * self._wg
+        self._slope_by_value: Array = slopes @ self._value
+        # The first two blocks of `_pattern`, which are those of every arm.
+        self._constant = np.concatenate([np.tile(x.ravel(), mesh.elements) for x in (-slopes, slopes.T)])
         self._y: NDArray[np.int64] = (
             np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
+        self._node = (self._y + 1).ravel()
+        self._weight: Array = self._wg * self._h[:, None] / 2
+        self._lumped: Array = self._w * self._h[:, None] / 2
+        self._least = PENCIL_NORM.least_angle_weight**2 * self._at_nodes(self._lumped)
         self.rows, self.columns, self._where = self._pattern()
 
     @property
@@ -58,32 +67,28 @@ class ArmPencil:
 
     def matrices(self, rod: Rod) -> Matrices:
         """The pencil of an arm."""
-        inside = rod.local(self._gauss_points)
-        at_nodes = rod.local(self._lobatto_points)
-        weight = self._wg * self._h[:, None] / 2
+        local = np.array(rod.local(self._points))
+        nu, c2, c3, _, _, g = local[:, :, : self.order]
+        _, _, _, gamma2, gamma3, _ = local[:, :, self.order :]
+        weight = self._weight
         S = self._slope
         V = self._value
-        wg = self._wg
-        shape = (self.mesh.elements, self.order + 1, self.order)
+        bending = self._wg / c3 * (2 / self._h[:, None])
         blocks = [
-            np.broadcast_to(-S.T * wg, shape),
-            np.broadcast_to(wg[:, None] * S, (shape[0], shape[2], shape[1])),
-            -np.einsum("gi,eg,gj->eij", S, wg / inside.c3 * (2 / self._h[:, None]), S),
-            np.broadcast_to(rod.F * (S.T * wg) @ V, (shape[0], shape[1], shape[1])),
-            V.T * (weight * inside.g)[:, None, :],
-            -(weight * inside.nu)[:, :, None] * V,
-            -weight * inside.c2,
+            -S.T * bending[:, None, :] @ S,
+            np.broadcast_to(rod.F * self._slope_by_value, (self.mesh.elements, *self._slope_by_value.shape)),
+            V.T * (weight * g)[:, None, :],
+            -(weight * nu)[:, :, None] * V,
+            -weight * c2,
         ]
         # The last entry is the follower force at the tip, -F a(1) theta(1).
-        entries = np.concatenate([*(block.ravel() for block in blocks), [-rod.F]])
+        entries = np.concatenate([self._constant, *(block.ravel() for block in blocks), [-rod.F]])
         # Entries of the clamp are summed behind the pattern and dropped.
         summed = np.bincount(self._where, entries, minlength=len(self.rows) + 1)[: len(self.rows)]
-        lumped = self._w * self._h[:, None] / 2
-        push = self._at_nodes(lumped * at_nodes.gamma2)
-        turn = self._at_nodes(lumped * at_nodes.gamma3)
-        least = PENCIL_NORM.least_angle_weight**2 * self._at_nodes(lumped)
+        push = self._at_nodes(self._lumped * gamma2)
+        turn = self._at_nodes(self._lumped * gamma3)
         # Without rotational drag theta has no mass, and its scale would be infinite.
-        angle = np.maximum(turn, least)
+        angle = np.maximum(turn, self._least)
         masses = np.concatenate([push, angle, weight.ravel() * PENCIL_NORM.shear_weight**2])
         scale = 1 / np.sqrt(masses)
         B = np.concatenate([np.ones(self.nodes), turn / angle, np.zeros(self.nodes)])
@@ -96,8 +101,7 @@ class ArmPencil:
 
     def _at_nodes(self, values: Array) -> Array:
         """Values of the elements, (elements, order + 1), summed at each node except the clamp, (nodes,)."""
-        node = (self._y + 1).ravel()
-        return np.asarray(np.bincount(node, values.ravel(), minlength=self.nodes + 1)[1:], float)
+        return np.asarray(np.bincount(self._node, values.ravel(), minlength=self.nodes + 1)[1:], float)
 
     def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
         """(rows, columns, index in the pattern of each entry of the blocks of `matrices`).

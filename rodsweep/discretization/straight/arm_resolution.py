@@ -90,6 +90,8 @@ def _radius(rod: Rod, u: float) -> float:
 
 def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
     """Ends of `count` elements from start to stop, without start, with equal ratios of radii."""
+    if count == 1:
+        return [float(stop)]
     if rod.taper == 1:
         inner: Array = np.linspace(start, stop, count + 1)[1:]
     else:

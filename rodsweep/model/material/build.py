@@ -176,11 +176,13 @@ class Build:
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
         """Factors of stiffnesses and drags at points u, by name; all arrays have the shape of u, (...,)."""
-        ones: Array = np.ones((len(FACTORS), *u.shape))
-        factors = dict(zip(FACTORS, ones if self.profile is None else self.profile.factors(u), strict=True))
-        radius = 1 - (1 - taper) * u
-        for name, power in RADIUS_POWERS.items():
-            factors[name] = factors[name] * radius**power
+        values = [np.ones(u.shape)] * len(FACTORS) if self.profile is None else self.profile.factors(u)
+        factors = dict(zip(FACTORS, values, strict=True))
+        if np.ndim(taper) or taper != 1:
+            radius = 1 - (1 - taper) * u
+            powers = {power: radius**power for power in set(RADIUS_POWERS.values())}
+            for name, power in RADIUS_POWERS.items():
+                factors[name] = factors[name] * powers[power] if self.profile else powers[power]
         return factors
 
 

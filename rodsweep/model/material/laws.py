@@ -18,13 +18,9 @@ import numpy as np
 Values = Any
 """A float, or an array of floats of any shape."""
 
-MAX_COMPRESSION_STEPS = 60
-"""Maximum Newton steps for the compression of a neo-Hookean rod; the iteration converges in at most eight."""
-STEP_TOLERANCE = 1e-15
-"""Newton step, relative to nu, at which the iteration has converged to rounding error."""
 POLISHING_STEPS = 2
-# For small x the digits of e = 1 - nu are lost in nu; polishing on e restores them.
-"""Newton steps on e = 1 - nu, whose residual has no cancellation; each doubles the number of digits."""
+"""Newton steps on e = 1 - nu, whose residual has no cancellation, while digits of e are lost in nu for small
+loads; each doubles the number of digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,21 +50,20 @@ class Law:
 
 
 def _neo_hookean_shortening(x: Values) -> Values:
-    """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Newton's method on nu, then on e; x: floats of any shape."""
+    """e = 1 - nu with nu^3 + 3 x nu^2 = 1, by Cardano's formula, then Newton's method on e; x: any shape."""
     x = np.asarray(x, dtype=float)
-    # The positive root is bracketed: nu <= 1 where x >= 0, and nu < 1 + 3 |x| where x < 0. For x > 0 the
-    # first guess goes over from 1 - x to (3 x)^(-1/2).
-    pushed = np.maximum(x, 0.0)
-    nu = np.where(x < 0, 1 - 3 * x, 1 / np.sqrt(1 + 2 * pushed + pushed**2 / (1 + pushed)))
-    for _ in range(MAX_COMPRESSION_STEPS):
-        step = (nu**3 + 3 * x * nu**2 - 1) / (3 * nu**2 + 6 * x * nu)
-        nu = nu - step
-        if (np.abs(step) <= STEP_TOLERANCE * nu).all():
-            break
+    square = 0.25 - x**3
+    root = np.cbrt(0.5 + np.sqrt(np.maximum(square, 0.0)))
+    nu = root**2 - x + (x / root) ** 2
+    if (square < 0).any():  # three real roots, of which one is positive
+        load = np.maximum(x, 0.5)
+        angle = np.arccos(np.minimum(0.5 / load**1.5, 1.0)) / 3
+        nu = np.where(square < 0, 0.5 / (np.sqrt(load) * np.cos(angle)), nu)
     e = 1 - nu
     for _ in range(POLISHING_STEPS):
-        residual = 3 * x * (1 - e) ** 2 - 3 * e + 3 * e**2 - e**3
-        e = e + residual / (3 * (1 - e) ** 2 + 6 * x * (1 - e))
+        nu = 1 - e
+        residual = 3 * x * nu**2 - e * (3 - 3 * e + e**2)
+        e = e + residual / (3 * nu * (nu + 2 * x))
     return e if e.ndim else float(e)
 
 

@@ -59,29 +59,30 @@ class Profile:
 
     @cached_property
     def _pieces(self) -> Array:
-        """Values and slopes at both ends of each piece, (pieces, factors, 4)."""
+        """Coefficients of the cubics in t, from 0 to 1 along each piece, t^3 first, (4, factors, pieces)."""
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
         pieces = []
         # A jump splits the profile: no slope is taken across it.
         for part in np.split(np.arange(len(u)), jumps):
-            slopes = _monotone_slopes(u[part], rows[part])
-            values = rows[part]
-            pieces.append(np.stack([values[:-1], values[1:], slopes[:-1], slopes[1:]], axis=-1))
-        return np.concatenate(pieces)
+            y = rows[part]
+            h = np.diff(u[part])[:, None]
+            slopes = _monotone_slopes(u[part], y)
+            start = h * slopes[:-1]
+            end = h * slopes[1:]
+            rise = y[1:] - y[:-1]
+            pieces.append(np.array([start + end - 2 * rise, 3 * rise - 2 * start - end, start, y[:-1]]))
+        return np.ascontiguousarray(np.concatenate(pieces, axis=1).swapaxes(1, 2))
 
     def factors(self, u: Array) -> Array:
         """The factors at points u, none of them a break, shape (factors, *u.shape)."""
-        piece = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.breaks) - 2)
-        h = np.diff(self.breaks)[piece]
-        t = (u - self.breaks[piece]) / h
-        y0, y1, d0, d1 = np.moveaxis(self._pieces[piece], (-2, -1), (0, 1)).swapaxes(0, 1)
-        return (
-            y0 * (1 + 2 * t) * (1 - t) ** 2
-            + y1 * t**2 * (3 - 2 * t)
-            + h * t * (1 - t) * (d0 * (1 - t) - d1 * t)
-        )
+        breaks = self.breaks
+        piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
+        t = (u - breaks[piece]) / (breaks[piece + 1] - breaks[piece])
+        cubic, square, linear, constant = self._pieces[:, :, piece]
+        factors: Array = ((cubic * t + square) * t + linear) * t + constant
+        return factors
 
 
 def _monotone_slopes(u: Array, values: Array) -> Array:

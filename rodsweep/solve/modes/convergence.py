@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.arm.determinant import arm_determinant
-from ...determinant.arm.roots import second_derivative
+from ...determinant.arm.newton import second_derivative
 from ...determinant.exponents import LEAST_DIVISOR
 from ...determinant.value import distance_to_next
 from ...discretization.elements.resolution import mesh_accuracy

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import POWERS, has_conjugate, none_is_missing, right_of_hull
 from ...determinant.arm.count import count_right_of
-from ...determinant.arm.determinant import arm_determinant
-from ...determinant.arm.family import ArmFamily, family_of, is_smooth
+from ...determinant.arm.determinant import ArmDeterminant, arm_determinant
+from ...determinant.arm.family import ArmFamily, family_of, is_smooth, level_at
 from ...determinant.arm.hull import hulls_along
 from ...determinant.arm.region import Hulls, hull_at
 from ...determinant.parameter_path import Path
@@ -85,7 +85,7 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoi
         return None
     for i in np.flatnonzero(found.known < request.modes).tolist():
         here = part_of_track(found.track, i, i + 1)
-        found.known[i] = counted(path, found.hulls, float(found.p[i]), request.modes, here)
+        found.known[i] = counted(path, found, float(found.p[i]), request.modes, here)
     good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
     return FollowedPoints(*leading(found.track, request.modes), unstable, good)
 
@@ -231,16 +231,17 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     return None if search.best is None else search.best.found.roots
 
 
-def counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at p that a count confirms to be all right of a line; 0 if unconfirmed.
+def counted(path: Path, found: Interval, p: float, modes: int, here: Track) -> int:
+    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
+    unconfirmed.
 
-    here: track of this point alone.
+    found: an interval that contains p. here: track of this point alone.
     """
     w, error = leading(here, here.w.shape[1])
     if w[0, -1].real > 0:  # there are further growing modes, which the count would find as well
         return 0
-    determinant = arm_determinant(path.at(p))
-    hull = hull_at(hulls, p)
+    determinant = ArmDeterminant(path.at(p), level_at(found.family, p))
+    hull = hull_at(found.hulls, p)
     for line in lines_of_count(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number
         if number is not None:

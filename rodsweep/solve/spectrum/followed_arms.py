@@ -99,7 +99,7 @@ class FollowedArms:
                 continue
             for number in sorted({wanted, modes}, reverse=True):
                 if known < number:
-                    known = max(known, counted(self.path, one.hulls, p, number, here))
+                    known = max(known, counted(self.path, one, p, number, here))
             yield JudgedPlace(max(modes, min(known, wanted)), here, known)
             if known >= modes:
                 return

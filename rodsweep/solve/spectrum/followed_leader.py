@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.arm import roots as arm_roots
 from ...determinant.arm.completeness import largest_w_of_proof, none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
 from ...determinant.arm.count import largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
+from ...determinant.arm.newton import refined_root
 from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.newton import refined
 from ...determinant.roots import root_error
@@ -76,8 +76,9 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
     if not isfinite(size):
         size = largest_w_of_count(next(_lines(first)), determinant, hull)
     determinant.level(size)  # elements for the proof, which serve the eigenvalues too
-    w = np.array([arm_roots.refined(value, determinant) for value in near.tolist()])
-    error = np.array([arm_roots.root_error(value, determinant) for value in w.tolist()])
+    found = [refined_root(value, determinant) for value in near.tolist()]
+    w = np.array([root for root, _ in found])
+    error = np.array([error for _, error in found])
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
     error = error[order]

@@ -110,7 +110,7 @@ class Search:
         bounded = self.problem.bounded
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.aim)
-        self.wanted = request.modes if wanted is None else wanted
+        self.wanted = request.modes + self.problem.spare if wanted is None else wanted
         self.best: JudgedCandidates | None = None
         self.stalled = self.failures = 0
         self.lost: CountComparison | None = None

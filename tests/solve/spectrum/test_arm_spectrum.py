@@ -11,7 +11,7 @@ from surveyed import RODS
 
 from rodsweep.determinant.arm import hull
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.roots import refined
+from rodsweep.determinant.arm.newton import refined
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
