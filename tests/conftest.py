@@ -233,9 +233,10 @@ def loaded(tmp_path_factory) -> Iterator[Isolated]:
     """Runs that are forked from a process which has loaded what every task needs."""
     directory = tmp_path_factory.mktemp("loaded")
     (directory / "points.csv").write_text(small.POINTS)
-    for name, text in small.CONFIGS.items():
-        (directory / f"{name}.yaml").write_text(text)
-    with isolated([directory / f"{name}.yaml" for name in small.CONFIGS], solving=True) as run:
+    paths = [directory / f"{name}.yaml" for name in small.CONFIGS | small.FURTHER]
+    for path in paths:
+        path.write_text((small.CONFIGS | small.FURTHER)[path.stem])
+    with isolated(paths, solving=True) as run:
         yield run
 
 
