@@ -247,6 +247,17 @@ def command(tmp_path, request):
     command.clear()
 
 
+@pytest.fixture
+def drawn(monkeypatch):
+    """The figures that are drawn, in place of their files, and not laid out, which takes most of the time."""
+    from matplotlib.figure import Figure
+
+    figures: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+    monkeypatch.setattr("rodsweep.post.figures.request.fit", lambda *_: None)
+    return figures
+
+
 @pytest.fixture(scope="session")
 def reference_spectra():
     return json.loads((ROOT / "tests" / "reference" / "spectra.json").read_text())
