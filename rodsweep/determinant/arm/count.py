@@ -31,7 +31,7 @@ from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
 from ..value import Value
-from .completeness import is_whole
+from .completeness import has_conjugate
 from .determinant import ArmDeterminant
 from .region import Hull, clearance
 from .value import chain_size, chain_value
@@ -124,13 +124,13 @@ def count_right_of(
     corner = _corner(line, hull)
     top = complex(line, corner.imag)
     known = known[error < SHARP * np.abs(known.real - line)]
-    known = known[is_whole(known)]
+    known = known[has_conjugate(known)]
     divided = DividedDeterminant(determinant, hull, known)
     nodes = 0
     total = 0.0
     try:
         # Elements for the largest |w| first: they serve most others.
-        determinant.level(size_of_count(line, determinant, hull), LEVELS_ABOVE)
+        determinant.level(largest_w_of_count(line, determinant, hull), LEVELS_ABOVE)
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, divided)
             total += change
@@ -156,7 +156,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     return True
 
 
-def size_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of a line evaluates D."""
     corner = _corner(line, hull)
     return abs(corner) + FIRST_RADIUS * determinant.length(corner)
