@@ -233,9 +233,10 @@ def loaded(tmp_path_factory) -> Iterator[Isolated]:
     """Runs that are forked from a process which has loaded what every task needs."""
     directory = tmp_path_factory.mktemp("loaded")
     (directory / "points.csv").write_text(small.POINTS)
-    for name, text in small.CONFIGS.items():
-        (directory / f"{name}.yaml").write_text(text)
-    with isolated([directory / f"{name}.yaml" for name in small.CONFIGS], solving=True) as run:
+    paths = [directory / f"{name}.yaml" for name in small.CONFIGS | small.FURTHER]
+    for path in paths:
+        path.write_text((small.CONFIGS | small.FURTHER)[path.stem])
+    with isolated(paths, solving=True) as run:
         yield run
 
 
@@ -244,6 +245,17 @@ def command(tmp_path, request):
     command = Command(tmp_path, lambda: request.getfixturevalue("loaded"))
     yield command
     command.clear()
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """The figures that are drawn, in place of their files, and not laid out, which takes most of the time."""
+    from matplotlib.figure import Figure
+
+    figures: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+    monkeypatch.setattr("rodsweep.post.figures.request.fit", lambda *_: None)
+    return figures
 
 
 @pytest.fixture(scope="session")

@@ -16,12 +16,12 @@ PATIENCE = 300.0
 """Seconds after which a wait is given up: what hangs is to fail, and nothing else on the busiest machine."""
 
 
-def pause_until(condition: Callable[[], bool], what: str) -> None:
-    """Waits until a condition holds; `what` is said where it never does."""
+def pause_until(condition: Callable[[], bool], what: str, pause: float = 0.01) -> None:
+    """Waits until a condition holds, asked for every `pause` seconds; `what` is said where it never does."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline, what
-        time.sleep(0.01)
+        time.sleep(pause)
 
 
 def ranks_in(directory: Path) -> dict[int, int]:

@@ -321,9 +321,21 @@ def load(solving: bool, configs: list[str]) -> None:
                 job.task.solver().warm_up()
     find_provenance(solving)
     if solving:
+        load_changes()
         draw()
     else:
         sys.meta_path.insert(0, NoSolver())
+
+
+def load_changes() -> None:
+    """Loads what spectra over F call once all points are done."""
+    import numpy as np
+
+    from rodsweep.determinant.stability_changes import stability_change_between
+    from rodsweep.model.rod import Rod
+
+    rod, w = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), np.ones(1, complex)
+    stability_change_between((rod.coefficients, rod.direction("F")), (1.0, 2.0), -w, w, 2)
 
 
 def find_provenance(solving: bool) -> None:
@@ -369,6 +381,8 @@ def loaded_kernels() -> bytes:
 
 def load_for_ranks(kernels: bytes) -> None:
     """Loads what the process that solves has loaded, but what starts MPI or PETSc."""
+    from rodsweep.model.units import registry
+
     refusal = NoSolver()
     sys.meta_path.insert(0, refusal)
     for name, functions in pickle.loads(kernels).items():
@@ -378,6 +392,7 @@ def load_for_ranks(kernels: bytes) -> None:
                 for signature in signatures:
                     getattr(module, function).compile(signature)
     sys.meta_path.remove(refusal)
+    registry()
     assert not {"mpi4py.MPI", "petsc4py.PETSc"} & set(sys.modules)
 
 

@@ -38,3 +38,17 @@ limit_cycle: {start: neighbour, samples: 8, shapes: 4, nodes: 5, harmonics: 2}
 accuracy: 1.0e-3
 """,
 }
+FURTHER = {
+    "branch": """
+task: branch
+parameters: {k1: 150, k2: 1.0e4, gamma3: 1.0e-4}
+branch: {stop: 80}
+accuracy: 1.0e-4
+""",
+    "arm": """
+task: modes
+parameters: {arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1 Pa s, pressure: 1 kPa}}
+modes: {nodes: 5}
+""",
+}
+"""Configs of what a loaded process needs beside: branches, and units."""

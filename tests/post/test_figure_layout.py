@@ -34,8 +34,8 @@ LEAST_HEIGHT = 0.3
 """Inches of a panel below which nothing is read off it."""
 MOST_BLANK = 0.7
 """Inches between a heading and the panels: twice the height of a heading of three lines."""
-TOUCH = 1.0
-"""Pixels by which the boxes of two texts may lie over each other: they have blank edges."""
+TOUCH = 0.01
+"""Inches by which the boxes of two texts may lie over each other: they have blank edges."""
 
 
 def at_widths(figures, widths=WIDTHS, every=1):
@@ -74,12 +74,12 @@ def texts_of(figure):
 
 def faults(figure):
     """What is wrong with the layout of a figure, in words."""
-    texts, page = texts_of(figure), figure.bbox
+    texts, page, touch = texts_of(figure), figure.bbox, TOUCH * figure.dpi
     boxes = [*texts, *(("the legend", legend.get_window_extent()) for legend in figure.legends)]
     wrong = [
         f"{name!r} is cut"
         for name, box in boxes
-        if min(box.x0, box.y0, page.x1 - box.x1, page.y1 - box.y1) < -TOUCH
+        if min(box.x0, box.y0, page.x1 - box.x1, page.y1 - box.y1) < -touch
     ]
     for legend in figure.legends:
         box = legend.get_window_extent()
@@ -87,7 +87,7 @@ def faults(figure):
     for (name, one), (other, two) in combinations(texts, 2):
         across = min(one.x1, two.x1) - max(one.x0, two.x0)
         down = min(one.y1, two.y1) - max(one.y0, two.y0)
-        if min(across, down) > TOUCH:
+        if min(across, down) > touch:
             wrong.append(f"{name!r} and {other!r} are over each other")
     flat = [axes for axes in figure.axes if axes.bbox.height < LEAST_HEIGHT * figure.dpi]
     wrong += ["a panel is too flat" for axes in flat if not (is_bar(axes) or axes.get_aspect() != "auto")]

@@ -82,11 +82,9 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
         draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", roots="smallest")
 
 
-def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkeypatch):
+def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, drawn):
     command.write("c.yaml", LINE)
     command("run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 200, num: 7}")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
     filled, zero = (each for each in drawn[0].axes[0].collections if each.get_visible())
     assert 0.0 in filled.levels
@@ -97,12 +95,10 @@ def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkey
     assert all(np.abs(edges - vertex).sum(axis=1).min() < 1e-9 for vertex in line)
 
 
-def test_few_values_of_a_parameter_have_a_panel_each_with_its_own_thresholds(command, monkeypatch):
+def test_few_values_of_a_parameter_have_a_panel_each_with_its_own_thresholds(command, drawn):
     """A map would draw a line of zero growth between k1 = 200 and 1e4 where no rod was computed."""
     command.write("c.yaml", LINE.replace("30, num: 16", "190, num: 20").replace("1e-2}", "1e-4}"))
     command("run", "c.yaml", "--set", "parameters.k1=[200, 1e4]", "--set", "parameters.k2=1e4")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     said = draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
     assert "in a panel for each k1" in said
     titles = [" ".join(axes.get_title(loc="left").split()) for axes in drawn[0].axes]
@@ -113,12 +109,10 @@ def test_few_values_of_a_parameter_have_a_panel_each_with_its_own_thresholds(com
     assert "restabilization" not in titles[1]
 
 
-def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, monkeypatch):
+def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, drawn):
     rod = "{F: {start: 0, stop: 240, num: 13}, k1: [150, 200], k2: 1.0e4, gamma3: 1.0e-4, gamma1: 0.7}"
     command.write("c.yaml", f"task: phase_diagram\nparameters: {rod}\nphase_diagram: {{criticality: true}}\n")
     command.solved("c.yaml")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     row = section(read_view(command.directory / "c.h5"), {"k1": 200.0})
     assert draw(row, command.directory / "f.png").endswith("f.png: behaviour of the rod over F")
     (bar,) = drawn[0].axes[0].collections
@@ -144,12 +138,10 @@ def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
     assert class_along_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
 
 
-def test_rows_that_make_no_plane_are_bars(command, monkeypatch):
+def test_rows_that_make_no_plane_are_bars(command, drawn):
     rod = "{F: {start: 0, stop: 190, num: 20}, k1: [200, .inf], k2: 1.0e4, gamma3: 1.0e-4}"
     command.write("c.yaml", f"task: phase_diagram\nparameters: {rod}\n")
     command.solved("c.yaml")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     assert "for each k1" in draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
     labels = [label.get_text() for label in drawn[0].axes[0].get_yticklabels()]
     assert [label.split("= ")[1] for label in labels] == ["200$", r"\infty$"]
@@ -280,22 +272,20 @@ def test_width_is_that_of_a_column_with_type_of_8_points(command, width, inches,
     assert {text.get_fontsize() for text in figure.findobj(Text) if text.get_text()} == {8.0}
 
 
-def test_title_stands_above_a_figure_only_where_it_is_asked_for(command, monkeypatch):
-    path, drawn = line_of_spectra(command), []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure.get_suptitle()))
+def test_title_stands_above_a_figure_only_where_it_is_asked_for(command, drawn):
+    path = line_of_spectra(command)
     for look in (Look(), Look(title=True)):
         draw(read_view(path), path.with_suffix(".png"), look=look)
-    assert ["Onset of a soft rod" in title for title in drawn] == [False, True]
+    assert ["Onset of a soft rod" in figure.get_suptitle() for figure in drawn] == [False, True]
 
 
-def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, monkeypatch):
-    path, colours = line_of_spectra(command), []
+def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, drawn):
+    path = line_of_spectra(command)
     own = command.directory / "own.mplstyle"
     own.write_text("axes.facecolor: 123456\n")
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: colours.append(figure.axes[0].get_facecolor()))
     for style in ("ggplot", str(own)):
         draw(read_view(path), path.with_suffix(".png"), look=Look(style=style))
-    assert [to_hex(colour) for colour in colours] == ["#e5e5e5", "#123456"]
+    assert [to_hex(figure.axes[0].get_facecolor()) for figure in drawn] == ["#e5e5e5", "#123456"]
     for wrong in ("nosuch", "c.h5"):
         done = command("plot", "c.h5", "--style", wrong)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
@@ -440,11 +430,9 @@ def test_a_region_between_curves_without_a_computed_point_has_the_class_of_a_pla
     assert coloured(computed, further, rails)[int(0.51 * PIXELS), ::100].tolist() == [3] * (PIXELS // 100)
 
 
-def test_all_stored_roots_are_drawn_where_asked(command, monkeypatch):
+def test_all_stored_roots_are_drawn_where_asked(command, drawn):
     command.write("c.yaml", LINE + "spectrum: {modes: 5}\n")
     command.solved("c.yaml")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     view = read_view(command.directory / "c.h5")
     assert "all stored roots" in draw(view, command.directory / "f.png", roots="all")
     real = next(line for line in drawn[0].axes[0].lines if line.get_marker() == "o")
@@ -523,13 +511,11 @@ def test_lines_that_cannot_be_told_apart_are_one():
     assert _alike(lines) == [[0], [4], [9]]
 
 
-def test_several_lines_of_spectra_are_panels_of_one_figure(command, monkeypatch):
+def test_several_lines_of_spectra_are_panels_of_one_figure(command, drawn):
     for name, k1 in (("a", 200), ("b", 1e4)):
         axes = f"F: {{start: 0, stop: 60, num: 13}}, k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4"
         command.write(f"{name}.yaml", f"task: spectrum\nparameters: {{{axes}}}\nspectrum: {{modes: 4}}\n")
         command("run", f"{name}.yaml")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     views = [read_view(command.directory / f"{name}.h5") for name in "ab"]
     assert "for each of 2 files" in draw(views, command.directory / "f.png")
     titles = [axes.get_title(loc="left") for axes in drawn[0].axes]
@@ -552,7 +538,7 @@ def test_several_lines_of_spectra_are_panels_of_one_figure(command, monkeypatch)
     assert (alone.returncode, alone.stderr.count("\n")) == (2, 1)
 
 
-def test_thresholds_of_several_files_are_lines_of_one_figure(command, monkeypatch):
+def test_thresholds_of_several_files_are_lines_of_one_figure(command, drawn):
     """A colour for each law; a file over another axis is refused."""
     for name, law in (("a", "linear"), ("b", "neo_hookean")):
         axes = "k1: [150, 300, 600], k2: 1.0e4, gamma3: 1.0e-4"
@@ -561,8 +547,6 @@ def test_thresholds_of_several_files_are_lines_of_one_figure(command, monkeypatc
         )
         command.write(f"{name}.yaml", text)
         command.solved(f"{name}.yaml")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     views = [read_view(command.directory / f"{name}.h5") for name in "ab"]
     assert "critical forces against k1 of 2 files" in draw(views, command.directory / "f.png")
     (axes,) = drawn[0].axes

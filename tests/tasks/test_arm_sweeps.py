@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from contents import content, same
-from matplotlib.figure import Figure
 from pint import UnitRegistry
 from surveyed import only
 
@@ -234,14 +233,12 @@ def test_figures_of_an_arm_are_drawn(command):
     assert command("plot", "a.h5").returncode == 0
 
 
-def test_axes_of_a_force_have_its_si_unit_opposite(command, monkeypatch):
+def test_axes_of_a_force_have_its_si_unit_opposite(command, drawn):
     """4 (L/a)^2 p/E: F = 80 is a pressure of 5 kPa; pi a^2 p a force of 0.39 N."""
     loads = {
         "pressure": ("5 kPa", 5.0, "pressure on the tip (kPa)"),
         "force": ("0.39269908169872414 N", 392.69908169872414, "force at the tip (mN)"),
     }
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     for name, (largest, number, label) in loads.items():
         load = {name: {"start": 0, "stop": largest, "num": 9}}
         command.write(f"{name}.yaml", job("spectrum", arm=SILICONE | load, modes=2).text)

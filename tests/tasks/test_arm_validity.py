@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from surveyed import few
 
 import rodsweep as rs
@@ -282,19 +281,17 @@ def test_a_rectangle_in_python_is_said_to_give_way_first_in_the_other_plane():
     assert first.pressure_hopf < second.pressure_hopf
 
 
-def drawn(monkeypatch, path, output, **choice):
+def figure_of(drawn, path, output, **choice):
     """The figure of a file, not written, with its legend and labels."""
-    figures = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
     draw(read_view(path), output, **choice)
-    figures[-1].draw_without_rendering()
-    return figures[-1]
+    drawn[-1].draw_without_rendering()
+    return drawn[-1]
 
 
-def test_a_map_of_arms_has_typed_units_and_hatches(command, monkeypatch):
+def test_a_map_of_arms_has_typed_units_and_hatches(command, drawn):
     command.write("a.yaml", MAP)
     command.solved("a.yaml")
-    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
+    figure = figure_of(drawn, command.directory / "a.h5", command.directory / "f.png")
     labels = {axes.get_xlabel() for axes in figure.axes} | {axes.get_ylabel() for axes in figure.axes}
     assert {"length (cm)", "Young's modulus (kPa)", "pressure at flutter (kPa)"} <= labels
     words = {text.get_text() for text in figure.legends[0].get_texts()}
@@ -305,10 +302,10 @@ def test_a_map_of_arms_has_typed_units_and_hatches(command, monkeypatch):
     assert np.ma.allclose(mesh.get_array().reshape(values.shape), values)
 
 
-def test_lines_over_one_quantity(command, monkeypatch):
+def test_lines_over_one_quantity(command, drawn):
     command.write("a.yaml", MAP.replace("[50 kPa, 100 kPa]", "50 kPa"))
     command.solved("a.yaml")
-    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
+    figure = figure_of(drawn, command.directory / "a.h5", command.directory / "f.png")
     data = rs.open(command.directory / "a.h5")
     x, y = figure.axes[0].lines[0].get_data()
     assert x == pytest.approx(data.length.values * 100)
@@ -316,12 +313,12 @@ def test_lines_over_one_quantity(command, monkeypatch):
     assert [axes.get_ylabel() for axes in figure.axes] == ["pressure (kPa)", "frequency at flutter (Hz)"]
 
 
-def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monkeypatch):
+def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, drawn):
     arm = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 4 Pa s"
     load = "pressure: {start: 0 kPa, stop: 4 kPa, num: 21}"
     command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}, {load}}}}}\n")
     command.solved("a.yaml")
-    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
+    figure = figure_of(drawn, command.directory / "a.h5", command.directory / "f.png")
     data = rs.open(command.directory / "a.h5")
     outside = data.F.values[(data.model_applies == Validity.does_not_apply).values.ravel()]
     hatched = [patch for patch in figure.axes[0].patches if patch.get_hatch()]
@@ -331,11 +328,11 @@ def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monk
     assert "hatched: the model does not apply" in figure.get_suptitle()
 
 
-def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, monkeypatch):
+def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, drawn):
     arm = "length: [10 cm, 12 cm], radius: [4 mm, 5 mm], young: 100 kPa, viscosity: 4 Pa s, pressure: 1 kPa"
     command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}}}}}\n")
     command.solved("a.yaml")
-    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png", roots="smallest")
+    figure = figure_of(drawn, command.directory / "a.h5", command.directory / "f.png", roots="smallest")
     (axes,) = (axes for axes in figure.axes if "radius" in axes.get_xlabel())
     assert axes.get_xlabel() == "length (mm)\nradius (mm)"
     places = [label.get_text() for label in axes.xaxis.get_ticklabels()]

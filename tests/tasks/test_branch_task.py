@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from shown import shown
 from surveyed import few
 from test_paper import run, stated
@@ -215,14 +214,12 @@ def test_rods_that_are_missing_are_not_said_to_have_no_branch(command):
     assert "none" not in draw(view, command.directory / "c.png")
 
 
-def test_the_straight_rod_is_drawn_up_to_where_it_is_crushed(command, monkeypatch):
+def test_the_straight_rod_is_drawn_up_to_where_it_is_crushed(command, drawn):
     """At k1 = 100 the cycles reach F = 99.99, and the figure a tenth beyond them."""
     command.write(
         "c.yaml", CONFIG.format(k1=100, stop=200).replace("1.0e-4", "0.1").replace("1.0e-5", "1.0e-3")
     )
     command.solved("c.yaml")
-    drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     draw(read_view(command.directory / "c.h5"), command.directory / "c.png")
     black = [line.get_xdata() for line in drawn[0].axes[0].lines if line.get_color() == "k"]
     assert max(map(np.max, black)) == 100

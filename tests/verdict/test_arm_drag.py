@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from contents import content, same
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
@@ -209,19 +208,17 @@ def test_show_answers_in_the_units_of_the_arm_before_those_without_dimension(com
     assert "F** (straight rod starts to beat)" in rest
 
 
-def test_a_figure_has_a_band_over_the_drags_of_the_file(command, monkeypatch):
+def test_a_figure_has_a_band_over_the_drags_of_the_file(command, drawn):
     command.write("a.yaml", OVER_LOADS.replace("[10 cm, 14 cm]", "14 cm"))
     command.solved("a.yaml")
-    figures = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
     draw(read_view(command.directory / "a.h5"), command.directory / "f.png")
-    panel, data = figures[0].axes[0], rs.open(command.directory / "a.h5")
+    panel, data = drawn[0].axes[0], rs.open(command.directory / "a.h5")
     band = next(each for each in panel.collections if isinstance(each, PolyCollection))
     beats = data.frequency_hz.sel(pressure_over_flutter=[1.1, 1.3])
     ends = band.get_paths()[0].vertices[:, 1]
     assert (ends.min(), ends.max()) == (beats.min().item(), beats.max().item())
     assert panel.lines[0].get_ydata() == pytest.approx(data.frequency_hz.sel(drag=0), nan_ok=True)
-    words = {text.get_text() for text in figures[0].legends[0].get_texts()}
+    words = {text.get_text() for text in drawn[0].legends[0].get_texts()}
     assert "range of drag (line: likeliest)" in words
 
 

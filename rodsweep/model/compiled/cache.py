@@ -24,6 +24,7 @@ import numba
 import numpy as np
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
@@ -54,7 +55,8 @@ class KernelCache(_Cache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled function for the signature `sig`; None if the cache has no valid file."""
         report()  # lets a stop request end the run between two compilations of some seconds each
-        target_context.refresh()  # registers symbols that a loaded function may use, as numba's cache does
+        # Symbols that loaded code may use; refresh(), as numba's own cache does, would import the compiler.
+        rtsys.initialize(target_context)
         name = self._name(sig, target_context.codegen(), _first_parts)
         for directory in self._directories:
             content = _read(directory / name)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from matplotlib import rcParams
 from matplotlib.figure import Figure
 
 from ...errors import InputError
@@ -144,9 +145,13 @@ class FigureRequest:
         # Figures over an arm's quantities show the validity themselves.
         if not any(view.over for view in self.views):
             add_validity(figure, self.views)
-        self.look.fit(figure, min_aspect)
-        if self.keep is None:
-            figure.savefig(self.output)
-        else:
+        if self.keep is not None:
+            self.look.fit(figure, min_aspect)
             self.keep(figure)
+            return shown
+        if (dpi := rcParams["savefig.dpi"]) != "figure":
+            figure.set_dpi(dpi)  # texts are measured as they are saved
+        self.look.fit(figure, min_aspect)
+        figure.set_layout_engine(None)  # `fit` has laid the figure out; savefig would do it again
+        figure.savefig(self.output)
         return shown

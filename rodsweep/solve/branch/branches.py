@@ -6,6 +6,7 @@ too. Cycles on other branches are not found.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
@@ -119,6 +120,7 @@ def solve_branches(
         memory.release()
 
 
+@cache
 def warm_up() -> None:
     """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
     solve_branches(

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
@@ -104,6 +105,7 @@ def judged(found: Transitions, accuracy: float, certify: bool, most: int) -> Thr
     return Thresholds(status=status, transitions=found, end=found.searched[1], message=found.why_not)
 
 
+@cache
 def warm_up() -> None:
     """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
     solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))

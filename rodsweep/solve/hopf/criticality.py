@@ -6,7 +6,7 @@ different gamma1 alone share one search.
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
@@ -109,6 +109,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     return solved(search, lambda cause: _nothing(end, cause))
 
 
+@cache
 def warm_up() -> None:
     """Loads compiled code and fills caches, so that the first point takes no extra time."""
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))

@@ -58,6 +58,8 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         _lay_out(figure)
         if not thin_ticks(figure):
             break
+    if any(axes.get_aspect() != "auto" for axes in figure.axes):
+        _lay_out(figure)  # panels with equal scales have changed their shape
 
 
 def _lay_out(figure: Figure) -> None:
