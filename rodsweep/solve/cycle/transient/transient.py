@@ -203,16 +203,16 @@ class Transient:
     def _closed(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle, if the returns repeat and Newton's method converges; None otherwise."""
         turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
-        if distance >= self._near_enough() or self.waited < self.next_newton:
-            return None
-        self.next_newton = self.waited + TRANSIENT.returns_per_run * 2**self.failures
-        self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
-        found = self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
         if self.failed_starts >= TRANSIENT.max_unsolved and distance < TRANSIENT.closed_distance:
             self.unsolved = (
                 f"periodic to {distance:.0e}, but on finer meshes no cycle is found near the motion"
             )
-        return found
+            return None
+        if distance >= self._near_enough() or self.waited < self.next_newton:
+            return None
+        self.next_newton = self.waited + TRANSIENT.returns_per_run * 2**self.failures
+        self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
+        return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
     def _near_enough(self) -> float:
         """Relative distance of two returns below which Newton's method is tried."""

@@ -34,11 +34,12 @@ class TransientSettings:
     amplitude."""
     max_returns: int = 400
     """Number of last returns that are kept to recognise a torus."""
-    closed_distance: float = 1e-5
-    """Relative distance of two returns, the integrator's tolerance, at which a motion is closed."""
-    max_unsolved: int = 3
+    closed_distance: float = 1e-4
+    """Relative distance of two returns at which a motion is closed. With the integrator's tolerance of 1e-5
+    closed motions return to within 1e-6 to 1e-4, by chance."""
+    max_unsolved: int = 4
     """Number of times that Newton's method has no cycle near a motion, after which a closed motion ends: the
-    next start would be the same."""
+    last start is from a closed motion, and the next one would be the same."""
     min_returns: int = 100
     """Smallest number of returns for which time steps are allowed: a few returns may need many."""
 
