@@ -16,34 +16,48 @@ D and the error of its elements, which are estimates.
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
+from ..exponents import EXPONENTS
 from .determinant import ArmDeterminant
 from .region import Hull
 from .value import chain_value
 
-POWERS = (6, 3)
-"""Numbers k of points that are tried: many where the hull is slim, few where it is wide."""
-FIRST_POINT = 0.35
-"""Least distance of the first point from 0, in units of the depth of the line."""
-SPREAD = 1.0
-"""Distance of the last point from the first, in units of the first one's from 0."""
-WIDER = 1.3
-"""Factor by which the points are moved outwards until every term of R is positive."""
-FARTHEST = 16.0
-"""Largest distance of the last point from 0, in units of the largest known |w|: from farther away, unknown
-eigenvalues contribute like known ones."""
-SLABS = 24
-"""Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
-ALLOWED = 0.7
-"""Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
-ROUNDING_OF_SLOPE = 10.0
-"""Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels of
-elements, over 45 random arms."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CompletenessSettings(CompiledSettings):
+    """Settings for the points of a proof."""
+
+    powers: tuple[int, ...] = (6, 3)
+    """Numbers k of points that are tried: many where the hull is slim, few where it is wide."""
+    first_point: float = 0.35
+    """Least distance of the first point from 0, in units of the depth of the line."""
+    least_point: float = 1e-6
+    """Least distance of the first point from 0, in 1/tau2, for a line and a hull near 0."""
+    spread: float = 1.0
+    """Distance of the last point from the first, in units of the first one's from 0."""
+    wider: float = 1.3
+    """Factor by which the points are moved outwards until every term of R is positive."""
+    farthest: float = 16.0
+    """Largest distance of the last point from 0, in units of the largest known |w|: from farther away,
+    unknown eigenvalues contribute like known ones."""
+    slabs: int = 24
+    """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
+    allowed: float = 0.7
+    """Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
+    rounding_of_slope: float = 10.0
+    """Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels
+    of elements, over 45 random arms."""
+    ranges: ClassVar = {"wider": (1.0, math.inf), "allowed": (0.0, 1.0)}
+
+
+COMPLETENESS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
@@ -65,9 +79,9 @@ def none_is_missing(
         return False, 0
     pairs = is_whole(known)
     examined = 0
-    for k in POWERS:
+    for k in COMPLETENESS.powers:
         points = right_of_hull(line, hull.a, hull.c, k)
-        if len(points) and points[-1] <= FARTHEST * np.abs(known).max():
+        if len(points) and points[-1] <= COMPLETENESS.farthest * np.abs(known).max():
             found = remainder(line, known[pairs], error[pairs], hull, points, determinant.level(points[-1]))
             examined += k
             if proves(found):
@@ -83,8 +97,8 @@ def is_whole(known: Complex) -> Array:
 
 def last_point(line: float, hull: Hull, known: Complex) -> float:
     """The largest |w| of a proof with the most points, from eigenvalues, (n,); inf if it is not tried."""
-    points = right_of_hull(line, hull.a, hull.c, POWERS[0])
-    tried = len(points) > 0 and points[-1] <= FARTHEST * np.abs(known).max()
+    points = right_of_hull(line, hull.a, hull.c, COMPLETENESS.powers[0])
+    tried = len(points) > 0 and points[-1] <= COMPLETENESS.farthest * np.abs(known).max()
     return float(points[-1]) if tried else math.inf
 
 
@@ -93,7 +107,7 @@ def proves(found: Remainder) -> bool:
     """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue
     is not a root of D.
     """
-    allowed = ALLOWED * found.least
+    allowed = COMPLETENESS.allowed * found.least
     return found.R + found.blur < allowed and -allowed < found.R
 
 
@@ -102,14 +116,14 @@ def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """k points, (k,), for which the term of R of every w in the hull right of the line is positive; empty if
     no such points exist.
     """
-    x = max(FIRST_POINT * abs(line), a * a, 1e-6)
+    x = max(COMPLETENESS.first_point * abs(line), a * a, COMPLETENESS.least_point)
     points = np.empty(k)
     for j in range(k):
-        points[j] = x * (1 + SPREAD * j / max(k - 1, 1))
+        points[j] = x * (1 + COMPLETENESS.spread * j / max(k - 1, 1))
     while not _turn_of_hull(points, a, c) < math.pi / 2:
-        if not points[0] < 1e300:
+        if not points[0] < 1 / EXPONENTS.least_divisor:
             return points[:0]
-        points *= WIDER
+        points *= COMPLETENESS.wider
     return points
 
 
@@ -149,7 +163,7 @@ def remainder(
         value = chain_value(complex(points[j], 0.0), level[0], level[1])
         slope = (value.D_w / value.D).real
         R += weight * slope
-        blur += abs(weight * slope) * ROUNDING_OF_SLOPE * value.noise / abs(value.D)
+        blur += abs(weight * slope) * COMPLETENESS.rounding_of_slope * value.noise / abs(value.D)
     for n in range(len(known)):
         w = known[n]
         phi = 1 + 0j
@@ -170,9 +184,9 @@ def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
     least = 1.0
     for x in points:
         least /= x - line
-    for i in range(SLABS):
-        start = line + (right - line) * i / SLABS
-        stop = line + (right - line) * (i + 1) / SLABS
+    for i in range(COMPLETENESS.slabs):
+        start = line + (right - line) * i / COMPLETENESS.slabs
+        stop = line + (right - line) * (i + 1) / COMPLETENESS.slabs
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n

@@ -12,7 +12,7 @@ D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit no
     |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
 
 Inside the hull, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimate with the maximum of |f| on a
-circle bounds the change of f. The maximum is estimated from `CIRCLE` points and a safety factor. Inside the
+circle bounds the change of f. The maximum is estimated from some points and a safety factor. Inside the
 hull the count is therefore an estimate; the rounding errors of D and the errors of its elements are estimates
 everywhere.
 
@@ -30,48 +30,15 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
+from ..exponents import EXPONENTS
 from ..value import Value
 from .completeness import is_whole
+from .count_settings import ARM_COUNT
 from .determinant import ArmDeterminant
 from .region import Hull, clearance
 from .value import chain_size, chain_value
 
-LARGEST_TURN = 1.5
-"""Largest allowed error of a tangent's phase, in radians. The errors of two tangents then sum to less than
-pi."""
-CIRCLE = 8
-"""Points of a circle about a node inside the hull."""
-BETWEEN_POINTS = 1.5
-"""Safety factor on the maximum of |f| over the points of a circle, for larger values between the points."""
-CLEARANCE = 0.9
-"""Largest allowed change of f, in units of |D|."""
-ROUNDING_OF_ARM_D = 100.0
-"""Bound of the rounding error of D, in units of its noise; a node needs a larger |D|."""
-FIRST_RADIUS, SMALLEST_RADIUS, LARGEST_RADIUS = 12.0, 0.75, 48.0
-"""Radii of circles to try, in units of the length over which D changes: the first at the first node of a
-side, and the smallest and largest at any node. Every trial halves the radius."""
-STEEPEST = 1.0
-"""Largest |L| times the unit of the radii, so that circles shrink with the distance to a zero of D."""
-SHARP = 1e-3
-"""Largest error of an eigenvalue that is divided out, in units of its distance from the line."""
 NONE_KNOWN: Complex = np.empty(0, complex)
-SMALLEST_ARM_REACH = 1e-12
-"""Reach in units of |w| below which the line counts as running through a zero of D."""
-LEVELS_ABOVE = 1
-"""Number of levels of elements above the own one that serve a node: the many evaluations of a count are worth
-elements of their own."""
-MAX_NODES = 5000
-"""Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
-OVERLAP = 0.95
-"""Distance of two nodes in units of the sum of their expected reaches."""
-LARGEST_GROWTH = 0.5
-"""Largest expected growth of the reach per distance: the next node is 3.6 reaches ahead at most."""
-GIVEN_UP = 0.2
-"""A circle is given up for the next smaller one once its reach is below this fraction of its radius: the
-smaller one may reach 0.27 of the radius."""
-UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.array([0, 2, 1, 3, 4, 6, 5, 7]) + 0.5) / CIRCLE)
-"""Directions of the points; the first four differ most in (v - w)^2, so that most circles too large for f are
-given up after one or two points."""
 
 
 class PhaseNode(NamedTuple):
@@ -123,14 +90,14 @@ def count_right_of(
         return Count(0, 0)
     corner = _corner(line, hull)
     top = complex(line, corner.imag)
-    known = known[error < SHARP * np.abs(known.real - line)]
+    known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
     known = known[is_whole(known)]
     divided = DividedDeterminant(determinant, hull, known)
     nodes = 0
     total = 0.0
     try:
         # Elements for the largest |w| first: they serve most others.
-        determinant.level(size_of_count(line, determinant, hull), LEVELS_ABOVE)
+        determinant.level(size_of_count(line, determinant, hull), ARM_COUNT.levels_above)
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, divided)
             total += change
@@ -150,7 +117,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_corner(0.0, hull)), LEVELS_ABOVE)
+        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.levels_above)
     except FloatingPointError:
         return False
     return True
@@ -159,7 +126,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
 def size_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of a line evaluates D."""
     corner = _corner(line, hull)
-    return abs(corner) + FIRST_RADIUS * determinant.length(corner)
+    return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)
 
 
 def _corner(line: float, hull: Hull) -> complex:
@@ -179,12 +146,12 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
     total = 0.0
     nodes = 1
     growth = 0.0  # change of the reach per distance
-    here = node_at(start, divided)
+    here = node_at(start, divided, ARM_COUNT.first_radius)
     while t < length:
-        if not here.reach > SMALLEST_ARM_REACH * abs(here.w) or nodes > MAX_NODES:
+        if not here.reach > ARM_COUNT.smallest_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
             raise PhaseLost(nodes)
         ahead = min(_stride(here.reach, growth), length - t)
-        radius = min(2 * here.radius, LARGEST_RADIUS) if here.radius > 0 else FIRST_RADIUS
+        radius = min(2 * here.radius, ARM_COUNT.largest_radius) if here.radius > 0 else ARM_COUNT.first_radius
         while True:
             w = end if ahead == length - t else start + direction * (t + ahead)
             there = node_at(w, divided, radius)
@@ -193,8 +160,8 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
             if abs(there.w - here.w) < here.reach + there.reach:
                 break
             # The reaches leave a gap: place the next node closer, at last within the present one's reach.
-            nearer = min(_stride(here.reach, growth), 0.9 * ahead)
-            ahead = nearer if nearer > here.reach else min(0.99 * here.reach, ahead / 2)
+            nearer = min(_stride(here.reach, growth), ARM_COUNT.closer * ahead)
+            ahead = nearer if nearer > here.reach else min(ARM_COUNT.within_reach * here.reach, ahead / 2)
         total += _turn(here, there)
         t = length if there.w == end else t + ahead
         here = there
@@ -203,7 +170,8 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
 
 def _stride(reach: float, growth: float) -> float:
     """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
-    return 2 * OVERLAP * reach / (1 - OVERLAP * min(max(growth, -1.0), LARGEST_GROWTH))
+    overlap = ARM_COUNT.overlap
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
 
 
 def _turn(here: PhaseNode, there: PhaseNode) -> float:
@@ -216,14 +184,16 @@ def _turn(here: PhaseNode, there: PhaseNode) -> float:
     return expected + cmath.phase(there.direction / here.direction * cmath.exp(complex(0.0, -expected)))
 
 
-def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIUS) -> PhaseNode:
+def node_at(w: complex, divided: DividedDeterminant, radius: float) -> PhaseNode:
     """The node at w; its reach is 0 if rounding errors hide D.
 
     radius: radius of the largest circle to try, in units of the length over which D changes.
     """
     determinant, hull, known = divided
     length = determinant.length(w)
-    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length, LEVELS_ABOVE)
+    level = determinant.level(
+        abs(w) + max(radius, ARM_COUNT.smallest_radius) * length, ARM_COUNT.levels_above
+    )
     return _node(w, known, (length, radius), hull, level)
 
 
@@ -237,7 +207,7 @@ def _node(
     which hold the largest circle about w.
     """
     value = chain_value(w, level[0], level[1])
-    if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
+    if not abs(value.D) > ARM_COUNT.rounding * value.noise:
         return PhaseNode(w, value.D, 0j, 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
@@ -250,7 +220,7 @@ def _node(
     radius = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
-        reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * ARM_COUNT.largest_turn)))
     if not reach > trial[0]:
         inside, radius = _reach_inside(value, (w, L), known, trial, level)
         reach = max(reach, inside)
@@ -270,26 +240,26 @@ def _reach_inside(
     tangent: (w, L). For the other arguments see `_node`.
     """
     w, L = tangent
-    unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))
-    room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
+    unit = min(trial[0], ARM_COUNT.steepest / max(abs(L), EXPONENTS.least_divisor))
+    room = ARM_COUNT.clearance - ARM_COUNT.rounding * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
     best = 0.0
     best_radius = 0.0
-    radius = max(trial[1], SMALLEST_RADIUS)
-    while radius >= SMALLEST_RADIUS:
+    radius = max(trial[1], ARM_COUNT.smallest_radius)
+    while radius >= ARM_COUNT.smallest_radius:
         rho = radius * unit
         # No smaller circle reaches farther than half of this one could.
-        enough = max(best, _reach_of_circle(rho / 2, BETWEEN_POINTS, room))
-        last = radius / 2 < SMALLEST_RADIUS
+        enough = max(best, _reach_of_circle(rho / 2, ARM_COUNT.between_points, room))
+        last = radius / 2 < ARM_COUNT.smallest_radius
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
-        for direction in UNIT_CIRCLE:
+        for direction in ARM_COUNT.directions:
             v = w + rho * direction
             log = chain_size(v, level[0], level[1]) - _log_of_known(v, known)
             size = max(size, log - (L * (v - w)).real)
-            M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
+            M = ARM_COUNT.between_points * math.exp(min(size - here, EXPONENTS.largest_exponent))
             reach = _reach_of_circle(rho, M, room)
-            if reach <= best or (reach < GIVEN_UP * rho and not last):
+            if reach <= best or (reach < ARM_COUNT.given_up * rho and not last):
                 reach = 0.0
                 break
         if reach > best:
@@ -315,5 +285,5 @@ def _log_of_known(v: complex, known: Complex) -> float:
     """log prod |v - w_n| over known eigenvalues."""
     total = 0.0
     for n in range(len(known)):
-        total += math.log(max(abs(v - known[n]), 1e-300))
+        total += math.log(max(abs(v - known[n]), EXPONENTS.least_divisor))
     return total

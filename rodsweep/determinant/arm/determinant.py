@@ -2,13 +2,12 @@
 
 The propagators of an element are polynomials in w/W for |w| <= W. Each level W = 4^k has its own elements,
 computed at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`LARGEST_EXPONENT`) and that the Gauss points resolve the coefficients; every break of the profile is an
-end of an element.
+exp(`ARM_ELEMENTS.longest`) and that the Gauss points resolve the coefficients; every break of the profile is
+an end of an element.
 """
 
 import cmath
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -20,38 +19,11 @@ from ...model.compiled.compilation import compiled
 from ...model.dispersion import PIECE_SAMPLES, sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
+from ..exponents import EXPONENTS
 from ..value import Value
-from .collocation import STAGES
+from .element_settings import ARM_ELEMENTS
 from .propagators import element_propagators, gauss_method, tail_of
 from .value import chain_value
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArmElementSettings:
-    """Settings for the elements of an arm and for the propagators that are kept."""
-
-    longest: float = 3.2
-    """Largest |q1 +- q2| h of an element, the exponents of minors: twelve stages integrate exp(3.2) to 1e-19,
-    and rounding errors are those of elements half as long."""
-    to_apex: float = 0.5
-    """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
-    largest_tail: float = 1e-9
-    """Relative tail of the coefficients' Legendre series above which an element is halved. The error of a
-    Gauss method is about the square of the tail."""
-    max_halvings: int = 12
-    """Maximum number of halvings of an element, down to 2e-4 of the first length."""
-    min_level: int = 2
-    """The smallest level is W = 4^2: for smaller |w| the load and the taper limit the elements."""
-    levels_above: int = 4
-    """Number of levels above the own one whose elements are used if they exist: making elements costs as
-    much as some thirty evaluations on twice as many."""
-    max_elements: int = 4000
-    """Maximum number of elements of an arm; an arm that needs more counts as unresolved."""
-
-
-ARM_ELEMENTS = ArmElementSettings()
-ARMS_KEPT = 16
-"""Arms whose propagators are kept: a bound of memory, which changes no number."""
 
 
 class ArmDeterminant:
@@ -84,7 +56,9 @@ class ArmDeterminant:
 
     def length(self, w: complex) -> float:
         """Change of w that changes an exponent of D, integrated along the arm, by about one."""
-        return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
+        return 1 / max(
+            mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], EXPONENTS.least_divisor
+        )
 
     def level(self, size: float, above: int | None = None) -> tuple[float, Array]:
         """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists.
@@ -95,12 +69,12 @@ class ArmDeterminant:
         if above is None:
             above = ARM_ELEMENTS.levels_above
         level = ARM_ELEMENTS.min_level
-        if size > 4.0**ARM_ELEMENTS.min_level:
-            level = math.ceil(math.log(size) / math.log(4) - 1e-12)
+        if size > ARM_ELEMENTS.level_ratio**ARM_ELEMENTS.min_level:
+            level = math.ceil(math.log(size) / math.log(ARM_ELEMENTS.level_ratio) - ARM_ELEMENTS.on_level)
         for existing in range(level, level + above + 1):
             if existing in self._levels:
                 return self._levels[existing]
-        W = max(4.0**level, size)
+        W = max(ARM_ELEMENTS.level_ratio**level, size)
         self._levels[level] = W, self._propagators(W)
         return self._levels[level]
 
@@ -119,7 +93,7 @@ class Samples(NamedTuple):
 
 
 class PropagatorElements(NamedTuple):
-    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, STAGES)."""
+    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, stages)."""
 
     lengths: Array
     local: LocalCoefficients
@@ -134,7 +108,7 @@ def samples_of(rods: list[Rod]) -> Samples:
 def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
     """Elements that resolve every arm of a list, all of one build, for |w| <= W."""
     edges = _edges(rods, samples, W)
-    points, _, _ = gauss_method(STAGES)
+    points, _, _ = gauss_method(ARM_ELEMENTS.stages)
     for _ in range(ARM_ELEMENTS.max_halvings):
         if not len(edges) <= ARM_ELEMENTS.max_elements:
             break
@@ -208,7 +182,7 @@ def mean_waves(w: complex, F: float, local: Array, weights: Array) -> tuple[floa
     return number, rate
 
 
-@lru_cache(maxsize=ARMS_KEPT)
+@lru_cache(maxsize=ARM_ELEMENTS.arms_kept)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """D of the arm `rod`, cached."""
     return ArmDeterminant(rod)

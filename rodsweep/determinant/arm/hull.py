@@ -22,7 +22,6 @@ Extremes along the arm are looked up at points between the breaks, with `HULL.ma
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache
 from math import inf, isfinite, log, sqrt
 from typing import Any, NamedTuple
@@ -33,31 +32,8 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
-from .averaged_weight import TRIALS, averaged_regions, squared_norm
-from .region import UNKNOWN, Hull, Hulls
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HullSettings:
-    """Settings for the points and weights from which a region is computed."""
-
-    points: int = 25
-    """Chebyshev points of each smooth piece, where coefficients are looked up and alpha is differentiated."""
-    margin: float = 0.05
-    """Relative excess of a, for extremes between the points and for rounding."""
-    inside: float = 1e-9
-    """Distance of the first and last point from the ends of a piece, in units of the piece's length."""
-    least_remainder: float = 0.1
-    """Least 1 - c: the region grows beyond use where c approaches 1."""
-    wide: float = 0.15
-    """Smallest c of a region that counts as wide for every a."""
-    weights: int = 41
-    """Number of constant weights alpha to try, between the smallest and the largest g/nu."""
-
-
-HULL = HullSettings()
-MIDDLES = (0.0, 0.5, 1.0)
-"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha. Compiled functions read it."""
+from .averaged_weight import AVERAGED_WEIGHT, averaged_regions, squared_norm
+from .region import HULL, UNKNOWN, Hull, Hulls
 
 
 def hull_of(rod: Rod) -> Hull:
@@ -118,7 +94,7 @@ def _averaged_of_each(F: Array, lengths: Array, local: LocalCoefficients) -> Arr
     x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1)) * (1 - 2 * HULL.inside)
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = np.stack(local).reshape(6, len(F), -1)
-    regions = np.full((len(F), TRIALS, 2), inf)
+    regions = np.full((len(F), AVERAGED_WEIGHT.trials, 2), inf)
     for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
         regions[i] = averaged_regions(u, along[:, i], float(F[i, 0, 0]))
     return regions
@@ -165,7 +141,7 @@ def _least_square(alphas: Array, local: Array, push: float) -> float:
 def _constants(ratio: Array) -> Array:
     """Constant alpha that are tried, (HULL.weights + 1,), for ratios g/nu along arms, (...,)."""
     sizes = np.abs(ratio)
-    ends = np.log(np.maximum([sizes.min(), sizes.max()], (1e-3, 2e-3)))
+    ends = np.log(np.maximum([sizes.min(), sizes.max()], (HULL.least_ratio, 2 * HULL.least_ratio)))
     return np.append(
         np.exp(ends[0] + (ends[1] - ends[0]) * np.arange(HULL.weights) / (HULL.weights - 1)), 1.0
     )
@@ -193,20 +169,20 @@ def _averaged(arms: Arms) -> Iterator[Hull]:
 
 @compiled
 def _squares_following(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
-    """The largest squared norm of the matrix along arms for each of `MIDDLES`.
+    """The largest squared norm of the matrix along arms for each of `HULL.middles`.
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points).
     """
-    found = np.zeros(len(MIDDLES))
+    found = np.zeros(len(HULL.middles))
     points = local.shape[3]
     level = np.empty(points)
     log_alpha = np.empty(points)
-    for m in range(len(MIDDLES)):
+    for m in range(len(HULL.middles)):
         for arm in range(len(F)):
             for piece in range(len(lengths)):
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
-                    level[i] = MIDDLES[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    level[i] = HULL.middles[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
                     log_alpha[i] = log(g / (nu + level[i]))
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]

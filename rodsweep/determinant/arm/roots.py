@@ -6,41 +6,42 @@ The algorithm is that of `rodsweep.determinant.roots`, with D from propagators.
 import cmath
 import math
 from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ..newton import MAX_REFINEMENTS, REAL_BELOW
-from ..roots import (
-    A_ROOT,
-    BLURRED,
-    CLOSE_ROOTS,
-    EXPANSIONS,
-    ON_THE_AXIS,
-    REFINED_TOGETHER,
-    SAME_ROOT,
-    Roots,
-    sort_descending,
-)
-from ..value import ROUND_OFF, SECOND_STEP
+from ..exponents import EXPONENTS, ROUND_OFF
+from ..newton import ROOT_NEWTON
+from ..roots import ROOTS, Roots, sort_descending
+from ..value import DETERMINANT
 from .determinant import ArmDeterminant
 from .region import Hull
-from .value import ROOT_NOISE, ROOT_RESIDUAL
+from .value import ARM_VALUE
 
 Mask = NDArray[np.bool_]
-ROUNDING_OF_CHAIN = 16 * ROUND_OFF
-"""Relative error of an eigenvalue from the products of propagators, where minors in the middle of an arm are
-large against those at its tip; of 1000 eigenvalues of stepped arms against 19 digits it was 4e-15 at most."""
 
-MOST_ABOVE = 16.0
-"""Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four times
-as many as the roots need, and errors from rounding grow with their number."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmRootSettings:
+    """Settings for the refinement of eigenvalues of arms."""
+
+    rounding: float = 16.0
+    """Rounding error of an eigenvalue, in units of the spacing of doubles, from the products of propagators,
+    where minors in the middle of an arm are large against those at its tip; of 1000 eigenvalues of stepped
+    arms against 19 digits it was 4e-15 at most."""
+    most_above: float = 16.0
+    """Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four
+    times as many as the roots need, and errors from rounding grow with their number."""
+
+
+ARM_ROOTS = ArmRootSettings()
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
     """D'' exp(-S) at w, by a central difference of D'; real for real w."""
-    h = SECOND_STEP * abs(w)
+    h = DETERMINANT.second_step * abs(w)
     after = determinant.value(w + h)
     before = determinant.value(w - h)
     second = (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
@@ -50,14 +51,14 @@ def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> comp
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
     """Estimated distance from w to the nearest root of D, in 1/tau2, valid near a double root too."""
     D, D_w, S, noise = determinant.value(w)
-    e = ROOT_RESIDUAL * abs(D) + ROOT_NOISE * noise
-    error = e / max(abs(D_w), 1e-300)
-    if error > BLURRED * abs(w):
+    e = ARM_VALUE.root_residual * abs(D) + ARM_VALUE.root_noise * noise
+    error = e / max(abs(D_w), EXPONENTS.least_divisor)
+    if error > ROOTS.blurred * abs(w):
         second = abs(second_derivative(w, S, determinant))
-        if abs(D_w) ** 2 < 16 * e * second:
+        if abs(D_w) ** 2 < ROOTS.separated * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D_w) / second + spread)
-    return error + ROUNDING_OF_CHAIN * abs(w)
+    return error + ARM_ROOTS.rounding * ROUND_OFF * abs(w)
 
 
 def refined(w: complex, determinant: ArmDeterminant, farthest: float = math.inf) -> complex:
@@ -67,7 +68,7 @@ def refined(w: complex, determinant: ArmDeterminant, farthest: float = math.inf)
     """
     real = w.imag == 0
     last = 2 * farthest
-    for _ in range(MAX_REFINEMENTS):
+    for _ in range(ROOT_NEWTON.max_refinements):
         value = determinant.value(w)
         if value.D_w == 0:
             break
@@ -78,7 +79,7 @@ def refined(w: complex, determinant: ArmDeterminant, farthest: float = math.inf)
             break
         last = abs(step)
         w -= step
-        if abs(w.imag) <= REAL_BELOW * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
             w = complex(w.real, 0.0)
     return w
 
@@ -108,7 +109,7 @@ def roots(
     |w| at which D will be needed afterwards. Rounding makes infinite eigenvalues finite; these lie outside
     the hull, beyond the mesh or far from every root.
     """
-    first = np.where(np.abs(raw.imag) <= REAL_BELOW * np.abs(raw), raw.real + 0j, raw)
+    first = np.where(np.abs(raw.imag) <= ROOT_NEWTON.real_below * np.abs(raw), raw.real + 0j, raw)
     first[~np.isfinite(raw)] = np.inf
     inside = np.array([_inside(w, hull) for w in first.tolist()], dtype=bool)
     wave: Array = np.full(len(raw), math.inf)
@@ -121,13 +122,13 @@ def roots(
     for i in np.flatnonzero(resolved).tolist():
         error[i] = root_error(complex(first[i]), determinant)
         length[i] = determinant.length(complex(first[i]))
-    near = resolved & (error <= CLOSE_ROOTS * length)
+    near = resolved & (error <= ROOTS.largest_of_pair * length)
     chosen = np.flatnonzero(near)
     start = first[chosen]
     error = error[chosen]
     length = length[chosen]
     w, reach = _separated(start, error, determinant)
-    stands = np.isfinite(reach) | (error <= A_ROOT * length)
+    stands = np.isfinite(reach) | (error <= ROOTS.largest_correction * length)
     _refine(w, start, reach, stands, determinant)
     kept = np.flatnonzero(stands)
     order = np.arange(len(kept))
@@ -138,14 +139,14 @@ def roots(
     wave = np.array([determinant.wave_number(value) for value in w.tolist()])
     displacement = np.abs(w - start[kept]) / np.maximum(np.abs(w), length[kept])
     _raise_errors_of_equal_roots(w, error, determinant)
-    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen[kept], w, error, displacement, wave, axis, int(ahead))
 
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
     """Makes elements for all |w| up to a size; those for the largest |w| serve them too, if it is near."""
-    if size < largest <= MOST_ABOVE * size:
+    if size < largest <= ARM_ROOTS.most_above * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)
     determinant.level(size)
@@ -172,8 +173,8 @@ def _separated(w: Complex, error: Array, determinant: ArmDeterminant) -> tuple[C
         if reach[i] < math.inf or not others:
             continue
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= REFINED_TOGETHER * (error[i] + error[partner]):
-            for _ in range(EXPANSIONS):
+        if abs(w[partner] - w[i]) <= ROOTS.refined_together * (error[i] + error[partner]):
+            for _ in range(ROOTS.expansions):
                 middle = complex(w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
@@ -205,10 +206,10 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, determinant: ArmDeter
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
-            if apart <= SAME_ROOT * (error[i] + error[j]):
+            if apart <= ROOTS.same_root * (error[i] + error[j]):
                 value = determinant.value(complex(w[i]))
                 second = abs(second_derivative(complex(w[i]), value.S, determinant))
-                next_root = 2 * abs(value.D_w) / max(second, 1e-300)
-                if apart < next_root / 4:
+                next_root = 2 * abs(value.D_w) / max(second, EXPONENTS.least_divisor)
+                if apart < ROOTS.share_of_next * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Complex
+from ...determinant.exponents import EXPONENTS
 from ...discretization.beam import Beam
 
 
@@ -18,7 +19,7 @@ class LeadingMode:
     @property
     def period(self) -> float:
         """Period in tau2, or the decay time of a mode that does not oscillate."""
-        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), 1e-300)
+        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), EXPONENTS.least_divisor)
 
 
 def leading_mode(beam: Beam) -> LeadingMode:
