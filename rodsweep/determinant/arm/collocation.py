@@ -48,7 +48,7 @@ class Method(NamedTuple):
 
 @compiled
 def fill_terms(F: Array, W: float, coefficients: Array, method: Method, terms: Array) -> int:
-    """Fills the terms of the elements of n arms; returns how many are needed at most.
+    """Fills the terms of the elements of n arms; returns how many are needed, MAX_TERMS + 1 for more.
 
     F: forces, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n, batches, 6,
     STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, ENTRIES), all 0.
@@ -130,7 +130,7 @@ def _fill_batch(
         _rises(local, values, rates)
         if _end_values(weights, rates, n, terms):
             return n + 1
-    return terms.shape[1]
+    return terms.shape[1] + 1
 
 
 @compiled_for_vectors

@@ -42,7 +42,7 @@ def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: A
     """The coefficients of C in powers of w/W, (n, elements, terms, ENTRIES), each C column by column.
 
     F: forces of n arms. local: coefficients at the Gauss points, each (n, elements, stages). lengths: lengths
-    of the elements, in L, (elements,).
+    of the elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
     """
     n = len(F)
     elements = len(lengths)
@@ -55,6 +55,8 @@ def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: A
     )
     terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, ENTRIES))
     most = fill_terms(np.array(F, float), W, np.ascontiguousarray(coefficients), _method(), terms)
+    if most > ARM_ELEMENTS.max_terms:
+        raise FloatingPointError(f"{ARM_ELEMENTS.max_terms} powers of w are too few for these elements")
     return np.ascontiguousarray(terms[:, :elements, :most])
 
 

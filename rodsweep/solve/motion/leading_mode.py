@@ -28,8 +28,8 @@ def leading_mode(beam: Beam) -> LeadingMode:
     rest = np.zeros(layout.unknowns)
     J = layout.transverse(layout.transverse(beam.jacobian(rest)).T).T
     values, vectors = np.linalg.eig(J)
-    # The small imaginary part selects the member of a complex pair with Im w > 0.
-    k = int(np.argmax(values.real + 1e-9 * values.imag))
+    # The second key selects the member of a complex pair with Im w > 0.
+    k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknowns, complex)
     layout.transverse(z)[:] = vectors[:, k]
     # The tip's y is linear in z about the straight rod, and its 'velocity' along z is the deflection.

@@ -37,8 +37,8 @@ class TipPath(NamedTuple):
 
     strains: (h1, h2, Pi) at the nodes of every element, and their derivatives by the time in periods, for the
     solved states, (2, 3, K, elements (order + 1)). For (x, y, theta) of the tip over the period:
-    coefficients, (count, 3); samples at equidistant times, (`EXTREMA.oversampling` (count - 1), 3); smallest and
-    largest values, (3,) each.
+    coefficients, (count, 3); samples at equidistant times, (`EXTREMA.oversampling` (count - 1), 3); smallest
+    and largest values, (3,) each.
     """
 
     strains: Array
