@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from ..exponents import EXPONENTS, ROUND_OFF
 from ..newton import FAILED, ROOT_NEWTON, Zero
 from ..parameter_path import Path
-from ..roots import ROOTS
+from ..root_settings import ROOTS
 from ..value import DETERMINANT, Value
 from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in

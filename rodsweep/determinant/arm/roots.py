@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ..exponents import EXPONENTS, ROUND_OFF
 from ..newton import ROOT_NEWTON
-from ..roots import ROOTS, Roots, sort_descending
+from ..root_settings import ROOTS
+from ..roots import Roots, sort_descending
 from ..value import DETERMINANT
 from .determinant import ArmDeterminant
 from .region import Hull

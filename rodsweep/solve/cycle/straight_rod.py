@@ -10,7 +10,7 @@ from math import isnan, nan
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.roots import ROOTS
+from ...determinant.root_settings import ROOTS
 from ...model.rod import Rod
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum

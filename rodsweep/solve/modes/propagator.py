@@ -136,7 +136,7 @@ def exponential(matrices: Array) -> Array:
     # exp(x) - 1 is squared, not exp(x): small norms keep their digits, since (1 + r)^2 - 1 = 2 r + r^2.
     result = np.zeros_like(scaled)
     for order in range(PROPAGATOR.taylor_terms - 4, -1, -4):  # four terms a product
-        terms = sum(powers[i] / factorial(order + i) for i in range(4) if order + i > 0)
+        terms = sum(powers[i] / float(factorial(order + i)) for i in range(4) if order + i > 0)
         result = terms + powers[4] @ result
     for _ in range(squarings):
         result = 2 * result + result @ result
