@@ -132,9 +132,8 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     size_M = modulus(M)
     size_square = modulus(square)
     small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.series_below
-    if small or modulus(M * M - 4 * square) > EVEN_FUNCTIONS.squares_below * (
-        size_M * size_M + 4 * size_square
-    ):
+    close = EVEN_FUNCTIONS.squares_below * (size_M * size_M + 4 * size_square)
+    if small or modulus(M * M - 4 * square) > close:
         if small:
             even, noise_s, noise_d = by_series(M, cmath.sqrt(square), blur_M, blur_square)
         else:

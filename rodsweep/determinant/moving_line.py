@@ -131,11 +131,8 @@ def none_crosses(first: End, last: End, direction: Coefficients, most: int) -> t
         at = end_between((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            if (
-                examined >= most
-                or half_y < MOVING_LINE.smallest_share * depth
-                or stop - start < MOVING_LINE.smallest_share
-            ):
+            smallest = MOVING_LINE.smallest_share
+            if examined >= most or half_y < smallest * depth or stop - start < smallest:
                 return False, examined
             examined += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
@@ -144,10 +141,8 @@ def none_crosses(first: End, last: End, direction: Coefficients, most: int) -> t
             proved, cost_y, cost_p = free_of_zeros(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
-                half_y = min(
-                    MOVING_LINE.half_height_growth * half_y,
-                    MOVING_LINE.largest_half_height * math.hypot(at.line, y),
-                )
+                largest = MOVING_LINE.largest_half_height * math.hypot(at.line, y)
+                half_y = min(MOVING_LINE.half_height_growth * half_y, largest)
             elif cost_p > cost_y:
                 # Split in p at the height reached: what lies below is proved for both halves.
                 stack.append(Strip((start + stop) / 2, stop, y, half_y))

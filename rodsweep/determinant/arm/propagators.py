@@ -46,14 +46,13 @@ def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: A
     """
     n = len(F)
     elements = len(lengths)
-    batches = -(-elements // ARM_ELEMENTS.lanes)
+    together = ARM_ELEMENTS.lanes
+    batches = -(-elements // together)
     # The last batch is filled up with the last element.
-    lanes = np.minimum(np.arange(batches * ARM_ELEMENTS.lanes), elements - 1)
+    lanes = np.minimum(np.arange(batches * together), elements - 1)
     scaled = np.array(local)[:, :, lanes] * lengths[lanes][:, None]
-    coefficients = scaled.reshape(6, n, batches, ARM_ELEMENTS.lanes, ARM_ELEMENTS.stages).transpose(
-        1, 2, 0, 4, 3
-    )
-    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, ENTRIES))
+    coefficients = scaled.reshape(6, n, batches, together, ARM_ELEMENTS.stages).transpose(1, 2, 0, 4, 3)
+    terms = np.zeros((n, batches * together, ARM_ELEMENTS.max_terms, ENTRIES))
     most = fill_terms(np.array(F, float), W, np.ascontiguousarray(coefficients), _method(), terms)
     if most > ARM_ELEMENTS.max_terms:
         raise FloatingPointError(f"{ARM_ELEMENTS.max_terms} powers of w are too few for these elements")

@@ -202,9 +202,8 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
                 if not known:
                     zeros.append(zero)
                 continue
-        if examined > BOX_PROOF.max_boxes or (
-            half[0] < BOX_PROOF.smallest_box * eta and half[1] < BOX_PROOF.smallest_box * abs(p)
-        ):
+        smallest = BOX_PROOF.smallest_box
+        if examined > BOX_PROOF.max_boxes or (half[0] < smallest * eta and half[1] < smallest * abs(p)):
             left.append(box)
         elif cost_w >= cost_p:
             stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))

@@ -100,11 +100,10 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
         grow = min(grow, root.real + with_rates + curve)
         decay = min(decay, -root.real + against + curve)
-    exponentials = math.exp(min(grow - S, EXPONENTS.largest_exponent)) + math.exp(
-        min(decay - S, EXPONENTS.largest_exponent)
-    )
+    largest = EXPONENTS.largest_exponent
+    exponentials = math.exp(min(grow - S, largest)) + math.exp(min(decay - S, largest))
     # The -1 of E = (cosh - 1)/z and its derivative.
-    exponentials += 2 * math.exp(min(drift - S, EXPONENTS.largest_exponent))
+    exponentials += 2 * math.exp(min(drift - S, largest))
     # Bounds that hold near z = 0 too, where those by 1/|z| are useless: E(0) = 1/2 is an eighth of four
     # exponentials.
     E = 1 / 8
@@ -135,9 +134,8 @@ def bound_together(centre: Centre, rates: Pair, radii: Radii) -> float:
     E, E1 = terms_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
-    return math.exp(min(drift - S, EXPONENTS.largest_exponent)) + far * (
-        (T + abs(T1) * sigma) * E + 2 * steep * E1
-    )
+    still = math.exp(min(drift - S, EXPONENTS.largest_exponent))
+    return still + far * ((T + abs(T1) * sigma) * E + 2 * steep * E1)
 
 
 @compiled

@@ -125,9 +125,8 @@ def lasting_tails(orbit: Orbit) -> Array:
     if not orbit.form.smooth_stresses:
         fields = _by_elements(orbit, orbit.points)
         ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
-        in_space = float(
-            (ends / np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENTS.least_divisor)).max()
-        )
+        largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENTS.least_divisor)
+        in_space = float((ends / largest).max())
     else:
         in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
     return np.array([in_space, _tail_in_time(orbit)])

@@ -219,7 +219,6 @@ def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) ->
 
 def _logarithm(before: Array, after: Array) -> Array:
     """Logarithm of the quotient of two errors, of any shape; an error may be 0."""
-    quotient: Array = np.log(
-        np.maximum(before, EXPONENTS.least_divisor) / np.maximum(after, EXPONENTS.least_divisor)
-    )
+    least = EXPONENTS.least_divisor
+    quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient
