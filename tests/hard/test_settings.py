@@ -2,8 +2,8 @@
 
 A status in place of an answer is honest, but no answer: at most `MOST_WITHOUT_ANSWER` of a field's runs may
 end so. Every field of every settings object is found by introspection, but for those of ANOTHER_START; an
-object without a case fails. The suite takes every thirty-first field, without the slow cases; RODSWEEP_RODS=1
-takes all (`make survey`).
+object without a case fails. Compiled functions that read a changed field are compiled again. The suite takes
+every thirty-first field, without the slow cases; RODSWEEP_RODS=1 takes all (`make survey`).
 """
 
 import importlib
