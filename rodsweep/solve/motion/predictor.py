@@ -6,7 +6,8 @@ extrapolation points depend on the method's tableau: `time_scheme.POINTS`.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from math import inf
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +26,11 @@ class StagePredictorSettings(CompiledSettings):
     """Settings for the prediction of stages."""
 
     largest_step_ratio: float = 2.0
-    """Largest ratio of a step and the last one for which stages are extrapolated."""
+    """Largest ratio of a step and the last one for which stages are extrapolated. At 1 no growing step would
+    be, and errors of a motion grow by a factor of five: Newton's method stops too early at PETSc's guess."""
     middle: float = 0.5
     """Time in a step at which the matrix is made, in units of the step; 0 for methods of a single stage."""
+    ranges: ClassVar = {"largest_step_ratio": (1.0, inf)}
 
 
 STAGE_PREDICTOR = StagePredictorSettings()
