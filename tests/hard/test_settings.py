@@ -27,6 +27,7 @@ from numba.core.dispatcher import Dispatcher
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
+from rodsweep.determinant.certificate.box import box_of
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
@@ -745,6 +746,13 @@ def test_settings_are_frozen_and_have_keywords_only():
     for value in settings().values():
         assert type(value).__dataclass_params__.frozen
         assert all(field.kw_only for field in fields(value))
+
+
+def test_a_changed_setting_reaches_compiled_functions():
+    before = box_of(0.0, 1.0)
+    with replaced("BOX", "padding", 2.0):
+        assert box_of(0.0, 1.0)[0] - before[0] == pytest.approx(settings()["BOX"].padding)
+    assert box_of(0.0, 1.0) == before
 
 
 @pytest.mark.parametrize(("name", "field"), FIELDS[::EACH])
