@@ -32,7 +32,7 @@ from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
 from ..exponents import EXPONENTS
 from ..value import Value
-from .completeness import is_whole
+from .completeness import has_conjugate
 from .count_settings import ARM_COUNT
 from .determinant import ArmDeterminant
 from .region import Hull, clearance
@@ -91,13 +91,13 @@ def count_right_of(
     corner = _corner(line, hull)
     top = complex(line, corner.imag)
     known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
-    known = known[is_whole(known)]
+    known = known[has_conjugate(known)]
     divided = DividedDeterminant(determinant, hull, known)
     nodes = 0
     total = 0.0
     try:
         # Elements for the largest |w| first: they serve most others.
-        determinant.level(size_of_count(line, determinant, hull), ARM_COUNT.levels_above)
+        determinant.level(largest_w_of_count(line, determinant, hull), ARM_COUNT.levels_above)
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, divided)
             total += change
@@ -123,7 +123,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     return True
 
 
-def size_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of a line evaluates D."""
     corner = _corner(line, hull)
     return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)

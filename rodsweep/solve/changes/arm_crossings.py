@@ -121,6 +121,7 @@ class CrossingSearch:
         """Searches one interval: keeps its crossing, or divides the interval."""
         left = self.place(a)
         right = self.place(b)
+        # Equal counts leave room for a pair that crosses and returns.
         if left.unstable == right.unstable:
             share = next_count_place(left, right)
             if share == 0.0:

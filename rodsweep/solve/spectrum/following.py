@@ -20,7 +20,7 @@ from ...determinant.value import DETERMINANT
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from .prediction import Track, guess_at, mates_of, place_two
+from .prediction import Track, guess_at, guess_two, mates_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +92,7 @@ def settled_error(here: Corrected, crowding: float, exact: bool) -> float:
 
 
 @compiled
-def keep(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool:
+def store_root(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool:
     """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
 
     False for a pair that has become real. The error of eigenvalue k is in the track already.
@@ -150,6 +150,7 @@ def _correct_all(
     m = len(w)
     mate = np.empty(m, np.int64)
     mates_of(guess, mate)
+    # One step for all before further steps for any: the crowding of a root needs its neighbours.
     first = [Corrected(0j, 0j, math.inf, math.inf) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
@@ -164,7 +165,7 @@ def _correct_all(
         k = order[rank]
         if guess[k].imag >= 0:
             last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
-            if not keep(track, i, k, mate[k], last):
+            if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
     return distinct_roots(w, error)
@@ -187,7 +188,7 @@ def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients,
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    place_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
+                    guess_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, rod, direction):
             return i
