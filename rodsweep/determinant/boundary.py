@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from .exponents import EXPONENTS
 from .parameter_plane import PLANE, STENCIL, Plane
 
 
@@ -26,7 +27,7 @@ class BoundarySettings:
     """Largest Newton step, in units of the axes' lengths and of h, before the correction counts as failed."""
     converged: float = 4.0
     """Newton step, in units of the rounding error, at which the correction has converged."""
-    singular: float = 1e-300
+    singular: float = EXPONENTS.least_divisor
     """Determinant of the matrix below which it is singular; far below that of any regular matrix."""
     stagnation: float = 1e-10
     """A Newton step below this that did not halve is rounding error: the correction has converged."""

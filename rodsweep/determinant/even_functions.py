@@ -7,13 +7,32 @@ ds/dP^2 = 4 d'. Both methods state the rounding errors of s and d, in units of a
 
 import cmath
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
-from .exponents import Hyperbolic, hyperbolic, modulus
+from ..model.compiled.settings import CompiledSettings
+from .exponents import ROUND_OFF, Hyperbolic, hyperbolic, modulus
 
-MAX_SERIES_TERMS = 13
-"""Number of terms of the series; the next term is below rounding error."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvenFunctionSettings(CompiledSettings):
+    """Settings for the methods by which s and d are computed."""
+
+    series_terms: int = 13
+    """Number of terms of the series."""
+    series_below: float = 1.5
+    """abs(M) + 2 abs(P) below which `by_series` is used."""
+    squares_below: float = 0.1
+    """abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which `by_squares` is used."""
+
+    def __post_init__(self) -> None:
+        n = self.series_terms
+        if self.series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
+            raise ValueError(f"{n} terms leave more than rounding error of a series at {self.series_below}")
+
+
+EVEN_FUNCTIONS = EvenFunctionSettings()
 
 
 class EvenFunctions(NamedTuple):
@@ -136,7 +155,7 @@ def by_series(
     three = 0j  # of (z+, z+, z-)
     four = 0j  # of (z+, z+, z-, z-)
     factor = size / 2
-    for n in range(1, MAX_SERIES_TERMS):
+    for n in range(1, EVEN_FUNCTIONS.series_terms):
         # 1/(2n + 2)!, updated from term to term.
         factor /= (2 * n + 1) * (2 * n + 2)
         s1 += n * factor * (power_plus + power_minus)

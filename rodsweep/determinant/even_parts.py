@@ -15,16 +15,8 @@ import math
 
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .even_functions import EvenFunctions, by_roots, by_series
-from .exponents import LEAST_DIVISOR, entire_cosh, exponents, modulus
-
-UNIT = 4.440892098500626e-16
-"""Unit of the noise of s, d and D: two relative rounding errors."""
-SERIES_BELOW = 1.5
-"""abs(M) + 2 abs(P) below which `by_series` is used."""
-SQUARES_BELOW = 0.1
-"""abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which `by_squares` is used."""
-
+from .even_functions import EVEN_FUNCTIONS, EvenFunctions, by_roots, by_series
+from .exponents import EXPONENTS, UNIT, entire_cosh, exponents, modulus
 
 EvenSum = tuple[EvenFunctions, complex, float]
 """(even functions, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is the error
@@ -72,7 +64,7 @@ def _noise_by_squares(
             blur = (blur_product + z * blur_large) / large
             blur_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
             blur_slope = blur_slope / large + steep * blur_large / large
-        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, LEAST_DIVISOR))
+        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENTS.least_divisor))
         noise += bound * (blur_slope + steep * (1 + q / 4 + blur / 2 / max(1.0, q)))
     return noise
 
@@ -139,8 +131,9 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     # themselves.
     size_M = modulus(M)
     size_square = modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < SERIES_BELOW
-    if small or modulus(M * M - 4 * square) > SQUARES_BELOW * (size_M * size_M + 4 * size_square):
+    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.series_below
+    close = EVEN_FUNCTIONS.squares_below * (size_M * size_M + 4 * size_square)
+    if small or modulus(M * M - 4 * square) > close:
         if small:
             even, noise_s, noise_d = by_series(M, cmath.sqrt(square), blur_M, blur_square)
         else:

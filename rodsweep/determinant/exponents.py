@@ -5,17 +5,37 @@ The notation is that of `rodsweep.determinant.value`. Series replace closed form
 
 import cmath
 import math
-from typing import NamedTuple
+import sys
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from ..model.compiled.compilation import compiled
+from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 
-LEAST_DIVISOR = 1e-300
-"""Smallest modulus of a divisor: far below all numbers here that are not 0, and its inverse is finite."""
-E_SERIES_BELOW = 0.1
-"""abs(z) below which E is a series, because the closed form of dE/dz would cancel."""
-FEW_TERMS_BELOW = 0.25
-"""abs(v) below which sinh(q)/q, v = q^2, is a series, because the closed form of its slope would cancel."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExponentSettings(CompiledSettings):
+    """Settings for the entire functions of exponents."""
+
+    least_divisor: float = 1e-300
+    """Smallest modulus of a divisor: far below all numbers here that are not 0, and its inverse is finite."""
+    largest_exponent: float = 600.0
+    """Upper limit of exponents before exp, which would overflow at 709."""
+    cosh_series_below: float = 0.1
+    """abs(z) below which E is a series, because the closed form of dE/dz would cancel."""
+    sinh_series_below: float = 0.25
+    """abs(v) below which sinh(q)/q, v = q^2, is a series, because the closed form of its slope would
+    cancel."""
+    ranges: ClassVar = {"largest_exponent": (0.0, 709.0)}
+
+
+EXPONENTS = ExponentSettings()
+
+ROUND_OFF = sys.float_info.epsilon
+"""Spacing of doubles at 1."""
+UNIT = 2 * ROUND_OFF
+"""Unit of the noise of D and of its parts: two relative rounding errors."""
 
 
 class Hyperbolic(NamedTuple):
@@ -54,7 +74,7 @@ def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex,
 @compiled
 def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
     """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root = sqrt(z)."""
-    if abs(z) < E_SERIES_BELOW:
+    if abs(z) < EXPONENTS.cosh_series_below:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
         slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
         size = math.exp(-scale)
@@ -69,7 +89,7 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
 @compiled
 def hyperbolic(v: complex, root: complex) -> Hyperbolic:
     """The hyperbolic functions of q = `root`; v = q^2."""
-    if modulus(v) < FEW_TERMS_BELOW:
+    if modulus(v) < EXPONENTS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
         second = (1 + v / 10 * second) / 3

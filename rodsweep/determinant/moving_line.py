@@ -11,26 +11,38 @@ displacement dw = i dy + l' dp, at most hypot(h_y, l' h_p), instead of i dy.
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from ..model.compiled.compilation import compiled
+from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX_MARGIN, box_of, squared_amplification_between
+from .certificate.box import BOX, box_of, squared_amplification_between
 from .certificate.covering import costs, distance, mean_rates, remainder
-from .certificate.discs import CLEARANCE, ROUNDING_OF_D, centre_at
+from .certificate.discs import DISCS, centre_at
 from .parameter_path import changes, determinant_along
 
-FIRST_HALF_HEIGHT = 0.35
-"""Half-height of the first rectangle, in units of the line's distance from the imaginary axis."""
-HALF_HEIGHT_GROWTH = 1.6
-"""Ratio of the half-height of the next rectangle to the half-height of a proved rectangle."""
-LARGEST_HALF_HEIGHT = 0.6
-"""Largest half-height, in units of |w| at the lower edge, because discs must avoid w = 0."""
-OVERLAP = 1 + 1e-7
-"""Factor on the half-widths of every rectangle, so that rounding leaves no gap between rectangles."""
-SMALLEST_SHARE = 1e-6
-"""Smallest width in p, over the interval's width, and smallest half-height, over the line's distance. The
-proof fails if a smaller rectangle is needed."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MovingLineSettings(CompiledSettings):
+    """Settings for the rectangles that carry a count along a path."""
+
+    first_half_height: float = 0.35
+    """Half-height of the first rectangle, in units of the line's distance from the imaginary axis."""
+    half_height_growth: float = 1.6
+    """Ratio of the half-height of the next rectangle to the half-height of a proved rectangle."""
+    largest_half_height: float = 0.6
+    """Largest half-height, in units of |w| at the lower edge, because discs must avoid w = 0."""
+    overlap: float = 1e-7
+    """Relative excess of the half-widths of every rectangle, so that rounding leaves no gap between
+    rectangles."""
+    smallest_share: float = 1e-6
+    """Smallest width in p, over the interval's width, and smallest half-height, over the line's distance. The
+    proof fails if a smaller rectangle is needed."""
+    ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
+
+
+MOVING_LINE = MovingLineSettings()
 
 
 class End(NamedTuple):
@@ -80,16 +92,16 @@ def free_of_zeros(
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(at.line, y)
     D, D_w, D_p, S, noise = determinant_along(w, at.coefficients, direction)
-    rounding = ROUNDING_OF_D * noise
+    rounding = DISCS.rounding * noise
     centre = centre_at(w, at.coefficients, changes(at.coefficients, direction), S)
     radii = (math.hypot(half_y, tilt * half_p), half_p)
     if abs(D) > 2 * rounding:
-        if remainder(centre, (D_w / D, D_p / D), radii, CLEARANCE * abs(D) - rounding, 1):
+        if remainder(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
             return True, 0.0, 0.0
         mean = mean_rates(centre)
         in_w = D_w - mean[0] * D
         in_p = D_p - mean[1] * D
-        room = CLEARANCE * distance(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p) - rounding
+        room = DISCS.clearance * distance(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p) - rounding
         if room > 0 and remainder(centre, mean, radii, room, 1):
             return True, 0.0, 0.0
     cost_y, cost_p = costs(centre, half)
@@ -106,29 +118,31 @@ def none_crosses(first: End, last: End, direction: Coefficients, most: int) -> t
     if first.p > last.p:
         first, last = last, first
     depth = -min(first.line, last.line)
-    a = math.sqrt(BOX_MARGIN * squared_amplification_between(first.coefficients, last.coefficients))
+    a = math.sqrt((1 + BOX.margin) * squared_amplification_between(first.coefficients, last.coefficients))
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
     top = box_of(a, depth)[1]
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0
-    stack = [Strip(0.0, 1.0, 0.0, FIRST_HALF_HEIGHT * depth)]
+    stack = [Strip(0.0, 1.0, 0.0, MOVING_LINE.first_half_height * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
         at = end_between((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            if examined >= most or half_y < SMALLEST_SHARE * depth or stop - start < SMALLEST_SHARE:
+            smallest = MOVING_LINE.smallest_share
+            if examined >= most or half_y < smallest * depth or stop - start < smallest:
                 return False, examined
             examined += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             middle = y + half_y if y > 0 else 0.0
-            half = (OVERLAP * half_y, OVERLAP * half_p)
+            half = ((1 + MOVING_LINE.overlap) * half_y, (1 + MOVING_LINE.overlap) * half_p)
             proved, cost_y, cost_p = free_of_zeros(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
-                half_y = min(HALF_HEIGHT_GROWTH * half_y, LARGEST_HALF_HEIGHT * math.hypot(at.line, y))
+                largest = MOVING_LINE.largest_half_height * math.hypot(at.line, y)
+                half_y = min(MOVING_LINE.half_height_growth * half_y, largest)
             elif cost_p > cost_y:
                 # Split in p at the height reached: what lies below is proved for both halves.
                 stack.append(Strip((start + stop) / 2, stop, y, half_y))

@@ -6,28 +6,39 @@ double eigenvalue the simple eigenvalues lose half of their digits, but p does n
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
+from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .exponents import LEAST_DIVISOR
+from .exponents import EXPONENTS, ROUND_OFF
 from .parameter_path import coefficients_at, determinant_along
-from .value import ROUND_OFF, scaled_determinant
+from .value import scaled_determinant
 
-MAX_NEWTON_STEPS = 15
-"""Maximum Newton steps to a crossing; a double eigenvalue may need twice as many."""
-MAX_REFINEMENTS = 12
-"""Maximum Newton steps to an eigenvalue."""
-LARGEST_NEWTON_STEP = 20.0
-"""Largest Newton step, in units of the given scale, before the iteration counts as failed."""
-LAST_NEWTON_STEP = 4.0
-"""Step, in units of the rounding error, at which the iteration has converged."""
-JACOBIAN_STEP = 1e-5
-"""Relative step of the differences in the Jacobian, which need not be accurate."""
-STAGNANT_STEP = 1e-9
-"""Relative step of p below which a step that did not halve is rounding error: the iteration has converged."""
-REAL_BELOW = 1e-14
-"""Relative imaginary part below which an eigenvalue is real: the size of rounding errors."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RootNewtonSettings(CompiledSettings):
+    """Settings for Newton's method to crossings and eigenvalues."""
+
+    max_steps: int = 15
+    """Maximum Newton steps to a crossing; a double eigenvalue may need twice as many."""
+    max_refinements: int = 12
+    """Maximum Newton steps to an eigenvalue."""
+    largest_step: float = 20.0
+    """Largest Newton step, in units of the given scale, before the iteration counts as failed."""
+    last_step: float = 4.0
+    """Step, in units of the rounding error, at which the iteration has converged."""
+    jacobian_step: float = 1e-5
+    """Relative step of the differences in the Jacobian, which need not be accurate."""
+    stagnant_step: float = 1e-9
+    """Relative step of p below which a step that did not halve is rounding error: the iteration has
+    converged."""
+    real_below: float = 1e-14
+    """Relative imaginary part below which an eigenvalue is real: the size of rounding errors."""
+
+
+ROOT_NEWTON = RootNewtonSettings()
 
 
 class Zero(NamedTuple):
@@ -48,10 +59,11 @@ def crossing_newton(
 ) -> Zero:
     """The zero of D(i eta; p) near (eta, p), with error estimates from rounding and the last step.
 
-    scale: expected sizes of eta and p. FAILED for a step beyond `LARGEST_NEWTON_STEP` or without convergence.
+    scale: expected sizes of eta and p. FAILED for a step beyond `ROOT_NEWTON.largest_step` or without
+    convergence.
     """
     last = math.inf
-    for _ in range(MAX_NEWTON_STEPS):
+    for _ in range(ROOT_NEWTON.max_steps):
         coefficients = coefficients_at(p, origin, direction)
         D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
         # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
@@ -68,12 +80,12 @@ def crossing_newton(
         e_p = blur * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
         # Negated comparisons are also true for NaN.
-        if not step < LARGEST_NEWTON_STEP or not eta + in_eta > 0:
+        if not step < ROOT_NEWTON.largest_step or not eta + in_eta > 0:
             return FAILED
         eta += in_eta
         p += in_p
-        if (abs(in_eta) <= LAST_NEWTON_STEP * e_eta and abs(in_p) <= LAST_NEWTON_STEP * e_p) or (
-            step > last / 2 and step * scale[1] < STAGNANT_STEP * abs(p)
+        if (abs(in_eta) <= ROOT_NEWTON.last_step * e_eta and abs(in_p) <= ROOT_NEWTON.last_step * e_p) or (
+            step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)
         ):
             return Zero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
@@ -89,10 +101,10 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
     start = x
     first = p
     last = math.inf
-    for _ in range(2 * MAX_NEWTON_STEPS):
+    for _ in range(2 * ROOT_NEWTON.max_steps):
         D, D_w, D_p, S, noise = _real(x, p, origin, direction)
-        h = JACOBIAN_STEP * abs(x)
-        k = JACOBIAN_STEP * reach
+        h = ROOT_NEWTON.jacobian_step * abs(x)
+        k = ROOT_NEWTON.jacobian_step * reach
         _, right, _, S_right, _ = _real(x + h, p, origin, direction)
         _, left, _, S_left, _ = _real(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real(x, p + k, origin, direction)
@@ -106,14 +118,14 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         in_p = (D_ww * D - D_w * D_w) / cross
         blur = noise + ROUND_OFF * abs(p * D_p)
         e_p = blur * abs(D_ww) / abs(cross)
-        e_x = (blur * abs(D_wp) + noise / max(abs(x), LEAST_DIVISOR) * abs(D_p)) / abs(cross)
+        e_x = (blur * abs(D_wp) + noise / max(abs(x), EXPONENTS.least_divisor) * abs(D_p)) / abs(cross)
         x += in_x
         p += in_p
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * reach or not x * start > 0:
             return FAILED
-        if abs(in_p) <= LAST_NEWTON_STEP * e_p and (
-            abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2
+        if abs(in_p) <= ROOT_NEWTON.last_step * e_p and (
+            abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2
         ):
             return Zero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
@@ -138,7 +150,7 @@ def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) 
     """
     real = w.imag == 0
     last = 2 * farthest
-    for _ in range(MAX_REFINEMENTS):
+    for _ in range(ROOT_NEWTON.max_refinements):
         value = scaled_determinant(w, coefficients)
         if value.D_w == 0:
             break
@@ -151,7 +163,7 @@ def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) 
         last = abs(step)
         w -= step
         # D is real on the real axis, where rounding leaves a tiny imaginary part.
-        if abs(w.imag) <= REAL_BELOW * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
             w = complex(w.real, 0.0)
     return w
 

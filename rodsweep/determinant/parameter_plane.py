@@ -8,8 +8,9 @@ from typing import NamedTuple
 from ..model.parameters import CRUSHING, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
+from .exponents import ROUND_OFF
 from .parameter_path import ValueAlong, determinant_along
-from .value import ROUND_OFF, Value, scaled_determinant
+from .value import Value, scaled_determinant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

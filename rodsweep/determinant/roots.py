@@ -17,27 +17,9 @@ from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .certificate.box import box_of
-from .newton import REAL_BELOW, refined
-from .value import TYPICAL_NOISE, distance_to_next, newton_correction, scaled_determinant, second_derivative
-
-A_ROOT = 1e-2
-"""Largest Newton correction of an eigenvalue that approximates a root, in units of the length over which D
-changes. Eigenvalues with larger corrections are artefacts of the mesh."""
-CLOSE_ROOTS = 0.1
-"""Largest Newton correction, in the same unit, of an eigenvalue that may be refined in a pair."""
-REFINED_TOGETHER = 4.0
-"""Distance of two eigenvalues, over the sum of their corrections, below which both are refined in a pair."""
-EXPANSIONS = 2
-"""Number of expansions of D for a pair, each about the middle of the two roots of the last."""
-ON_THE_AXIS = 1e-13
-"""Relative real part below which an eigenvalue counts as imaginary, whatever its error estimate."""
-BLURRED = 1e-11
-"""Relative Newton correction above which a double root is checked for."""
-SEPARATED = 16.0
-"""|D'|^2 in units of e |D''| from which the Newton correction is valid: the next root, at 2 |D'/D''|, is then
-32 errors away."""
-SAME_ROOT = 4.0
-"""Distance of two roots, over the sum of their errors, below which the two may be equal."""
+from .newton import ROOT_NEWTON, refined
+from .root_settings import ROOTS
+from .value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
 
 
 class Roots(NamedTuple):
@@ -67,12 +49,12 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
     roots cannot be separated within sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction(w, coefficients)
-    if error > BLURRED * abs(w):
+    if error > ROOTS.blurred * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
-        e = max(abs(D), TYPICAL_NOISE * noise)
+        e = max(abs(D), DETERMINANT.typical_noise * noise)
         second = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
-        if abs(D1) ** 2 < SEPARATED * e * second:
+        if abs(D1) ** 2 < ROOTS.separated * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
     return error, length, wave
@@ -117,8 +99,8 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
             if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
                 partner = j
                 least = abs(w[j] - w[i])
-        if partner >= 0 and least <= REFINED_TOGETHER * (error[i] + error[partner]):
-            for _ in range(EXPANSIONS):
+        if partner >= 0 and least <= ROOTS.refined_together * (error[i] + error[partner]):
+            for _ in range(ROOTS.expansions):
                 middle = (w[i] + w[partner]) / 2
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
@@ -173,19 +155,19 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
-        if abs(raw[i].imag) <= REAL_BELOW * abs(raw[i]):
+        if abs(raw[i].imag) <= ROOT_NEWTON.real_below * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error(first[i], coefficients)
         # No eigenvalue lies outside the box; what the mesh has there is its artefact.
         real, imag = box_of(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
-        near[i] = inside[i] and wave[i] <= most_waves and error[i] <= CLOSE_ROOTS * length[i]
+        near[i] = inside[i] and wave[i] <= most_waves and error[i] <= ROOTS.largest_of_pair * length[i]
     chosen = np.flatnonzero(near)
     first = first[chosen]
     error = error[chosen]
     length = length[chosen]
     wave = wave[chosen]
-    w, stands = _refined_all(first, error, wave, error <= A_ROOT * length, coefficients)
+    w, stands = _refined_all(first, error, wave, error <= ROOTS.largest_correction * length, coefficients)
     order = np.flatnonzero(stands)
     order = order[_descending(w[order])]
     displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
@@ -194,7 +176,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     error = error[order]
     wave = wave[order]
     _raise_errors_of_equal_roots(w, error, coefficients)
-    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen, w, error, displacement, wave, axis, ahead)
 
@@ -237,8 +219,8 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coeffic
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
-            if apart <= SAME_ROOT * (error[i] + error[j]):
+            if apart <= ROOTS.same_root * (error[i] + error[j]):
                 next_root = distance_to_next(w[i], coefficients)
-                if apart < next_root / 4:
+                if apart < ROOTS.share_of_next * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

@@ -7,19 +7,27 @@ D = D_w = 0 lies between. Two changes between the same two forces may cancel and
 `thresholds` proves completeness.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
+from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 from .newton import crossing_newton, double_newton
 
-SAME_CROSSING = 1e-8
-"""Relative distance below which two zeros are equal, since Newton's method reaches rounding error."""
-MAX_ZEROS_PER_MODE = 6
-"""Newton starts per eigenvalue: three forces for each of two lists."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StabilityChangeSettings(CompiledSettings):
+    """Settings for crossings between two spectra."""
+
+    same_crossing: float = 1e-8
+    """Relative distance below which two zeros are equal, since Newton's method reaches rounding error."""
+
+
+STABILITY_CHANGES = StabilityChangeSettings()
 
 
 class ForceChange(NamedTuple):
@@ -91,7 +99,7 @@ def crossings_between(
     a = before[0].real
     b = after[0].real
     chord = low + (high - low) * a / (a - b)
-    found = np.empty((MAX_ZEROS_PER_MODE * len(before), 3))
+    found = np.empty((3 * (len(before) + len(after)), 3))
     n = 0
     for F in (chord, low, high):
         for eigenvalues in (before, after):
@@ -103,8 +111,12 @@ def crossings_between(
                     continue
                 is_new = True
                 for i in range(n):
-                    same_F = abs(zero.p - found[i, 0]) <= SAME_CROSSING * (1 + abs(found[i, 0]))
-                    same_eta = abs(zero.eta_or_x - found[i, 1]) <= SAME_CROSSING * (1 + abs(found[i, 1]))
+                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGES.same_crossing * (
+                        1 + abs(found[i, 0])
+                    )
+                    same_eta = abs(zero.eta_or_x - found[i, 1]) <= STABILITY_CHANGES.same_crossing * (
+                        1 + abs(found[i, 1])
+                    )
                     is_new = is_new and not (same_F and same_eta)
                 if is_new:
                     found[n] = zero.p, zero.eta_or_x, zero.error_of_p

@@ -20,22 +20,30 @@ with S = max Re sqrt(z+-), because D spans hundreds of decades.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
+from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
-from .exponents import LEAST_DIVISOR, exponents
+from .exponents import EXPONENTS, exponents
 
-ROUND_OFF = 2.220446049250313e-16
-"""Spacing of doubles at 1."""
-TYPICAL_NOISE = 0.1
-"""Typical rounding error of D in units of `noise`: the upper quartile; median 0.05, maximum 0.7."""
-IN_PLACE_OF_0 = 1e-200
-"""w, in 1/tau2, in place of 0: D - 1 is below rounding there, and no formula divides by 0."""
-SECOND_STEP = 1e-4
-"""Step of the difference for D'', in units of |w|; its relative error is about the square, enough to tell a
-double root from two roots."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeterminantSettings(CompiledSettings):
+    """Settings for values of D and for differences of D."""
+
+    typical_noise: float = 0.1
+    """Typical rounding error of D in units of `noise`: the upper quartile; median 0.05, maximum 0.7."""
+    in_place_of_0: float = 1e-200
+    """w, in 1/tau2, in place of 0: D - 1 is below rounding there, and no formula divides by 0."""
+    second_step: float = 1e-4
+    """Step of the difference for D'', in units of |w|; its relative error is about the square, enough to tell
+    a double root from two roots."""
+
+
+DETERMINANT = DeterminantSettings()
 
 
 class Value(NamedTuple):
@@ -72,9 +80,9 @@ def branches(w: complex, coefficients: Coefficients) -> Branches:
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> Value:
-    """D and D' at w; w = 0 is replaced by IN_PLACE_OF_0, where D is 1 too."""
+    """D and D' at w; w = 0 is replaced by `DETERMINANT.in_place_of_0`, where D is 1 too."""
     if w == 0:
-        w = complex(IN_PLACE_OF_0, 0.0)
+        w = complex(DETERMINANT.in_place_of_0, 0.0)
     return from_parts(w, coefficients, even_parts(w, coefficients))
 
 
@@ -101,7 +109,7 @@ def second_difference(after: Value, before: Value, S: float, h: float) -> comple
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) at w, by a central difference of D'; real for real w."""
-    h = SECOND_STEP * abs(w)
+    h = DETERMINANT.second_step * abs(w)
     after = scaled_determinant(w + h, coefficients)
     before = scaled_determinant(w - h, coefficients)
     second = second_difference(after, before, S, h)
@@ -112,7 +120,7 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 def distance_to_next(w: complex, coefficients: Coefficients) -> float:
     """Estimated distance 2 |D'/D''| from an eigenvalue w to the next; accurate for close eigenvalues."""
     here = scaled_determinant(w, coefficients)
-    return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), LEAST_DIVISOR)
+    return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), EXPONENTS.least_divisor)
 
 
 @compiled
@@ -126,7 +134,7 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
     # A value that happens to be far below its rounding error proves no better root.
-    error = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), LEAST_DIVISOR)
+    error = max(abs(value), DETERMINANT.typical_noise * noise) / max(abs(slope), EXPONENTS.least_divisor)
     P, P1, _, plus, minus = branches(w, coefficients)
     root_plus = math.sqrt(abs(plus))
     root_minus = math.sqrt(abs(minus))
@@ -134,4 +142,4 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     # D is even in P: for z+ close to z- the branch point of P does not affect D, and P' is limited.
     P1 *= min(1.0, abs(P) / max(1.0, root_plus, root_minus))
     fast = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
-    return error, 2 / max(fast, LEAST_DIVISOR), (root_plus + root_minus) / 2
+    return error, 2 / max(fast, EXPONENTS.least_divisor), (root_plus + root_minus) / 2

@@ -6,7 +6,7 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.completeness import POWERS, none_is_missing, remainder, right_of_hull
+from rodsweep.determinant.arm.completeness import COMPLETENESS, none_is_missing, remainder, right_of_hull
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull import hull_of
 from rodsweep.determinant.arm.newton import refined
@@ -50,7 +50,7 @@ def test_a_number_that_is_no_eigenvalue_proves_nothing():
         assert not none_is_missing(line, more, np.append(error, 0.0), determinant, hull)[0]
 
 
-@pytest.mark.parametrize("k", POWERS)
+@pytest.mark.parametrize("k", COMPLETENESS.powers)
 @pytest.mark.parametrize("hull", [Hull(0.0, 0.0), Hull(7.0, 0.0), Hull(7.0, 0.1), Hull(300.0, 0.05)])
 def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_line(k, hull):
     line = -1000.0

@@ -2,8 +2,8 @@
 
 A status in place of an answer is honest, but no answer: at most `MOST_WITHOUT_ANSWER` of a field's runs may
 end so. Every field of every settings object is found by introspection, but for those of ANOTHER_START; an
-object without a case fails. The suite takes every thirty-first field, without the slow cases; RODSWEEP_RODS=1
-takes all (`make survey`).
+object without a case fails. Compiled functions that read a changed field are compiled again. The suite takes
+every thirty-first field, without the slow cases; RODSWEEP_RODS=1 takes all (`make survey`).
 """
 
 import importlib
@@ -14,19 +14,30 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
+from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from numba.core.bytecode import FunctionIdentity
+from numba.core.caching import NullCache
+from numba.core.ccallback import CFunc
+from numba.core.dispatcher import Dispatcher
 
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
+from rodsweep.determinant.certificate.box import box_of
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
+from rodsweep.model.compiled.digest import digest, kernel_of
+from rodsweep.model.compiled.settings import CompiledSettings
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.kept import forget_all
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
@@ -61,7 +72,11 @@ ROUNDING = 1e-11
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
 BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
-ANOTHER_START = {("INTEGRATOR", "relaxation_share"), ("INTEGRATOR", "relaxation_steps")}
+ANOTHER_START = {
+    ("INTEGRATOR", "relaxation_share"),
+    ("INTEGRATOR", "relaxation_steps"),
+    ("INTEGRATOR", "relaxation_tolerance"),
+}
 """Fields that define the state from which a motion starts: another value is another motion."""
 GENERALISED_HOPF_AT = 75.3972626336484526, 147.921519683199662, 770.860809443855688
 """F, k1 and frequency of a fold of the Hopf curve, of which one branch has a generalised Hopf point."""
@@ -273,6 +288,32 @@ def curves_of_changes(accuracy: float) -> Answer:
     return answer
 
 
+def segments(accuracy: float) -> Answer:
+    """Spectra of an arm of two segments, the second softer, before its flutter and far beyond it."""
+    stiff = (1.0,) * 6
+    soft = (0.36, 0.36, 0.1296, 0.36, 0.36, 0.36)
+    build = Build(profile=Profile((0.0, 0.4, 0.4, 1.0), (stiff, stiff, soft, soft)))
+    answer: dict[str, tuple[float, float]] = {}
+    for F in (3.0, 25.0):
+        rod = Rod(F=F, k1=1e3, k2=1e3, gamma3=1e-3, build=build)
+        found = solve_spectrum(rod, SpectrumRequest(4, accuracy, True))
+        if found.status.value:
+            return None
+        answer |= eigenvalues_of(found, f"F = {F}")
+        answer[f"F = {F}, unstable"] = found.unstable_count, 0.0
+    return answer
+
+
+def changes_between(accuracy: float) -> Answer:
+    """Crossings between two spectra, whose accuracy is that of Newton's method."""
+    rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
+    before, after = (solve_spectrum(rod.changed(F=F), SpectrumRequest(4, 1e-10, True)) for F in (20.0, 30.0))
+    zeros = crossings_between(
+        20.0, 30.0, before.eigenvalues, after.eigenvalues, rod.coefficients, rod.direction("F")
+    )
+    return {f"zero {i}": (float(F), float(error)) for i, (F, _, error) in enumerate(sorted(zeros.tolist()))}
+
+
 def modes_of_a_cone(accuracy: float) -> Answer:
     """Condition numbers and growth of an arm without rotational drag, which has a layer at the tip."""
     return modes_answer(Rod(F=8.0, k1=1e3, k2=1e2, gamma3=0.0, taper=0.6), accuracy)
@@ -413,6 +454,8 @@ MESH = Case(on_mesh, 1.0, 1.0)
 SMALL_DRAG = Case(small_drag, 1e-6, 1e-8)
 LONGITUDINAL = Case(longitudinal, 1.0, 1.0)
 HELD = Case(held_tip, 1.0, 1.0)
+SEGMENTS = Case(segments, 1e-8, 1e-10)
+BETWEEN = Case(changes_between, 1.0, 1.0)
 CASES = {
     "SETTLING": BRANCH,
     "BRANCH_ERRORS": BRANCH,
@@ -501,6 +544,36 @@ CASES = {
     "CHANGE_CURVES": CHANGES,
     "BOUNDARY_STEPS": CHANGES,
     "SLAVING": CONE_MODES,
+    "EXPONENTS": SPECTRA,
+    "EVEN_FUNCTIONS": SPECTRA,
+    "DETERMINANT": SPECTRA,
+    "ROOTS": SPECTRA,
+    "DOMINANCE": SPECTRA,
+    "REACH": SPECTRA,
+    "SPECTRUM_ERRORS": SPECTRA,
+    "KEPT": SPECTRA,
+    "STABILITY_CHANGES": BETWEEN,
+    "ROOT_NEWTON": THRESHOLDS,
+    "BOX": THRESHOLDS,
+    "BOX_PROOF": THRESHOLDS,
+    "DISCS": THRESHOLDS,
+    "MOVING_LINE": FOLLOWED,
+    "CARRIED_COUNT": FOLLOWED,
+    "FOLLOWING": FOLLOWED,
+    "EIGENVALUE_PREDICTION": FOLLOWED,
+    "AVERAGED_WEIGHT": SEGMENTS,
+    "COMPLETENESS": SEGMENTS,
+    "ARM_COUNT": SEGMENTS,
+    "ARM_VALUE": SEGMENTS,
+    "ARM_ROOTS": SEGMENTS,
+    "STAGE_NEWTON": MOTION,
+    "STAGE_PREDICTOR": MOTION,
+    "STEP_RECORD": MOTION,
+    "EXTREMA": SINGLE,
+    "MAXIMA": SINGLE,
+    "TAILS": SINGLE,
+    "INVERSION": SINGLE,
+    "SMALL_EIGENVALUES": SINGLE,
     "RECONSTRUCTION": MESH,
     "LOBATTO": MESH,
     "BEAM": MESH,
@@ -518,6 +591,7 @@ ROOMS = (
     "motion.",
     "spectrum.",
     "changes.",
+    "backend.",
 )
 """Subpackages of `rodsweep.solve` whose numbers are fields of settings."""
 
@@ -552,6 +626,8 @@ def scaled(value: Any, factor: float) -> Any:
     return value * factor
 
 
+FunctionIdentity._unique_ids = count(10**6)
+"""Numbers in the names of machine code: those of functions that are loaded from disk are smaller."""
 FIELDS = [
     (name, field.name)
     for name, value in settings().items()
@@ -590,11 +666,36 @@ def forget() -> None:
                     value.cache_clear()
 
 
+def digests() -> dict[Any, str]:
+    """Digest of every compiled function and C callback of the package, by the function."""
+    found: dict[Any, str] = {}
+    parts: dict[Any, Any] = {}
+    for title, module in list(sys.modules.items()):
+        for value in list(vars(module).values()) if title.startswith("rodsweep.") else ():
+            if isinstance(value, Dispatcher):
+                found[value] = digest(kernel_of(value.py_func, value.targetoptions), parts)
+            elif isinstance(value, CFunc):
+                found[value] = digest(kernel_of(value.__wrapped__, {"signature": "C"}), parts)
+    return found
+
+
+def compile_again(caches: dict[Any, Any]) -> None:
+    """Forgets the machine code of compiled functions; caches: the disk cache that each has from now on."""
+    for function, kept in caches.items():
+        function._cache = kept
+        if isinstance(function, Dispatcher):
+            function._reset_overloads()
+    for function in caches:  # a callback is compiled at once, after all functions that it may call
+        if isinstance(function, CFunc):
+            function.compile()
+
+
 @contextmanager
 def replaced(name: str, field: str, factor: float) -> Iterator[None]:
-    """Another value of one field, in every module that has the settings object."""
+    """Another value of one field, in every module that has the settings object, and in compiled functions."""
     old = settings()[name]
     new = changed(name, field, factor)
+    before = digests() if isinstance(old, CompiledSettings) else {}
     users = [
         (vars(module), key)
         for title, module in list(sys.modules.items())
@@ -604,12 +705,16 @@ def replaced(name: str, field: str, factor: float) -> Iterator[None]:
     ]
     for place, key in users:
         place[key] = new
+    after = digests() if before else {}
+    caches = {function: function._cache for function in before if after[function] != before[function]}
+    compile_again(dict.fromkeys(caches, NullCache()))
     forget()
     try:
         yield
     finally:
         for place, key in users:
             place[key] = old
+        compile_again(caches)
         forget()
 
 
@@ -641,6 +746,13 @@ def test_settings_are_frozen_and_have_keywords_only():
     for value in settings().values():
         assert type(value).__dataclass_params__.frozen
         assert all(field.kw_only for field in fields(value))
+
+
+def test_a_changed_setting_reaches_compiled_functions():
+    before = box_of(0.0, 1.0)
+    with replaced("BOX", "padding", 2.0):
+        assert box_of(0.0, 1.0)[0] - before[0] == pytest.approx(settings()["BOX"].padding)
+    assert box_of(0.0, 1.0) == before
 
 
 @pytest.mark.parametrize(("name", "field"), FIELDS[::EACH])

@@ -250,3 +250,39 @@ def test_places_of_the_cache(monkeypatch):
     assert compilation.cache_directories() == [package, Path("/scratch/rodsweep/compiled")]
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
     assert compilation.cache_directories() == [Path("/elsewhere/rodsweep")]
+
+
+SETTINGS = """
+from dataclasses import dataclass
+from rodsweep.model.compiled.settings import CompiledSettings
+from rodsweep.model.compiled.compilation import compiled
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldSettings(CompiledSettings):
+    count: int = 2
+    sizes: tuple[float, ...] = (1.0, 2.0)
+
+HELD = HeldSettings()
+
+@compiled
+def scaled(x):
+    return HELD.count * x
+
+@compiled
+def alone(x):
+    return x + HELD.sizes[0]
+"""
+READERS = """
+from .inner import alone, scaled
+def values():
+    return scaled(3.0), alone(3.0)
+"""
+
+
+def test_a_changed_setting_compiles_the_functions_that_read_it(made):
+    assert made(SETTINGS, READERS) == ((6.0, 4.0), {"scaled", "alone"})
+    assert made(SETTINGS.replace("count: int = 2", "count: int = 5"), READERS) == ((15.0, 4.0), {"scaled"})
+    assert made(SETTINGS.replace("(1.0, 2.0)", "(7.0, 2.0)"), READERS) == ((6.0, 10.0), {"alone"})
+    reordered = SETTINGS.replace("    count: int = 2\n", "") + "\n"
+    reordered = reordered.replace("(1.0, 2.0)\n", "(1.0, 2.0)\n    other: float = 9.0\n    count: int = 2\n")
+    assert made(reordered, READERS) == ((6.0, 4.0), set())

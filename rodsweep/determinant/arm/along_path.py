@@ -11,12 +11,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..newton import FAILED, JACOBIAN_STEP, LAST_NEWTON_STEP, MAX_NEWTON_STEPS, Zero
+from ..exponents import EXPONENTS, ROUND_OFF
+from ..newton import FAILED, ROOT_NEWTON, Zero
 from ..parameter_path import Path
-from ..roots import BLURRED
-from ..value import ROUND_OFF, SECOND_STEP, Value
+from ..root_settings import ROOTS
+from ..value import DETERMINANT, Value
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ROUNDING, ArmFamily, eigenvalue_in, value_in
+from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in
 from .newton import refined_root
 
 CENTRAL = ((1, 0.5), (-1, -0.5))
@@ -36,7 +37,9 @@ class ArmDoubleSettings:
     spread_factor: float = 3.0
     """Safety factor on the spread of four values."""
     max_shortenings: int = 20
-    """Maximum number of divisions of a difference step by 4, down to 1e-12 of the first step."""
+    """Maximum number of divisions of a difference step, down to 1e-12 of the first step."""
+    shortening: float = 4.0
+    """Divisor of a difference step that reaches beyond the valid arms."""
 
 
 ARM_DOUBLES = ArmDoubleSettings()
@@ -63,7 +66,7 @@ class ArmAlongPath:
         if family is not None and abs(guess) < family.W / 2:
             w, slope, error = eigenvalue_in(family, guess, p)
             # Beside a double eigenvalue the interpolation errors of the family are magnified.
-            if error <= BLURRED * abs(w):
+            if error <= ROOTS.blurred * abs(w):
                 return w, slope, error
         here = self.determinant(p)
         w, error = refined_root(guess, here)
@@ -87,15 +90,15 @@ class ArmAlongPath:
         start = x
         first = p
         last = math.inf
-        for _ in range(2 * MAX_NEWTON_STEPS):
+        for _ in range(2 * ROOT_NEWTON.max_steps):
             value = self._value(x, p)
             D = value.D.real
             D_w = value.D_w.real
             S = value.S
             noise = value.noise
-            h = SECOND_STEP * abs(x)
+            h = DETERMINANT.second_step * abs(x)
             D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
-            stencil, k = self._stencil(p, JACOBIAN_STEP * reach)
+            stencil, k = self._stencil(p, ROOT_NEWTON.jacobian_step * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
             D_p, D_wp = (sum(weight * value[i] for weight, value in neighbours) / k for i in range(2))
             cross = D_w * D_wp - D_p * D_ww
@@ -105,16 +108,18 @@ class ArmAlongPath:
             in_p = (D_ww * D - D_w * D_w) / cross
             blur = ARM_DOUBLES.noise * noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
-            e_x = (blur * abs(D_wp) + ARM_DOUBLES.noise * noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
+            e_x = (
+                blur * abs(D_wp) + ARM_DOUBLES.noise * noise / max(abs(x), EXPONENTS.least_divisor) * abs(D_p)
+            ) / abs(cross)
             x += in_x
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:
                 return FAILED
-            small = abs(in_p) <= LAST_NEWTON_STEP * e_p
-            if small and (abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2):
+            small = abs(in_p) <= ROOT_NEWTON.last_step * e_p
+            if small and (abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2):
                 # Only now: the spread takes D on further elements.
                 more = max(self._spread(x, p, S) / blur, 1.0)
-                e_p = max(more * e_p, abs(in_p)) + ROUNDING * abs(p)
+                e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.rounding * abs(p)
                 return Zero(x, p, max(more * e_x, abs(in_x)), e_p)
             last = abs(in_x)
         return FAILED
@@ -152,13 +157,13 @@ class ArmAlongPath:
         The step is shortened until both neighbours are valid arms: not crushed, no negative compliance or
         drag. The stencil is one-sided at a compliance or a drag of 0.
         """
-        step = min(JACOBIAN_STEP * max(abs(p), 1.0), largest)
+        step = min(ROOT_NEWTON.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
             return FORWARD, step
         for _ in range(ARM_DOUBLES.max_shortenings):
             if self._exists(p + step) and self._exists(p - step):
                 break
-            step /= 4
+            step /= ARM_DOUBLES.shortening
         return CENTRAL, step
 
     def _exists(self, p: float) -> bool:

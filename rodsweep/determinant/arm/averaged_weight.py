@@ -12,6 +12,7 @@ by theta(0) = 0; or the drag bounds both.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -19,17 +20,29 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 
-FACTORS = (0.0, 0.5, 1.0)
-"""Trial f."""
-HALF_WIDTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
-"""Trial h, in L."""
-TRIALS = 2 * len(FACTORS) * len(HALF_WIDTHS)
-"""Number of trial regions: two for each f and h."""
-CLOSE = 1e-6
-"""Distance of two points, in L, below which they are the two sides of a jump."""
-BESIDE = 1e-12
-"""Distance from the places where a slope jumps, in L, of the points on both their sides."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AveragedWeightSettings(CompiledSettings):
+    """Settings for the weights that are tried."""
+
+    factors: tuple[float, ...] = (0.0, 0.5, 1.0)
+    """Trial f."""
+    half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
+    """Trial h, in L."""
+    close: float = 1e-6
+    """Distance of two points, in L, below which they are the two sides of a jump."""
+    beside: float = 1e-12
+    """Distance from the places where a slope jumps, in L, of the points on both their sides."""
+
+    @property
+    def trials(self) -> int:
+        """Number of trial regions: two for each f and h."""
+        return 2 * len(self.factors) * len(self.half_widths)
+
+
+AVERAGED_WEIGHT = AveragedWeightSettings()
 
 
 class GridPlaces(NamedTuple):
@@ -46,16 +59,16 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     u: points of an arm from base to tip, (points,), two at a jump. local: the `LocalCoefficients` there, (6,
     points), with c2 > 0 and g > 0.
     """
-    regions = np.full((TRIALS, 2), math.inf)
+    regions = np.full((AVERAGED_WEIGHT.trials, 2), math.inf)
     row = 0
-    for h in HALF_WIDTHS:
+    for h in AVERAGED_WEIGHT.half_widths:
         points = _with_places_beside_jumps(u, h)
         places = _places(points, u)
         there = np.empty((6, len(points)))
         for k in range(6):
             there[k] = _interpolated(places, local[k])
         window = (_places(points - h, points), _places(points + h, points))
-        for f in FACTORS:
+        for f in AVERAGED_WEIGHT.factors:
             _fill(regions[row : row + 2], points, there, window, (F, f, h))
             row += 2
     return regions
@@ -68,9 +81,9 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
     count = len(u)
     points[:count] = u
     for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < CLOSE:
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT.close:
             for side in (-h, h):
-                for at in (-BESIDE, BESIDE):
+                for at in (-AVERAGED_WEIGHT.beside, AVERAGED_WEIGHT.beside):
                     place = (u[i + 1] + u[i]) / 2 + side + at
                     if u[0] < place < u[-1]:
                         points[count] = place

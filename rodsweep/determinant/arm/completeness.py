@@ -16,35 +16,57 @@ D and the error of its elements, which are estimates.
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
+from ..exponents import EXPONENTS
 from .determinant import ArmDeterminant
 from .region import Hull
 from .value import chain_value
 
-POWERS = (3, 6)
-"""Numbers k of points that are tried: few, which are closer, before many, which suffice for a wide hull."""
-FIRST_POINT = 0.35
-"""Least distance of the first point from 0, in units of the depth of the line."""
-SPREAD = 1.0
-"""Distance of the last point from the first, in units of the first one's from 0."""
-WIDER = 1.3
-"""Factor by which the points are moved outwards until every term of R is positive."""
-FARTHEST = {3: 1.5, 6: 6.0}
-"""Largest distance of the last of k points from 0, in units of the largest known |w|: from farther away,
-unknown eigenvalues contribute like known ones. Most proofs that fail lie beyond, and most that succeed do
-not."""
-SLABS = 24
-"""Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
-ALLOWED = 0.7
-"""Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
-ROUNDING_OF_SLOPE = 10.0
-"""Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels of
-elements, over 45 random arms."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CompletenessSettings(CompiledSettings):
+    """Settings for proofs and their points."""
+
+    spare: int = 2
+    """Further eigenvalues of an arm whose list is proved complete: of 100 random arms 59 then need a count,
+    which costs more than they do, and 73 without them."""
+    powers: tuple[int, ...] = (3, 6)
+    """Numbers k of points that are tried: few, which are closer, before many, which suffice for a wide
+    hull."""
+    farthest: tuple[float, ...] = (1.5, 6.0)
+    """Largest distance of the last of k points from 0 for each of `powers`, in units of the largest known
+    |w|: from farther away, unknown eigenvalues contribute like known ones. Most proofs that fail lie beyond,
+    and most that succeed do not."""
+    first_point: float = 0.35
+    """Least distance of the first point from 0, in units of the depth of the line."""
+    least_point: float = 1e-6
+    """Least distance of the first point from 0, in 1/tau2, for a line and a hull near 0."""
+    spread: float = 1.0
+    """Distance of the last point from the first, in units of the first one's from 0."""
+    wider: float = 1.3
+    """Factor by which the points are moved outwards until every term of R is positive."""
+    slabs: int = 24
+    """Vertical strips of the region right of the line, in each of which Re phi has a bound of its own."""
+    allowed: float = 0.7
+    """Largest |R| with its rounding error in units of what an unknown eigenvalue would contribute."""
+    rounding_of_slope: float = 10.0
+    """Rounding error of D'/D, relative, in units of the relative noise of D: 0.08 at most between two levels
+    of elements, over 45 random arms."""
+    ranges: ClassVar = {"wider": (1.0, math.inf), "allowed": (0.0, 1.0)}
+
+    def tried(self) -> list[tuple[int, float]]:
+        """(k, largest distance of the last point) of each trial, in order."""
+        return list(zip(self.powers, self.farthest, strict=True))
+
+
+COMPLETENESS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
@@ -69,9 +91,9 @@ def none_is_missing(
     pairs = has_conjugate(known)
     largest = float(np.abs(known).max())
     examined = 0
-    for k in POWERS:
+    for k, farthest in COMPLETENESS.tried():
         points = right_of_hull(line, hull.a, hull.c, k)
-        if _last(points) <= FARTHEST[k] * largest:
+        if _last(points) <= farthest * largest:
             found = remainder(line, known[pairs], error[pairs], hull, points, determinant.level(points[-1]))
             examined += k
             if proves(found):
@@ -88,8 +110,8 @@ def has_conjugate(known: Complex) -> Array:
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
     """The largest |w| of the first proof that is tried, from eigenvalues, (n,); inf if none is tried."""
     largest = float(np.abs(known).max())
-    tried = ((k, _last(right_of_hull(line, hull.a, hull.c, k))) for k in POWERS)
-    return next((last for k, last in tried if last <= FARTHEST[k] * largest), math.inf)
+    tried = ((_last(right_of_hull(line, hull.a, hull.c, k)), most) for k, most in COMPLETENESS.tried())
+    return next((last for last, most in tried if last <= most * largest), math.inf)
 
 
 def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
@@ -101,11 +123,11 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
     whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
-    for k in POWERS:
+    for k, farthest in COMPLETENESS.tried():
         last = _last(right_of_hull(line, hull.a, hull.c, k))
         for number in range(modes, len(sizes) + 1):
             largest = sizes[number - 1]
-            if last <= FARTHEST[k] * largest and max(last, largest) < best[1] and whole[number - 1]:
+            if last <= farthest * largest and max(last, largest) < best[1] and whole[number - 1]:
                 best = number, max(last, largest)
     return best
 
@@ -120,7 +142,7 @@ def proves(found: Remainder) -> bool:
     """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue
     is not a root of D.
     """
-    allowed = ALLOWED * found.least
+    allowed = COMPLETENESS.allowed * found.least
     return found.R + found.blur < allowed and -allowed < found.R
 
 
@@ -130,14 +152,14 @@ def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     no such points exist.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(FIRST_POINT * abs(line), a * a, 1e-6)
+    x = max(COMPLETENESS.first_point * abs(line), a * a, COMPLETENESS.least_point)
     points = np.empty(k)
     for j in range(k):
-        points[j] = x * (1 + SPREAD * j / max(k - 1, 1))
+        points[j] = x * (1 + COMPLETENESS.spread * j / max(k - 1, 1))
     while not _turn_of_hull(points, a, c) < math.pi / 2:
-        if not points[0] < 1e300:
+        if not points[0] < 1 / EXPONENTS.least_divisor:
             return points[:0]
-        points *= WIDER
+        points *= COMPLETENESS.wider
     return points
 
 
@@ -178,7 +200,7 @@ def remainder(
         slope = (value.D_w / value.D).real
         R += weight * slope
         # The c_j alternate in sign: R may be far smaller than the terms that are rounded.
-        blur += abs(weight * slope) * ROUNDING_OF_SLOPE * value.noise / abs(value.D)
+        blur += abs(weight * slope) * COMPLETENESS.rounding_of_slope * value.noise / abs(value.D)
     for n in range(len(known)):
         w = known[n]
         phi = 1 + 0j
@@ -199,9 +221,9 @@ def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
     least = 1.0
     for x in points:
         least /= x - line
-    for i in range(SLABS):
-        start = line + (right - line) * i / SLABS
-        stop = line + (right - line) * (i + 1) / SLABS
+    for i in range(COMPLETENESS.slabs):
+        start = line + (right - line) * i / COMPLETENESS.slabs
+        stop = line + (right - line) * (i + 1) / COMPLETENESS.slabs
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n

@@ -24,26 +24,13 @@ from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
 from .completeness import has_conjugate
-from .determinant import ARM_ELEMENTS, ArmDeterminant, ArmSamples, Level, scales_at
-from .phase_node import FIRST_RADIUS, LARGEST_RADIUS, PhaseNode, phase_node
+from .count_settings import ARM_COUNT
+from .determinant import ArmDeterminant, ArmSamples, Level, scales_at
+from .element_settings import ARM_ELEMENTS
+from .phase_node import PhaseNode, phase_node
 from .region import Hull
 
-SHARP = 1e-3
-"""Largest error of an eigenvalue that is divided out, in units of its distance from the line."""
 NONE_KNOWN: Complex = np.empty(0, complex)
-SMALLEST_ARM_REACH = 1e-12
-"""Reach in units of |w| below which the line counts as running through a zero of D."""
-HIGHEST = 16.0
-"""Largest W of elements that serve a node, in units of the |w| they are needed for: the many evaluations of a
-count are worth elements of their own."""
-SMALLEST_LEVEL = ARM_ELEMENTS.headroom * ARM_ELEMENTS.smallest_level
-"""W that serves every smaller |w|."""
-MAX_NODES = 5000
-"""Maximum nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
-OVERLAP = 0.95
-"""Distance of two nodes in units of the sum of their expected reaches."""
-LARGEST_GROWTH = 0.5
-"""Largest expected growth of the reach per distance: the next node is 3.6 reaches ahead at most."""
 
 
 class PhaseLost(ArithmeticError):
@@ -87,7 +74,7 @@ def count_right_of(
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= hull.box(max(-line, 0.0))[0]:
         return Count(0, 0)
-    known = known[error < SHARP * np.abs(known.real - line)]
+    known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
@@ -106,7 +93,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_corner(0.0, hull)), HIGHEST)
+        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.highest)
     except FloatingPointError:
         return False
     return True
@@ -115,7 +102,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of a line evaluates D."""
     corner = _corner(line, hull)
-    return abs(corner) + FIRST_RADIUS * determinant.length(corner)
+    return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)
 
 
 def _corner(line: float, hull: Hull) -> complex:
@@ -132,8 +119,10 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # Elements for the largest |w| first: they serve most others.
-    level = determinant.level(largest_w_of_count(line, determinant, hull), HIGHEST)
-    first = phase_node(corners[0], known, (determinant.length(corners[0]), FIRST_RADIUS), hull, level)
+    level = determinant.level(largest_w_of_count(line, determinant, hull), ARM_COUNT.highest)
+    first = phase_node(
+        corners[0], known, (determinant.length(corners[0]), ARM_COUNT.first_radius), hull, level
+    )
     walk = Walk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
         walk = _advance(walk, corners, known, hull, determinant.samples, level)
@@ -141,7 +130,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
             break
         if walk.needed == math.inf:
             raise PhaseLost(walk.nodes)
-        level = determinant.level(walk.needed, HIGHEST)
+        level = determinant.level(walk.needed, ARM_COUNT.highest)
     return walk.total, walk.nodes
 
 
@@ -157,15 +146,15 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if not here.reach > SMALLEST_ARM_REACH * abs(here.w) or nodes > MAX_NODES:
+        if not here.reach > ARM_COUNT.smallest_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
             return Walk(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
-        radius = min(2 * here.radius, LARGEST_RADIUS) if here.radius > 0 else FIRST_RADIUS
+        radius = min(2 * here.radius, ARM_COUNT.largest_radius) if here.radius > 0 else ARM_COUNT.first_radius
         unit = scales_at(w, samples)[1]
-        needed = abs(w) + min(radius, FIRST_RADIUS) * unit
-        if not needed <= level[0] <= max(HIGHEST * needed, SMALLEST_LEVEL):
+        needed = abs(w) + min(radius, ARM_COUNT.first_radius) * unit
+        if not needed <= level[0] <= max(ARM_COUNT.highest * needed, ARM_ELEMENTS.least_made):
             return Walk(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, (level[0] - abs(w)) / unit)), hull, level)
         nodes += 1
@@ -183,14 +172,15 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
 @compiled
 def _stride(reach: float, growth: float) -> float:
     """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
-    return 2 * OVERLAP * reach / (1 - OVERLAP * min(max(growth, -1.0), LARGEST_GROWTH))
+    overlap = ARM_COUNT.overlap
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
 
 
 @compiled
 def _nearer(reach: float, growth: float, ahead: float) -> float:
     """A smaller distance of the next node than `ahead`, at last within the reach of the present one."""
-    nearer = min(_stride(reach, growth), 0.9 * ahead)
-    return nearer if nearer > reach else min(0.99 * reach, ahead / 2)
+    nearer = min(_stride(reach, growth), ARM_COUNT.closer * ahead)
+    return nearer if nearer > reach else min(ARM_COUNT.within_reach * reach, ahead / 2)
 
 
 @compiled

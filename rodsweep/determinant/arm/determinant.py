@@ -2,13 +2,12 @@
 
 The propagators of an element are polynomials in w/W for |w| <= W. Each level W has its own elements, computed
 at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`LARGEST_EXPONENT`) and that the Gauss points resolve the coefficients; every break of the profile is an
-end of an element.
+exp(`ARM_ELEMENTS.longest`) and that the Gauss points resolve the coefficients; every break of the profile is
+an end of an element.
 """
 
 import cmath
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from operator import itemgetter
 from typing import Any, NamedTuple
@@ -21,41 +20,11 @@ from ...model.compiled.compilation import compiled
 from ...model.dispersion import PIECE_SAMPLES, sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
+from ..exponents import EXPONENTS
 from ..value import Value
-from .collocation import STAGES
+from .element_settings import ARM_ELEMENTS
 from .propagators import element_propagators, gauss_method, tail_of
 from .value import chain_value
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArmElementSettings:
-    """Settings for the elements of an arm and for the propagators that are kept."""
-
-    longest: float = 3.2
-    """Largest |q1 +- q2| h of an element, the exponents of minors: twelve stages integrate exp(3.2) to 1e-19,
-    and rounding errors are those of elements half as long."""
-    to_apex: float = 0.5
-    """Longest element in units of its distance from the apex of the cone, where stiffnesses vanish."""
-    largest_tail: float = 1e-9
-    """Relative tail of the coefficients' Legendre series above which an element is halved. The error of a
-    Gauss method is about the square of the tail."""
-    max_halvings: int = 12
-    """Maximum number of halvings of an element, down to 2e-4 of the first length."""
-    smallest_level: float = 16.0
-    """Smallest W: for smaller |w| the load and the taper limit the elements."""
-    headroom: float = 1.1
-    """W of new elements in units of the |w| they are made for, so that they serve close ones too."""
-    highest: float = 1e3
-    """Largest W, in units of |w|, of existing elements that serve in place of new ones: making elements costs
-    as much as some thirty evaluations on twice as many."""
-    max_elements: int = 4000
-    """Maximum number of elements of an arm; an arm that needs more counts as unresolved."""
-
-
-ARM_ELEMENTS = ArmElementSettings()
-ARMS_KEPT = 16
-"""Arms whose propagators are kept: a bound of memory, which changes no number."""
-
 
 Level = tuple[float, Array]
 """W, and propagators for |w| <= W, (elements, terms, 25)."""
@@ -90,7 +59,7 @@ class ArmDeterminant:
 
     def value_at_level(self, w: complex, factor: float) -> Value:
         """As `value`, with the elements for |w| times a factor of at least 1."""
-        W, polynomials = self.level(factor * abs(w), 1.5)
+        W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
         return chain_value(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
@@ -109,11 +78,13 @@ class ArmDeterminant:
         """(wave number, length) at w."""
         return scales_at(w, self.samples)
 
-    def level(self, size: float, highest: float = ARM_ELEMENTS.highest) -> Level:
+    def level(self, size: float, highest: float | None = None) -> Level:
         """(W >= size, propagators for |w| <= W, (elements, terms, 25)) with the smallest W that exists.
 
-        highest: largest W, in units of the size, that serves; beyond it new elements are made.
+        highest: largest W, in units of the size, that serves; beyond it new elements are made. None:
+        `ARM_ELEMENTS.highest`.
         """
+        highest = ARM_ELEMENTS.highest if highest is None else highest
         size = max(size, ARM_ELEMENTS.smallest_level)
         for level in self._levels:
             if size <= level[0] <= highest * size:
@@ -138,7 +109,7 @@ class Samples(NamedTuple):
 
 
 class PropagatorElements(NamedTuple):
-    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, STAGES)."""
+    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, stages)."""
 
     lengths: Array
     local: LocalCoefficients
@@ -153,7 +124,7 @@ def samples_of(rods: list[Rod]) -> Samples:
 def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
     """Elements that resolve every arm of a list, all of one build, for |w| <= W."""
     edges = _edges(rods, samples, W)
-    points, _, _ = gauss_method(STAGES)
+    points, _, _ = gauss_method(ARM_ELEMENTS.stages)
     for _ in range(ARM_ELEMENTS.max_halvings):
         if not len(edges) <= ARM_ELEMENTS.max_elements:
             break
@@ -224,10 +195,10 @@ def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
         fast = max(abs(T + turn) / max(1.0, first), abs(T - turn) / max(1.0, second)) / 2
         number += weights[i] * (first + second) / 2
         rate += weights[i] * fast * gamma2 * c3
-    return number, 1 / max(rate, 1e-300)
+    return number, 1 / max(rate, EXPONENTS.least_divisor)
 
 
-@lru_cache(maxsize=ARMS_KEPT)
+@lru_cache(maxsize=ARM_ELEMENTS.arms_kept)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """D of the arm `rod`, cached."""
     return ArmDeterminant(rod)

@@ -15,24 +15,23 @@ from numpy.polynomial import chebyshev
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
-from ..newton import MAX_REFINEMENTS
+from ...model.compiled.settings import CompiledSettings
+from ..exponents import EXPONENTS
+from ..newton import ROOT_NEWTON
 from ..parameter_path import Path
 from ..value import Value
-from .collocation import ENTRIES, MAX_TERMS
+from .collocation import ENTRIES
 from .determinant import Samples, elements_for, samples_of
+from .element_settings import ARM_ELEMENTS
 from .propagators import element_propagators
-from .value import ROOT_NOISE, ROOT_RESIDUAL, chain_along, chain_value
+from .value import ARM_VALUE, chain_along, chain_value
 
 LINEAR = math.inf
 """Scale of equal spacing."""
-CONVERGED = 1e-15
-"""Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
-ROUNDING = 2 * CONVERGED
-"""Relative error of eigenvalues and crossings from it, as from changes of w and p by as much."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmFamilySettings:
+class ArmFamilySettings(CompiledSettings):
     """Settings for the arms from which a family is interpolated."""
 
     numbers: tuple[int, ...] = (12, 17, 24, 24, 34)
@@ -44,6 +43,15 @@ class ArmFamilySettings:
     fewer arms."""
     most_entries: int = 500_000
     """Largest number of entries of the propagators of a family: more take longer than arms one by one."""
+    converged: float = 1e-15
+    """Size of the last two coefficients of a propagator, in units of its largest entry, that is rounding."""
+    resolved: float = 10.0
+    """`converged` of the coefficients along the arms, in units of that of a propagator, made of them."""
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of eigenvalues and crossings, as from changes of w and p by as much."""
+        return 2 * self.converged
 
     def trials(self) -> list[tuple[int, float]]:
         """(number of arms, scale) of each trial, in order."""
@@ -80,10 +88,10 @@ def family_of(path: Path, low: float, high: float, W: float) -> ArmFamily | None
         if not _resolves(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * MAX_TERMS * ENTRIES > ARM_FAMILY.most_entries:
+        if len(found.lengths) * ARM_ELEMENTS.max_terms * ENTRIES > ARM_FAMILY.most_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
-        if _converged(values, CONVERGED):
+        if _converged(values, ARM_FAMILY.converged):
             coefficients = np.tensordot(_to_series(number), values, 1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients))
     return None
@@ -103,7 +111,7 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
 
 def _resolves(samples: Samples) -> bool:
     """Whether arms resolve the coefficients of all arms between, at the samples along them."""
-    return _converged(np.moveaxis(np.array(samples.local), 1, 0), 10 * CONVERGED)
+    return _converged(np.moveaxis(np.array(samples.local), 1, 0), ARM_FAMILY.resolved * ARM_FAMILY.converged)
 
 
 def _places(low: float, high: float, scale: float, number: int) -> Array:
@@ -199,7 +207,7 @@ def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex,
     propagators_at(family, p, polynomials, changes)
     w = guess
     last = math.inf
-    for _ in range(MAX_REFINEMENTS):
+    for _ in range(ROOT_NEWTON.max_refinements):
         value = chain_value(w, family.W, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
@@ -209,9 +217,9 @@ def eigenvalue_in(family: ArmFamily, guess: complex, p: float) -> tuple[complex,
         last = abs(step)
         w -= step
     D, D_w, D_p, _, noise = chain_along(w, family.W, polynomials, changes)
-    size = max(abs(D_w), 1e-300)
+    size = max(abs(D_w), EXPONENTS.least_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    rounding = ROOT_RESIDUAL * abs(D) + ROOT_NOISE * noise
-    return w, slope, rounding / size + ROUNDING * (abs(w) + abs(p * slope))
+    rounding = ARM_VALUE.root_residual * abs(D) + ARM_VALUE.root_noise * noise
+    return w, slope, rounding / size + ARM_FAMILY.rounding * (abs(w) + abs(p * slope))

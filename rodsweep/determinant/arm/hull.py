@@ -22,7 +22,6 @@ Extremes along the arm are looked up at points between the breaks, with `HULL.ma
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
@@ -32,30 +31,9 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
-from .averaged_weight import TRIALS, averaged_regions
-from .region import UNKNOWN, Hull, Hulls
+from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
+from .region import HULL, UNKNOWN, Hull, Hulls
 from .weights import constants, largest_integrals, least_square, squares_following
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HullSettings:
-    """Settings for the points and weights from which a region is computed."""
-
-    points: int = 25
-    """Chebyshev points of each smooth piece, where coefficients are looked up and alpha is differentiated."""
-    margin: float = 0.05
-    """Relative excess of a, for extremes between the points and for rounding."""
-    inside: float = 1e-9
-    """Distance of the first and last point from the ends of a piece, in units of the piece's length."""
-    least_remainder: float = 0.1
-    """Least 1 - c: the region grows beyond use where c approaches 1."""
-    wide: float = 0.15
-    """Smallest c of a region that counts as wide for every a."""
-    weights: int = 41
-    """Number of constant weights alpha to try, between the smallest and the largest g/nu."""
-
-
-HULL = HullSettings()
 
 
 def hull_of(rod: Rod) -> Hull:
@@ -74,18 +52,8 @@ def hulls_along(rods: Sequence[Rod], places: Array) -> Hulls:
 
 
 def _hull(arms: "Arms") -> Hull:
-    limits = Limits(HULL.weights, HULL.margin, HULL.least_remainder, HULL.wide)
-    a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), limits)
+    a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev())
     return Hull((1 + HULL.margin) * a, c) if isfinite(a) else UNKNOWN
-
-
-class Limits(NamedTuple):
-    """Numbers of `HullSettings` for compiled functions."""
-
-    weights: int
-    margin: float
-    least_remainder: float
-    wide: float
 
 
 class Arms(NamedTuple):
@@ -119,7 +87,7 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
     x = (1 - 2 * HULL.inside) * _chebyshev().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = local.reshape(6, len(F), -1)
-    regions = np.full((len(F), TRIALS, 2), inf)
+    regions = np.full((len(F), AVERAGED_WEIGHT.trials, 2), inf)
     for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
         regions[i] = averaged_regions(u, along[:, i], float(F[i]))
     return regions
@@ -151,15 +119,15 @@ def _chebyshev() -> Chebyshev:
 
 
 @compiled
-def _smallest(  # noqa: PLR0913, PLR0917 - the fields of `Arms`, and constants
-    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: Chebyshev, limits: Limits
+def _smallest(
+    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: Chebyshev
 ) -> tuple[float, float]:
     """(a, c) of the smallest region of all arms, without the margin of a; inf without a bound."""
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0
     for arm in range(len(F)):
         push = max(push, (F[arm] * F[arm] * c3[arm] / gamma2[arm]).max())
-    alphas = constants(local, limits.weights)
+    alphas = constants(local)
     best = (inf, 0.0)
     if not (c2 > 0).any():  # then g = nu
         best = (sqrt(push), 0.0)
@@ -168,24 +136,24 @@ def _smallest(  # noqa: PLR0913, PLR0917 - the fields of `Arms`, and constants
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
         for square in squares_following(F, lengths, local, chebyshev.derivative):
-            best = _smaller(best, (sqrt(square), 0.0), limits)
+            best = _smaller(best, (sqrt(square), 0.0))
     for trial in range(averaged.shape[1]):
-        c = (1 + limits.margin) * averaged[:, trial, 1].max()
-        best = _smaller(best, (averaged[:, trial, 0].max(), c), limits)
+        c = (1 + HULL.margin) * averaged[:, trial, 1].max()
+        best = _smaller(best, (averaged[:, trial, 0].max(), c))
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = largest_integrals(alphas, F, lengths, local, chebyshev.integral)
     for k in range(len(alphas)):
-        c = (1 + limits.margin) * sqrt(integrals[k]) / 2
-        best = _smaller(best, (sqrt(alphas[k] * push), c), limits)
+        c = (1 + HULL.margin) * sqrt(integrals[k]) / 2
+        best = _smaller(best, (sqrt(alphas[k] * push), c))
     return best
 
 
 @compiled
-def _smaller(best: tuple[float, float], other: tuple[float, float], limits: Limits) -> tuple[float, float]:
+def _smaller(best: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
     """The smaller of two regions (a, c), by a measure; a region with c close to 1 is of no use."""
-    if not other[1] < 1 - limits.least_remainder:
+    if not other[1] < 1 - HULL.least_remainder:
         return best
-    here = best[0] ** 2 * (1 + (best[1] / limits.wide) ** 4)
-    there = other[0] ** 2 * (1 + (other[1] / limits.wide) ** 4)
+    here = best[0] ** 2 * (1 + (best[1] / HULL.wide) ** 4)
+    there = other[0] ** 2 * (1 + (other[1] / HULL.wide) ** 4)
     return other if there < here else best

@@ -4,23 +4,39 @@ Compiled functions take one level of propagators; the others choose the level fo
 """
 
 import math
+from dataclasses import dataclass
 
 from ...model.compiled.compilation import compiled
-from ..newton import MAX_REFINEMENTS, REAL_BELOW
-from ..roots import BLURRED, roots_of_parabola
-from ..value import ROUND_OFF, SECOND_STEP, Value, second_difference
+from ...model.compiled.settings import CompiledSettings
+from ..exponents import EXPONENTS, ROUND_OFF
+from ..newton import ROOT_NEWTON
+from ..root_settings import ROOTS
+from ..roots import roots_of_parabola
+from ..value import DETERMINANT, Value, second_difference
 from .determinant import ArmDeterminant, Level
-from .value import ROOT_NOISE, ROOT_RESIDUAL, chain_value
+from .value import ARM_VALUE, chain_value
 
-ROUNDING_OF_CHAIN = 16 * ROUND_OFF
-"""Relative error of an eigenvalue from the products of propagators, where minors in the middle of an arm are
-large against those at its tip; of 1000 eigenvalues of stepped arms against 19 digits it was 4e-15 at most."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmRootSettings(CompiledSettings):
+    """Settings for the refinement of eigenvalues of arms."""
+
+    rounding: float = 16.0
+    """Rounding error of an eigenvalue, in units of the spacing of doubles, from the products of propagators,
+    where minors in the middle of an arm are large against those at its tip; of 1000 eigenvalues of stepped
+    arms against 19 digits it was 4e-15 at most."""
+    most_above: float = 16.0
+    """Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four
+    times as many as the roots need, and errors from rounding grow with their number."""
+
+
+ARM_ROOTS = ArmRootSettings()
 
 
 @compiled
 def _second_derivative(w: complex, S: float, level: Level) -> complex:
     """`second_derivative` with the propagators of a level."""
-    h = SECOND_STEP * abs(w)
+    h = DETERMINANT.second_step * abs(w)
     after = chain_value(w + h, level[0], level[1])
     before = chain_value(w - h, level[0], level[1])
     second = second_difference(after, before, S, h)
@@ -30,16 +46,16 @@ def _second_derivative(w: complex, S: float, level: Level) -> complex:
 @compiled
 def _error(w: complex, value: Value, level: Level) -> float:
     """`root_error` from the value of D at w."""
-    e = ROOT_RESIDUAL * abs(value.D) + ROOT_NOISE * value.noise
+    e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
     size = abs(value.D_w)
-    error = e / max(size, 1e-300)
-    if error > BLURRED * abs(w):
+    error = e / max(size, EXPONENTS.least_divisor)
+    if error > ROOTS.blurred * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         second = abs(_second_derivative(w, value.S, level))
-        if size**2 < 16 * e * second:
+        if size**2 < ROOTS.separated * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), size / second + spread)
-    return error + ROUNDING_OF_CHAIN * abs(w)
+    return error + ARM_ROOTS.rounding * ROUND_OFF * abs(w)
 
 
 @compiled
@@ -55,7 +71,7 @@ def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float,
     The error is -1 where w leaves the level.
     """
     w = guess
-    for _ in range(MAX_REFINEMENTS):
+    for _ in range(ROOT_NEWTON.max_refinements):
         value = chain_value(w, level[0], level[1])
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
         if guess.imag == 0:
@@ -64,9 +80,9 @@ def _refined(guess: complex, level: Level, last: float) -> tuple[complex, float,
             return w, _error(w, value, level), last
         last = abs(step)
         w -= step
-        if abs(w.imag) <= REAL_BELOW * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
             w = complex(w.real, 0.0)
-        if not (1 + SECOND_STEP) * abs(w) <= level[0]:
+        if not (1 + DETERMINANT.second_step) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error(w, level), last
 
@@ -83,7 +99,7 @@ def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
 
 def _level(w: complex, determinant: ArmDeterminant) -> Level:
     """A level for D and its second derivative at w."""
-    return determinant.level((1 + SECOND_STEP) * abs(w))
+    return determinant.level((1 + DETERMINANT.second_step) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:

@@ -12,10 +12,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.material.build import LocalCoefficients
-from .collocation import ENTRIES, LANES, MAX_TERMS, STAGES, Method, fill_terms
-
-TINY = 1e-300
-"""Divisor in place of 0."""
+from ..exponents import EXPONENTS
+from .collocation import ENTRIES, Method, fill_terms
+from .element_settings import ARM_ELEMENTS
 
 
 @cache
@@ -34,26 +33,29 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 @cache
 def _method() -> Method:
-    """The collocation of `STAGES` points, for compiled code."""
-    _, integrals, weights = gauss_method(STAGES)
+    """The collocation of `ARM_ELEMENTS.stages` points, for compiled code."""
+    _, integrals, weights = gauss_method(ARM_ELEMENTS.stages)
     return Method(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 
 
 def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: Array, W: float) -> Array:
     """The coefficients of C in powers of w/W, (n, elements, terms, ENTRIES), each C column by column.
 
-    F: forces of n arms. local: coefficients at the Gauss points, each (n, elements, STAGES). lengths: lengths
-    of the elements, in L, (elements,).
+    F: forces of n arms. local: coefficients at the Gauss points, each (n, elements, stages). lengths: lengths
+    of the elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
     """
     n = len(F)
     elements = len(lengths)
-    batches = -(-elements // LANES)
+    together = ARM_ELEMENTS.lanes
+    batches = -(-elements // together)
     # The last batch is filled up with the last element.
-    lanes = np.minimum(np.arange(batches * LANES), elements - 1)
+    lanes = np.minimum(np.arange(batches * together), elements - 1)
     scaled = np.array(local)[:, :, lanes] * lengths[lanes][:, None]
-    coefficients = scaled.reshape(6, n, batches, LANES, STAGES).transpose(1, 2, 0, 4, 3)
-    terms = np.zeros((n, batches * LANES, MAX_TERMS, ENTRIES))
+    coefficients = scaled.reshape(6, n, batches, together, ARM_ELEMENTS.stages).transpose(1, 2, 0, 4, 3)
+    terms = np.zeros((n, batches * together, ARM_ELEMENTS.max_terms, ENTRIES))
     most = fill_terms(np.array(F, float), W, np.ascontiguousarray(coefficients), _method(), terms)
+    if most > ARM_ELEMENTS.max_terms:
+        raise FloatingPointError(f"{ARM_ELEMENTS.max_terms} powers of w are too few for these elements")
     return np.ascontiguousarray(terms[:, :elements, :most])
 
 
@@ -73,6 +75,6 @@ def tail_of(local: LocalCoefficients) -> Array:
     """
     # The sixth, g, follows from the others and the force.
     values = np.array(local[:5])
-    size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
+    size = np.maximum(np.abs(values).max(axis=-1), EXPONENTS.least_divisor)  # a compliance or a drag may be 0
     largest: Array = (np.abs(values @ _last_terms(values.shape[-1])).max(axis=-1) / size).max(axis=0)
     return largest

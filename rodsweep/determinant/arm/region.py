@@ -1,13 +1,40 @@
 """Convex regions, bounded by a parabola, that contain the spectrum of an arm."""
 
+from dataclasses import dataclass
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
+from ..certificate.box import BOX
 
-DIRECTIONS = 48
-"""Number of normals of the region to try for the distance of a point. Compiled functions read it."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HullSettings(CompiledSettings):
+    """Settings for the points and weights from which a region is computed."""
+
+    points: int = 25
+    """Chebyshev points of each smooth piece, where coefficients are looked up and alpha is differentiated."""
+    margin: float = 0.05
+    """Relative excess of a, for extremes between the points and for rounding."""
+    inside: float = 1e-9
+    """Distance of the first and last point from the ends of a piece, in units of the piece's length."""
+    least_remainder: float = 0.1
+    """Least 1 - c: the region grows beyond use where c approaches 1."""
+    wide: float = 0.15
+    """Smallest c of a region that counts as wide for every a."""
+    weights: int = 41
+    """Number of constant weights alpha to try, between the smallest and the largest g/nu."""
+    least_ratio: float = 1e-3
+    """Smallest |g/nu| that is tried as a constant weight."""
+    directions: int = 48
+    """Number of normals of the region to try for the distance of a point."""
+    middles: tuple[float, ...] = (0.0, 0.5, 1.0)
+    """Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
+
+
+HULL = HullSettings()
 
 
 class Hull(NamedTuple):
@@ -24,7 +51,7 @@ class Hull(NamedTuple):
             return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
-        pad = 0.01 * depth + 1e-6
+        pad = BOX.padding * depth + BOX.least_padding
         return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
 
 
@@ -41,9 +68,9 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     b = 1 - c
     best = -inf
     normal = 1 + 0j
-    for k in range(DIRECTIONS):
+    for k in range(HULL.directions):
         # Close to the imaginary axis the support function grows without bound.
-        T = (k / (DIRECTIONS - k)) ** 2
+        T = (k / (HULL.directions - k)) ** 2
         if not c * T < b:
             break
         size = sqrt(1 + T * T)

@@ -13,24 +13,15 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..newton import REAL_BELOW
-from ..roots import (
-    A_ROOT,
-    CLOSE_ROOTS,
-    EXPANSIONS,
-    ON_THE_AXIS,
-    REFINED_TOGETHER,
-    SAME_ROOT,
-    Roots,
-)
+from ..exponents import EXPONENTS
+from ..newton import ROOT_NEWTON
+from ..root_settings import ROOTS
+from ..roots import Roots
 from .determinant import ArmDeterminant
-from .newton import refined_root, root_error, second_derivative, two_roots
+from .newton import ARM_ROOTS, refined_root, root_error, second_derivative, two_roots
 from .region import Hull
 
 T = TypeVar("T")
-MOST_ABOVE = 16.0
-"""Largest ratio of |w| later to |w| of the roots for which elements are shared: they are at most four times
-as many as the roots need, and errors from rounding grow with their number."""
 
 
 def roots(
@@ -42,18 +33,22 @@ def roots(
     |w| at which D will be needed afterwards. Rounding makes infinite eigenvalues finite; these lie outside
     the hull, beyond the mesh or far from every root.
     """
-    first = [w.real + 0j if abs(w.imag) <= REAL_BELOW * abs(w) else w for w in raw.tolist()]
+    first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w) else w for w in raw.tolist()]
     inside = [i for i, w in enumerate(first) if _inside(w, hull)]
     scales = dict(zip(inside, _of_each([first[i] for i in inside], determinant.scales), strict=True))
     resolved = [i for i in inside if scales[i][0] <= most_waves]
     start = [first[i] for i in resolved]
     _make_elements(determinant, max(map(abs, start), default=0.0), largest)
     errors = dict(zip(resolved, _of_each(start, lambda w: root_error(w, determinant)), strict=True))
-    chosen = [i for i in resolved if errors[i] <= CLOSE_ROOTS * scales[i][1]]
+    chosen = [i for i in resolved if errors[i] <= ROOTS.largest_of_pair * scales[i][1]]
     close = [errors[i] for i in chosen]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     moved, reach = _separated([first[i] for i in chosen], close, determinant)
-    stands = [k for k, i in enumerate(chosen) if reach[k] < math.inf or close[k] <= A_ROOT * scales[i][1]]
+    stands = [
+        k
+        for k, i in enumerate(chosen)
+        if reach[k] < math.inf or close[k] <= ROOTS.largest_correction * scales[i][1]
+    ]
     found = _refined_all([(moved[k], reach[k]) for k in stands], determinant)
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))
     kept = np.array([chosen[stands[root.place]] for root in found], np.int64)
@@ -62,7 +57,7 @@ def roots(
     error = _with_equal_roots(found, determinant)
     length: Array = np.array([scales[i][1] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
-    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
     leader = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
@@ -81,7 +76,7 @@ def _of_each(w: list[complex], function: Callable[[complex], T]) -> list[T]:
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
     """Makes elements that serve all |w| up to `size`: the elements for `largest` if it is little more, else
     new ones."""
-    if size < largest <= MOST_ABOVE * size:
+    if size < largest <= ARM_ROOTS.most_above * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)
     determinant.level(size)
@@ -105,15 +100,15 @@ def _separated(
     w = w.copy()
     reach = [math.inf] * len(w)
     each = zip(w, error, strict=True)
-    if not any(abs(a - b) <= REFINED_TOGETHER * (e + f) for (a, e), (b, f) in combinations(each, 2)):
+    if not any(abs(a - b) <= ROOTS.refined_together * (e + f) for (a, e), (b, f) in combinations(each, 2)):
         return w, reach
     for i in range(len(w)):
         others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
         if reach[i] < math.inf or not others:
             continue
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= REFINED_TOGETHER * (error[i] + error[partner]):
-            for _ in range(EXPANSIONS):
+        if abs(w[partner] - w[i]) <= ROOTS.refined_together * (error[i] + error[partner]):
+            for _ in range(ROOTS.expansions):
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
@@ -147,11 +142,11 @@ def _with_equal_roots(found: list[_Root], determinant: ArmDeterminant) -> Array:
     for i, one in enumerate(found):
         for j in range(i + 1, len(found)):
             apart = abs(one.w - found[j].w)
-            if apart <= SAME_ROOT * (error[i] + error[j]):
+            if apart <= ROOTS.same_root * (error[i] + error[j]):
                 value = determinant.value(one.w)
                 second = abs(second_derivative(one.w, value.S, determinant))
-                next_root = 2 * abs(value.D_w) / max(second, 1e-300)
-                if apart < next_root / 4:
+                next_root = 2 * abs(value.D_w) / max(second, EXPONENTS.least_divisor)
+                if apart < ROOTS.share_of_next * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
     return np.array(error, float)

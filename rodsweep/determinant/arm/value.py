@@ -9,26 +9,37 @@ rows of their own, so that a sum is a vector instruction over the entries of a p
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
+from ...model.compiled.settings import CompiledSettings
+from ..exponents import UNIT
 from ..parameter_path import ValueAlong
 from ..value import Value
-from .collocation import ENTRIES, MINORS, SM
+from .collocation import ENTRIES, SM
+from .element_settings import MINORS
 
-UNIT = 4.440892098500626e-16
-"""Unit of the noise of D: two relative rounding errors."""
-ROOT_NOISE = 1.5
-"""Rounding error of D at a root, in units of its noise, beside `ROOT_RESIDUAL`. The noise lacks the errors of
-propagators, of which D is a small part."""
-ROOT_RESIDUAL = 2.0
-"""Rounding error of D at a root, in units of the D that is found there, which is rounding itself. Of 3800
-eigenvalues and 520 crossings of random arms, against 34 digits, two then miss by more than what is stated,
-and none by twice as much."""
-LARGE = 1e100
-"""Size of the minors from which they are scaled."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmValueSettings(CompiledSettings):
+    """Settings for D from propagators and for its rounding errors."""
+
+    root_noise: float = 1.5
+    """Rounding error of D at a root, in units of its noise, beside `root_residual`. The noise lacks the
+    errors of propagators, of which D is a small part."""
+    root_residual: float = 2.0
+    """Rounding error of D at a root, in units of the D that is found there, which is rounding itself. Of 3800
+    eigenvalues and 520 crossings of random arms, against 34 digits, two then miss by more than what is
+    stated, and none by twice as much."""
+    large: float = 1e100
+    """Size of the minors from which they are scaled."""
+
+
+ARM_VALUE = ArmValueSettings()
+
 RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 """Rows of powers and of propagators: real and imaginary parts of the value and of its derivative."""
 
@@ -159,7 +170,7 @@ def _swept(
         size = _size(ahead[0])
         if e == elements - 1:
             size = max(size, _size_of_parts(C, here[0]))
-        if not 1 / LARGE < size < LARGE or e == elements - 1:
+        if not 1 / ARM_VALUE.large < size < ARM_VALUE.large or e == elements - 1:
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
@@ -181,7 +192,7 @@ def chain_size(w: complex, W: float, polynomials: Array) -> float:
         _propagator_alone(polynomials[e], powers, C)
         _product(C, here, ahead)
         size = _size(ahead)
-        if not 1 / LARGE < size < LARGE:
+        if not 1 / ARM_VALUE.large < size < ARM_VALUE.large:
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here

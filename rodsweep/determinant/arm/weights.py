@@ -7,9 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from .averaged_weight import squared_norm
-
-MIDDLES = (0.0, 0.5, 1.0)
-"""Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha. Compiled functions read it."""
+from .region import HULL
 
 
 @compiled
@@ -34,33 +32,33 @@ def least_square(alphas: Array, local: Array, push: float) -> float:
 
 
 @compiled
-def constants(local: Array, weights: int) -> Array:
-    """Constant alpha that are tried, (weights + 1,): between the extremes of g/nu along arms, and 1."""
+def constants(local: Array) -> Array:
+    """Constant alpha that are tried, (HULL.weights + 1,): between the extremes of g/nu along arms, and 1."""
     ratio = np.abs(local[5] / local[0])
-    start = log(max(ratio.min(), 1e-3))
-    stop = log(max(ratio.max(), 2e-3))
-    alphas = np.ones(weights + 1)
-    for k in range(weights):
-        alphas[k] = exp(start + (stop - start) * k / (weights - 1))
+    start = log(max(ratio.min(), HULL.least_ratio))
+    stop = log(max(ratio.max(), 2 * HULL.least_ratio))
+    alphas = np.ones(HULL.weights + 1)
+    for k in range(HULL.weights):
+        alphas[k] = exp(start + (stop - start) * k / (HULL.weights - 1))
     return alphas
 
 
 @compiled
 def squares_following(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
-    """The largest squared norm of the matrix along arms for each of `MIDDLES`.
+    """The largest squared norm of the matrix along arms for each of `HULL.middles`.
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points).
     """
-    found = np.zeros(len(MIDDLES))
+    found = np.zeros(len(HULL.middles))
     points = local.shape[3]
     level = np.empty(points)
     log_alpha = np.empty(points)
-    for m in range(len(MIDDLES)):
+    for m in range(len(HULL.middles)):
         for arm in range(len(F)):
             for piece in range(len(lengths)):
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
-                    level[i] = MIDDLES[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    level[i] = HULL.middles[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
                     log_alpha[i] = log(g / (nu + level[i]))
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]

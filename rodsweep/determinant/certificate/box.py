@@ -20,15 +20,24 @@ from functools import lru_cache
 from math import exp, inf, log, sqrt
 
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients, Rod
 from ..parameter_path import Path, changes, coefficients_at
 
-PADDING = 0.01
-"""Padding of the box in units of the depth."""
-LEAST_PADDING = 1e-6
-"""Padding of the box at depth 0, in 1/tau2; far below the smallest eigenvalue of a rod at rest, 12."""
-BOX_MARGIN = 1.01
-"""Safety factor on every bound, for rounding errors in the bound."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxSettings(CompiledSettings):
+    """Settings for the box of all eigenvalues."""
+
+    padding: float = 0.01
+    """Padding of the box in units of the depth."""
+    least_padding: float = 1e-6
+    """Padding of the box at depth 0, in 1/tau2; far below the smallest eigenvalue of a rod at rest, 12."""
+    margin: float = 0.01
+    """Relative excess of every bound, for rounding errors in the bound."""
+
+
+BOX = BoxSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,8 +61,8 @@ def box_of(a: float, depth: float) -> tuple[float, float]:
     """`eigenvalue_box` from a, the square root of `squared_amplification`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
-    pad = PADDING * depth + LEAST_PADDING
-    return BOX_MARGIN * a * a / 4 + pad, BOX_MARGIN * a * n + pad
+    pad = BOX.padding * depth + BOX.least_padding
+    return (1 + BOX.margin) * a * a / 4 + pad, (1 + BOX.margin) * a * n + pad
 
 
 @lru_cache(maxsize=1)

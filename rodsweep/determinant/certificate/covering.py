@@ -20,31 +20,48 @@ exponentials in D, which stays bounded near a zero of D.
 
 import cmath
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..exponents import LEAST_DIVISOR
+from ..exponents import EXPONENTS
 from ..newton import FAILED, Zero, crossing_newton
 from ..parameter_path import changes, coefficients_at, determinant_along
-from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, centre_at
+from .discs import DISCS, Centre, Pair, bound_on_bidisc, centre_at
 
-LARGEST_RADIUS_SHARE = 0.45
-"""Largest trial share t: half-width of a box over radius of the bidisc."""
-NEXT_RADIUS_SHARE = 0.6
-"""Ratio of the next trial share t to the present share."""
-MAX_RADIUS_SHARES = 30
-"""Maximum number of trial shares t, down to 2e-7."""
-SMALLEST_BOX = 1e-9
-"""Half-widths in units of eta and p below which a box is left open."""
-MAX_BOXES = 1_000_000
-"""Maximum number of boxes to examine; all others are left open."""
-SAME_ZERO = 1.5
-"""Distance from the centre of a regular box, in half-widths, within which a known zero is the box's zero."""
-BESIDE = 1.01
-"""Distance of a zero from the centre of a box, in half-widths, from which a neighbouring box finds the
-zero."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxProofSettings(CompiledSettings):
+    """Settings for the proofs about one box, and for their number."""
+
+    largest_radius_share: float = 0.45
+    """Largest trial share t: half-width of a box over radius of the bidisc."""
+    next_radius_share: float = 0.6
+    """Ratio of the next trial share t to the present share."""
+    max_radius_shares: int = 30
+    """Maximum number of trial shares t, down to 2e-7."""
+    smallest_box: float = 1e-9
+    """Half-widths in units of eta and p below which a box is left open."""
+    max_boxes: int = 1_000_000
+    """Maximum number of boxes to examine; all others are left open."""
+    same_zero: float = 1.5
+    """Distance from the centre of a regular box, in half-widths, within which a known zero is the box's
+    zero."""
+    beside: float = 0.01
+    """Distance of a zero from the edge of a box, in half-widths, from which a neighbouring box finds the
+    zero."""
+    ranges: ClassVar = {
+        "largest_radius_share": (0.0, 1.0),
+        "next_radius_share": (0.0, 1.0),
+        "same_zero": (1.0, 2.0),
+    }
+
+
+BOX_PROOF = BoxProofSettings()
+
 EMPTY = 0
 REGULAR = 1
 UNDECIDED = 2
@@ -90,9 +107,9 @@ def mean_rates(centre: Centre) -> Pair:
 @compiled
 def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
     """Whether M t^2/(1 - t)^power < room for a trial share t; half: half-widths of the box."""
-    t = LARGEST_RADIUS_SHARE
+    t = BOX_PROOF.largest_radius_share
     last = math.inf
-    for _ in range(MAX_RADIUS_SHARES):
+    for _ in range(BOX_PROOF.max_radius_shares):
         M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
         rest = M * t * t / (1 - t) ** power
         if rest < room:
@@ -101,7 +118,7 @@ def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: floa
         if rest > last:
             return False
         last = rest
-        t *= NEXT_RADIUS_SHARE
+        t *= BOX_PROOF.next_radius_share
     return False
 
 
@@ -116,13 +133,13 @@ def examine(
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
     centre = centre_at(w, coefficients, changes(coefficients, direction), S)
     mean = mean_rates(centre)
-    rounding = ROUNDING_OF_D * noise
+    rounding = DISCS.rounding * noise
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            room = CLEARANCE * distance(D, a, b) - rounding
+            room = DISCS.clearance * distance(D, a, b) - rounding
             if room > 0 and remainder(centre, rates, half, room, 1):
                 return EMPTY, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
@@ -132,7 +149,7 @@ def examine(
         # The smallest singular value of the linear map is at least |det| over the sum of its columns: at most
         # one zero.
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
-        room = (CLEARANCE * least - rounding) / 3
+        room = (DISCS.clearance * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
         if room > 0 and remainder(centre, mean, double, room, 2):
             return REGULAR, 0.0, 0.0
@@ -154,7 +171,7 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # Besides the exponents the radicand of P must not change much, for the bounds on the bidisc.
     factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
-    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, LEAST_DIVISOR))
+    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, EXPONENTS.least_divisor))
 
 
 @compiled
@@ -179,13 +196,14 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
             zero = crossing_newton(eta, p, origin, direction, half)
             away = _half_widths_away(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
-                known = away > BESIDE  # outside the box: a neighbouring box finds the same zero
+                known = away > 1 + BOX_PROOF.beside  # outside the box: a neighbouring box finds the same zero
                 for other in zeros:  # the doubled box contains at most one zero
-                    known = known or _half_widths_away(other, eta, p, half) <= SAME_ZERO
+                    known = known or _half_widths_away(other, eta, p, half) <= BOX_PROOF.same_zero
                 if not known:
                     zeros.append(zero)
                 continue
-        if examined > MAX_BOXES or (half[0] < SMALLEST_BOX * eta and half[1] < SMALLEST_BOX * abs(p)):
+        smallest = BOX_PROOF.smallest_box
+        if examined > BOX_PROOF.max_boxes or (half[0] < smallest * eta and half[1] < smallest * abs(p)):
             left.append(box)
         elif cost_w >= cost_p:
             stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))

@@ -5,24 +5,39 @@ p is the variable of a path of rods (`parameter_path`); the disc of p has radius
 
 import cmath
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
+from ..exponents import EXPONENTS
 from ..parameter_path import Changes, root_changes
 from ..value import branches
 
-ROUNDING_OF_D = 4.0
-"""Bound of the rounding error of D, in units of its noise; 20 000 unfavourable values had at most 0.7."""
-CLEARANCE = 0.9
-"""Largest allowed proved change, in units of |D|."""
-HUGE = 600.0
-"""Upper limit of exponents before exp, which would overflow at 709."""
-AWAY_FROM_ZERO = 0.5
-"""Largest relative change x of z over a disc at which sqrt(z) is expanded; the remainder, like x^2/(1 - x),
-is small up to here."""
-LARGEST_CHANGE = 0.98
-"""Largest relative change of a factor of P^2 over a disc for which a bound is computed."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiscSettings(CompiledSettings):
+    """Settings for bounds on discs and bidiscs."""
+
+    rounding: float = 4.0
+    """Bound of the rounding error of D, in units of its noise; 20 000 unfavourable values had at most 0.7."""
+    clearance: float = 0.9
+    """Largest allowed proved change, in units of |D|."""
+    away_from_zero: float = 0.5
+    """Largest relative change x of z over a disc at which sqrt(z) is expanded; the remainder, like x^2/(1 -
+    x), is small up to here."""
+    largest_change: float = 0.98
+    """Largest relative change of a factor of P^2 over a disc for which a bound is computed."""
+    ranges: ClassVar = {
+        "clearance": (0.0, 1.0),
+        "away_from_zero": (0.0, 1.0),
+        "largest_change": (0.0, 1.0),
+    }
+
+
+DISCS = DiscSettings()
+
 
 Pair = tuple[complex, complex]
 """A derivative with respect to w and a derivative with respect to p."""
@@ -77,7 +92,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
     grow = crude
     decay = crude
-    if change < AWAY_FROM_ZERO * abs(z):
+    if change < DISCS.away_from_zero * abs(z):
         in_w = slopes[0] / (2 * root)
         in_p = slopes[1] / (2 * root)
         curve = bend_of_root(root, bend, change / abs(z))
@@ -85,9 +100,10 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
         grow = min(grow, root.real + with_rates + curve)
         decay = min(decay, -root.real + against + curve)
-    exponentials = math.exp(min(grow - S, HUGE)) + math.exp(min(decay - S, HUGE))
+    largest = EXPONENTS.largest_exponent
+    exponentials = math.exp(min(grow - S, largest)) + math.exp(min(decay - S, largest))
     # The -1 of E = (cosh - 1)/z and its derivative.
-    exponentials += 2 * math.exp(min(drift - S, HUGE))
+    exponentials += 2 * math.exp(min(drift - S, largest))
     # Bounds that hold near z = 0 too, where those by 1/|z| are useless: E(0) = 1/2 is an eighth of four
     # exponentials.
     E = 1 / 8
@@ -118,7 +134,8 @@ def bound_together(centre: Centre, rates: Pair, radii: Radii) -> float:
     E, E1 = terms_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
-    return math.exp(min(drift - S, HUGE)) + far * ((T + abs(T1) * sigma) * E + 2 * steep * E1)
+    still = math.exp(min(drift - S, EXPONENTS.largest_exponent))
+    return still + far * ((T + abs(T1) * sigma) * E + 2 * steep * E1)
 
 
 @compiled
@@ -153,7 +170,7 @@ def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
     e1 = rho / abs(w)
     moved = dG + X * rho + dX * (abs(w) + rho)
     e2 = moved / base if base > moved else 1.0
-    if e1 > LARGEST_CHANGE or (moved > 0 and e2 > LARGEST_CHANGE):
+    if e1 > DISCS.largest_change or (moved > 0 and e2 > DISCS.largest_change):
         return math.inf
     if moved == 0:
         e2 = 0.0
@@ -170,4 +187,4 @@ def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
     terms = terms_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
     terms += terms_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
-    return math.exp(min(drift - S, HUGE)) + (abs(w) + rho) / 2 * steepest * terms
+    return math.exp(min(drift - S, EXPONENTS.largest_exponent)) + (abs(w) + rho) / 2 * steepest * terms

@@ -13,23 +13,34 @@ from the eigenvalues, which lie near the negative real axis, the radius may be a
 
 import cmath
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..value import branches, scaled_determinant
-from .discs import CLEARANCE, bend_of_root, terms_on_bidisc
+from .discs import DISCS, bend_of_root, terms_on_bidisc
 
-FIRST_RADIUS = 0.25
-"""Radius of the first trial disc, in units of the distance to the nearest branch point."""
-HALVINGS = 2
-"""Number of further trial discs, each half as large."""
-OVERLAP_OF_DISCS = 1.001
-"""Radius of a disc in units of half its step, so that rounding leaves no gap between discs."""
-END_ROUNDING = 1e-15
-"""Relative distance from the end of a stretch that is rounding error: some units in the last place."""
-LARGEST_FACTOR_CHANGE = 0.5
-"""Largest relative change of each factor of A over a disc; keeps every phase within a right angle."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DominanceSettings(CompiledSettings):
+    """Settings for discs in which one exponential dominates."""
+
+    first_radius: float = 0.25
+    """Radius of the first trial disc, in units of the distance to the nearest branch point."""
+    halvings: int = 2
+    """Number of further trial discs, each half as large."""
+    overlap: float = 1e-3
+    """Relative excess of a disc's radius over half its step, so that rounding leaves no gap between discs."""
+    end_rounding: float = 1e-15
+    """Relative distance from the end of a stretch that is rounding error: some units in the last place."""
+    largest_factor_change: float = 0.5
+    """Largest relative change of each factor of A over a disc; keeps every phase within a right angle."""
+    ranges: ClassVar = {"first_radius": (0.0, 1.0), "largest_factor_change": (0.0, 1.0)}
+
+
+DOMINANCE = DominanceSettings()
 
 
 class Exponent(NamedTuple):
@@ -65,7 +76,7 @@ def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficient
     e2 = 0.0
     if X > 0:
         e2 = X * rho / abs(gn + X * w)
-    if e1 > LARGEST_FACTOR_CHANGE or e2 > LARGEST_FACTOR_CHANGE:
+    if e1 > DOMINANCE.largest_factor_change or e2 > DOMINANCE.largest_factor_change:
         return math.inf, math.inf
     least = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
@@ -82,7 +93,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     bend, turn = _bend_and_turn(w, rho, P, coefficients)
     change = abs(slope) * rho + bend
     x = change / abs(z)
-    if x > LARGEST_FACTOR_CHANGE or turn > LARGEST_FACTOR_CHANGE * abs(slope):
+    if x > DOMINANCE.largest_factor_change or turn > DOMINANCE.largest_factor_change * abs(slope):
         return False
     L = slope / (2 * root)
     drift = abs(L) * rho
@@ -92,7 +103,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
-    if change_other < LARGEST_FACTOR_CHANGE * abs(z_other):
+    if change_other < DOMINANCE.largest_factor_change * abs(z_other):
         curve_other = bend_of_root(root_other, bend, change_other / abs(z_other))
         together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
         if not root.real - curve > root_other.real + together:
@@ -109,7 +120,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     )
     E = terms_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
     rest += far / 2 * (abs(slope_other) + turn) * E
-    return rest < CLEARANCE * A
+    return rest < DISCS.clearance * A
 
 
 @compiled
@@ -142,16 +153,16 @@ def dominated_stretch(
     here = (0j, 0j)
     first = (0j, 0j)
     while t < length:
-        rho = FIRST_RADIUS * abs(w)
+        rho = DOMINANCE.first_radius * abs(w)
         if X > 0:
-            rho = min(rho, FIRST_RADIUS * abs(gn + X * w) / X)
+            rho = min(rho, DOMINANCE.first_radius * abs(gn + X * w) / X)
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         found = False
-        for _ in range(HALVINGS + 1):
+        for _ in range(DOMINANCE.halvings + 1):
             discs += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if dominated(w + direction * rho, OVERLAP_OF_DISCS * rho, coefficients):
+            if dominated(w + direction * rho, (1 + DOMINANCE.overlap) * rho, coefficients):
                 found = True
                 break
             rho /= 2
@@ -160,7 +171,7 @@ def dominated_stretch(
         if t == 0.0:
             here = dominant_factors(w, coefficients)
             first = here
-        t = length if t + 2 * rho >= length * (1 - END_ROUNDING) else t + 2 * rho
+        t = length if t + 2 * rho >= length * (1 - DOMINANCE.end_rounding) else t + 2 * rho
         w = start + direction * t
         after = dominant_factors(w, coefficients)
         # The phase of A in closed form, however many turns it makes over the stretch.

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import Path, coefficients_at
-from .box import BOX_MARGIN, quiet_radius, squared_amplification_over
+from .box import BOX, quiet_radius, squared_amplification_over
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +58,7 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes that contain every crossing with p from start to stop, shape (n, 4); None without a bound."""
     boxes = []
     for a, b in slabs(path, start, stop):
-        top = BOX_MARGIN * squared_amplification_over(path, a, b) + COVERING.padding
+        top = (1 + BOX.margin) * squared_amplification_over(path, a, b) + COVERING.padding
         if not math.isfinite(top):
             return None
         low = quiet_radius(path, a, b, top)

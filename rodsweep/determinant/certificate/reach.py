@@ -12,23 +12,35 @@ The largest such r is the reach. It is 0 if the rounding error of D cannot separ
 
 import cmath
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..exponents import LEAST_DIVISOR
+from ..exponents import EXPONENTS
 from ..parameter_path import Changes
 from ..value import branches, scaled_determinant
-from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc, centre_at
+from .discs import DISCS, bound_on_bidisc, centre_at
 
 STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Zero changes along a path, for bounds of a single rod."""
-BRANCH_DISTANCE = 3.0
-"""Distance to the nearest branch point in units of the radius of a disc, at least."""
-FACTOR_CHANGE = 0.4
-"""Largest relative change of z+- over a disc, for which its exponents change by order one."""
-NO_ROOT = 1e-3
-"""Modulus of z+- below which its root does not limit the radius of a disc."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReachSettings(CompiledSettings):
+    """Settings for the disc about a node."""
+
+    branch_distance: float = 3.0
+    """Distance to the nearest branch point in units of the radius of a disc, at least."""
+    factor_change: float = 0.4
+    """Largest relative change of z+- over a disc, for which its exponents change by order one."""
+    no_root: float = 1e-3
+    """Modulus of z+- below which its root does not limit the radius of a disc."""
+    ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
+
+
+REACH = ReachSettings()
 
 
 class Node(NamedTuple):
@@ -46,19 +58,19 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = branches(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
-    rho = abs(w) / BRANCH_DISTANCE
+    rho = abs(w) / REACH.branch_distance
     if c2 * gamma3 > 0:
-        rho = min(rho, stiffness / (BRANCH_DISTANCE * c2 * gamma3))
-    rho = min(rho, (S + 1) / max(abs(L), LEAST_DIVISOR))
+        rho = min(rho, stiffness / (REACH.branch_distance * c2 * gamma3))
+    rho = min(rho, (S + 1) / max(abs(L), EXPONENTS.least_divisor))
     # Both exponentials count by what they contribute: a recessive one, with much slack, may change faster.
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)
         slack = S - root.real + 1
-        rho = min(rho, FACTOR_CHANGE * max(abs(z), 2.0) / max(abs(slope), LEAST_DIVISOR))
-        if abs(z) > NO_ROOT:
+        rho = min(rho, REACH.factor_change * max(abs(z), 2.0) / max(abs(slope), EXPONENTS.least_divisor))
+        if abs(z) > REACH.no_root:
             rate = slope / (2 * root)
-            rho = min(rho, slack / max(abs(rate - L), LEAST_DIVISOR))
+            rho = min(rho, slack / max(abs(rate - L), EXPONENTS.least_divisor))
             rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
     return rho
 
@@ -67,7 +79,7 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
 def node_at(w: complex, coefficients: Coefficients) -> Node:
     """The node at w. The phase of f changes by less than pi/2 within the node's reach."""
     D, D_w, S, noise = scaled_determinant(w, coefficients)
-    room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
+    room = DISCS.clearance * abs(D) - DISCS.rounding * noise
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
         return Node(w, D, 0j, 0.0)

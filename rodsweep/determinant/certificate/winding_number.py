@@ -14,8 +14,10 @@ cannot separate a zero of D from the line, and the count fails.
 import cmath
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
 from .box import eigenvalue_box, quiet_radius_of
@@ -24,7 +26,7 @@ from .reach import node_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CountSettings:
+class CountSettings(CompiledSettings):
     """Settings for the contour of a count."""
 
     width_factor: float = 4.0
@@ -36,22 +38,22 @@ class CountSettings:
     """Smallest height of the box, in units of the line's distance from the imaginary axis."""
     not_an_integer: float = 1e-3
     """Distance of a winding number from the nearest integer beyond which the count fails."""
+    patience: float = 0.25
+    """Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled
+    after every failure."""
+    longest_step: float = 1.9
+    """Longest step tried in units of the reach of a node; beyond 1 the reach of the next node must cover the
+    step."""
+    within_reach: float = 0.999
+    """Step in units of the reach of a node that lies within it whatever the rounding."""
+    smallest_reach: float = 1e-13
+    """Reach in units of |w| below which the line counts as running through a zero of D."""
+    max_edge_nodes: int = 20_000
+    """Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
+    ranges: ClassVar = {"within_reach": (0.0, 1.0)}
 
 
 COUNT = CountSettings()
-
-PATIENCE = 0.25
-"""Length, in units of |w|, to walk from node to node before trying a disc of dominance again; doubled after
-every failure."""
-LONGEST_STEP = 1.9
-"""Longest step tried in units of the reach of a node; beyond 1 the reach of the next node must cover the
-step."""
-WITHIN_REACH = 0.999
-"""Step in units of the reach of a node that lies within it whatever the rounding."""
-SMALLEST_REACH = 1e-13
-"""Reach in units of |w| below which the line counts as running through a zero of D."""
-MAX_EDGE_NODES = 20_000
-"""Maximum nodes on one edge; the paper's rods need about 30 on all edges."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,14 +76,14 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     nodes = 0
-    patience = PATIENCE
+    patience = COUNT.patience
     while t < length:
         w = start + direction * t
         ahead, change, discs = dominated_stretch(w, direction, length - t, coefficients)
         total += change
         nodes += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
-        patience = PATIENCE if ahead > 0 else 2 * patience
+        patience = COUNT.patience if ahead > 0 else 2 * patience
         t = length if ahead == length - t else t + ahead
         if t < length:
             w = start + direction * t
@@ -89,7 +91,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
             to = end if goal == length else start + direction * goal
             change, used = stepped_change(w, to, coefficients)
             nodes += abs(used)
-            if used < 0 or nodes > MAX_EDGE_NODES:
+            if used < 0 or nodes > COUNT.max_edge_nodes:
                 return 0.0, -nodes
             total += change
             t = goal
@@ -109,17 +111,17 @@ def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> 
     nodes = 1
     here = node_at(start, coefficients)
     while t < length:
-        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MAX_EDGE_NODES:
+        if not here.reach > COUNT.smallest_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
             return 0.0, -nodes
         # The next node may lie beyond the reach of this node if its own reach covers the step.
-        ahead = min(LONGEST_STEP * here.reach, length - t)
+        ahead = min(COUNT.longest_step * here.reach, length - t)
         while True:
             inside = ahead < here.reach
             there = node_at(start + direction * (t + ahead) if ahead < length - t else end, coefficients)
             nodes += 1
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
-            ahead = WITHIN_REACH * here.reach
+            ahead = COUNT.within_reach * here.reach
         # The linear part of arg D may be many turns; only the rest, less than pi/2, is read off the values.
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))

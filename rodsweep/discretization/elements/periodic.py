@@ -6,19 +6,30 @@ the samples. For even N the highest harmonic is a cosine.
 Compiled kernels may sum in any order, and the order of their assignments changes the last bit of results.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.settings import CompiledSettings
 
-EXTREMUM_STEPS = 8
-"""Maximum Newton steps from the largest sample to the maximum."""
-EXTREMUM_FOUND = 1e-9
-"""Newton step, in periods, at which the search has converged; the error of the maximum is about the
-square."""
-TIME_BISECTIONS = 50
-"""Halvings of the interval between two samples, down to rounding error."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MaximumSettings(CompiledSettings):
+    """Settings for maxima of trigonometric polynomials."""
+
+    max_steps: int = 8
+    """Maximum Newton steps from the largest sample to the maximum."""
+    found: float = 1e-9
+    """Newton step, in periods, at which the search has converged; the error of the maximum is about the
+    square."""
+    bisections: int = 50
+    """Halvings of the interval between two samples, down to rounding error."""
+
+
+MAXIMA = MaximumSettings()
 
 
 def coefficients(samples: Array) -> Complex:
@@ -177,7 +188,7 @@ def maxima(c: Complex, samples: Array) -> Array:
     highest = np.empty(m)
     for column in range(m):
         t = float(np.argmax(samples[:, column])) / n
-        for _ in range(EXTREMUM_STEPS):
+        for _ in range(MAXIMA.max_steps):
             _, slope, curvature = _expansion(c[:, column], t)
             # Newton's method would run to a minimum.
             if curvature >= 0:
@@ -185,7 +196,7 @@ def maxima(c: Complex, samples: Array) -> Array:
             # The extremum lies beside the largest sample, within one distance of samples.
             step = min(max(slope / curvature, -1 / n), 1 / n)
             t -= step
-            if abs(step) < EXTREMUM_FOUND:
+            if abs(step) < MAXIMA.found:
                 break
         highest[column] = _expansion(c[:, column], t)[0]
     return highest
@@ -229,7 +240,7 @@ def rise_through_mean(samples: Array) -> float:
 @compiled_for_vectors
 def _rise(c: Complex, low: float, high: float) -> float:
     """The zero of Re sum_k c_k exp(2 pi i k t) between two times, by bisection; c: (harmonics,)."""
-    for _ in range(TIME_BISECTIONS):
+    for _ in range(MAXIMA.bisections):
         middle = (low + high) / 2
         if _expansion(c, middle)[0] < 0:
             low = middle

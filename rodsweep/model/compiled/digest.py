@@ -10,12 +10,15 @@ import dis
 import inspect
 from collections.abc import Iterable, Iterator, Mapping, MutableMapping
 from hashlib import sha256
+from itertools import pairwise
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba import types
 from numba.core.dispatcher import Dispatcher
+
+from .settings import CompiledSettings
 
 VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 """Flags of a code object that change the compiled code: *args and **kwargs."""
@@ -85,12 +88,24 @@ def _described(function: FunctionType, options: str) -> Part:
     for code in _code_objects(function.__code__):
         instructions = list(dis.get_instructions(code))
         lines += _code_lines(code, instructions)
-        for name in dict.fromkeys(i.argval for i in instructions if i.opname in READS):
-            if name in function.__globals__:
-                lines.append(f"{name} = {values.text(function.__globals__[name])}")
-            elif not hasattr(builtins, name):
-                raise NameError(f"{_name_of(function)} reads {name}, which its module does not define")
+        read = _values_read(function, instructions)
+        lines += [f"{name} = {values.text(value)}" for name, value in read.items()]
     return Part("\n".join(lines), values.called)
+
+
+def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
+    """Global values that instructions read, by name; of a settings object only the fields that they read."""
+    read = {}
+    for here, after in pairwise(instructions):
+        if here.opname in READS and here.argval in function.__globals__:
+            value = function.__globals__[here.argval]
+            if isinstance(value, CompiledSettings) and after.opname == "LOAD_ATTR":
+                read[f"{here.argval}.{after.argval}"] = getattr(value, after.argval)
+            else:
+                read[here.argval] = value
+        elif here.opname in READS and not hasattr(builtins, here.argval):
+            raise NameError(f"{_name_of(function)} reads {here.argval}, which its module does not define")
+    return read
 
 
 def _code_objects(code: CodeType) -> Iterator[CodeType]:

@@ -5,12 +5,21 @@ Python's garbage collection would not destroy them: petsc4py only sets the colle
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
+from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 from weakref import WeakSet
 
-MAX_KEPT_BYTES = 100_000_000
-"""Memory of the objects of a full pool: dozens of solvers for a few modes, or three for 300 modes, which take
-seconds a solve and milliseconds to create."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KeptSettings:
+    """Settings for the memory of a pool."""
+
+    max_bytes: int = 100_000_000
+    """Memory of the objects of a full pool: dozens of solvers for a few modes, or three for 300 modes, which
+    take seconds a solve and milliseconds to create."""
+
+
+KEPT = KeptSettings()
 
 
 class Destroyable(Protocol):
@@ -30,7 +39,7 @@ Object = TypeVar("Object", bound=Destroyable)
 class LruPool(Generic[Key, Object]):
     """A pool of objects made by `create` from keys; a full pool drops the least recently used objects.
 
-    A pool is full with `limit` objects, or with `MAX_KEPT_BYTES`. Objects grow with what they solve, so a
+    A pool is full with `limit` objects, or with `KEPT.max_bytes`. Objects grow with what they solve, so a
     pool may exceed the memory until the next object is created.
     """
 
@@ -51,7 +60,7 @@ class LruPool(Generic[Key, Object]):
     def get(self, key: Key) -> Object:
         """The object of a key, kept or new; a later call with a different key may destroy the object."""
         if key not in self._objects:
-            while len(self._objects) >= self._limit or self.kept_bytes > MAX_KEPT_BYTES:
+            while len(self._objects) >= self._limit or self.kept_bytes > KEPT.max_bytes:
                 self._objects.popitem(last=False)[1].destroy()
             self._objects[key] = self._create(key)
         self._objects.move_to_end(key)

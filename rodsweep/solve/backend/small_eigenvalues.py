@@ -1,5 +1,9 @@
 """Eigenvalues of small dense matrices in compiled code, by SciPy's LAPACK."""
 
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
 import numpy as np
 from llvmlite import binding
 from numba import types
@@ -8,13 +12,24 @@ from numba.extending import get_cython_function_address
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 
 _ADDRESS = types.intp
 binding.add_symbol("rodsweep_dgeev", get_cython_function_address("scipy.linalg.cython_lapack", "dgeev"))
 # By name, not by address, so that the compiled code can be cached.
 _dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *[_ADDRESS] * 14))
-WORK = 12
-"""Work memory in units of the order; LAPACK needs at least 3, and uses more for blocked algorithms."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmallEigenvalueSettings(CompiledSettings):
+    """Settings for LAPACK."""
+
+    work: int = 12
+    """Work memory in units of the order; LAPACK needs at least 3, and uses more for blocked algorithms."""
+    ranges: ClassVar = {"work": (2, math.inf)}
+
+
+SMALL_EIGENVALUES = SmallEigenvalueSettings()
 
 
 @compiled
@@ -23,7 +38,7 @@ def eigenvalues(A: Array) -> Complex:
     n = len(A)
     a = A.copy()
     parts = np.empty((2, n))
-    work = np.empty(WORK * n)
+    work = np.empty(SMALL_EIGENVALUES.work * n)
     extents = np.array([n, len(work), 0], np.int32)
     none = np.full(1, 78, np.uint8)  # "N"
     no = none.ctypes.data

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...determinant.exponents import EXPONENTS
 from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
 from ..cycle.accuracy.calibration_settings import CALIBRATION
 from ..cycle.accuracy.cycle_errors import CYCLE_ERRORS, CycleErrors
@@ -84,7 +85,7 @@ class Place:
         way = np.copysign(1.0, off * self.rate)
         # At a fold off is quadratic in the length: rate s + curvature s^2/2 = off; the root is bounded from
         # above.
-        return float(way * 2 * (abs(off) / max(abs(self.curvature), 1e-300)) ** 0.5)
+        return float(way * 2 * (abs(off) / max(abs(self.curvature), EXPONENTS.least_divisor)) ** 0.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,4 +225,4 @@ def slope_at(path: CyclePath, place: Place) -> float:
     ahead = CyclePath(moved(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
-    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(abs(place.rate), 1e-300)
+    return abs((other - y) / (BRANCH_ERRORS.slope_step * y)) / max(abs(place.rate), EXPONENTS.least_divisor)

@@ -25,13 +25,9 @@ from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATES
 from ..spectrum.problem import problem_of
-from ..spectrum.spectrum import SpectrumRequest
 from .along_parameter import in_steps, predictor_from
 from .straight_rod import straight_rod
 from .transient.motion_mesh import coarse_mesh
-
-LEADING = SpectrumRequest(1, 1e-9, False)
-"""Spectrum request for the leading eigenvalue, without a proof."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +82,7 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
     near: leading eigenvalue of a similar rod, from which the search starts.
     """
-    found = straight_rod(rod, None if near is None else np.array([near]), LEADING)
+    found = straight_rod(rod, None if near is None else np.array([near]), certify=False)
     if isnan(found.error):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
     return found.w

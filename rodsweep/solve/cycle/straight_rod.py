@@ -10,16 +10,10 @@ from math import isnan, nan
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.roots import ON_THE_AXIS
+from ...determinant.root_settings import ROOTS
 from ...model.rod import Rod
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
-
-SPECTRUM = SpectrumRequest(1, 1e-9, True)
-"""Spectrum request for the straight rod: the leading eigenvalue, proved to be the leading one."""
-SPECTRUM_OF_CHAIN = SpectrumRequest(6, 1e-9, True)
-"""Spectrum request for an arm from which a chain starts. Six eigenvalues are enough to prove, near
-most Hopf points, by a few values of D that no further one leads; a count takes three times as long."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +23,11 @@ class StraightRodSettings:
     errors_from_axis: float = 4.0
     """Distance from the imaginary axis, in units of the eigenvalue's error estimate, beyond which the sign of
     the growth rate is certain. The spectrum uses the same criterion."""
+    accuracy: float = 1e-9
+    """Relative accuracy of the leading eigenvalue."""
+    modes_of_chain: int = 6
+    """Number of eigenvalues of an arm from which a chain starts: enough to prove, near most Hopf points, by a
+    few values of D that no further one leads; a count takes three times as long."""
 
 
 STRAIGHT_ROD = StraightRodSettings()
@@ -53,7 +52,7 @@ class StraightRod:
     @property
     def stable(self) -> bool | None:
         """Whether all small motions decay; None if the error leaves this open."""
-        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ON_THE_AXIS * abs(self.w))
+        margin = max(STRAIGHT_ROD.errors_from_axis * self.error, ROOTS.on_the_axis * abs(self.w))
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
@@ -77,11 +76,13 @@ class StraightRod:
         return f"{rate}, so it leaves the straight state, although its motion on a mesh decays to it"
 
 
-def straight_rod(rod: Rod, near: Complex | None = None, request: SpectrumRequest = SPECTRUM) -> StraightRod:
+def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) -> StraightRod:
     """The leading eigenvalue of a rod with its error.
 
     near: eigenvalues of a similar rod, (n,), the leading one first, followed to this rod if possible.
+    certify: whether the eigenvalue is proved to be the leading one.
     """
+    request = SpectrumRequest(1, STRAIGHT_ROD.accuracy, certify)
     leader = None if near is None else followed_leader(rod, near, request.accuracy)
     if leader is not None:
         return StraightRod(leader.w, leader.error, followed=leader.known)
@@ -97,7 +98,8 @@ def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
     if len(found.followed):
         return found.followed
     if not rod.uniform:
-        w = solve_spectrum(rod, SPECTRUM_OF_CHAIN).eigenvalues
+        request = SpectrumRequest(STRAIGHT_ROD.modes_of_chain, STRAIGHT_ROD.accuracy, True)
+        w = solve_spectrum(rod, request).eigenvalues
         if np.isfinite(w).all():
             return w[w.imag >= 0]
     return np.array([found.w])

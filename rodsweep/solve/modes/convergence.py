@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.newton import second_derivative
-from ...determinant.exponents import LEAST_DIVISOR
+from ...determinant.exponents import EXPONENTS
 from ...determinant.value import distance_to_next
 from ...discretization.elements.resolution import mesh_accuracy
 from ...discretization.straight.transverse_mesh import finer_mesh, mesh_for, pencil_on
@@ -88,7 +88,10 @@ def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
         error = np.maximum(error, relative.max(axis=0))
     # For a normal operator, of condition number 1, rounding moves the eigenvalues but turns no vector.
     turned = (
-        MODE_MESH.roundings * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, LEAST_DIVISOR)
+        MODE_MESH.roundings
+        * (1 - 1 / fine.condition**2)
+        * fine.rounding
+        / np.maximum(gaps, EXPONENTS.least_divisor)
     )
     moved = np.abs(coarse.condition / fine.condition - 1)
     return replace(fine, mode_error=error, condition_error=moved + turned)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.value import ROUND_OFF
+from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_form
 from ...discretization.straight.pencil import tip_scale

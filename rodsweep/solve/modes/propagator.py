@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
+from ...determinant.exponents import ROUND_OFF
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,13 +21,15 @@ class PropagatorSettings:
 
     infinite: float = 1e-12
     """Relative size of an eigenvalue of G below which the corresponding eigenvalue of L is infinite."""
+    taylor_terms: int = 16
+    """Number of Taylor terms of exp for a matrix of norm 1/2; a multiple of 4."""
+
+    def __post_init__(self) -> None:
+        if self.taylor_terms % 4 or 0.5**self.taylor_terms > ROUND_OFF * factorial(self.taylor_terms):
+            raise ValueError(f"{self.taylor_terms} Taylor terms leave more than rounding error of exp")
 
 
 PROPAGATOR = PropagatorSettings()
-
-
-TAYLOR_ORDER = 16
-"""Number of Taylor terms of exp for a matrix of norm 1/2, to rounding; a multiple of 4."""
 
 
 def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
@@ -132,8 +135,8 @@ def exponential(matrices: Array) -> Array:
     powers += [powers[2] @ scaled, powers[2] @ powers[2]]
     # exp(x) - 1 is squared, not exp(x): small norms keep their digits, since (1 + r)^2 - 1 = 2 r + r^2.
     result = np.zeros_like(scaled)
-    for order in range(TAYLOR_ORDER - 4, -1, -4):  # four terms a product
-        terms = sum(powers[i] / factorial(order + i) for i in range(4) if order + i > 0)
+    for order in range(PROPAGATOR.taylor_terms - 4, -1, -4):  # four terms a product
+        terms = sum(powers[i] / float(factorial(order + i)) for i in range(4) if order + i > 0)
         result = terms + powers[4] @ result
     for _ in range(squarings):
         result = 2 * result + result @ result

@@ -34,12 +34,10 @@ from .context import (
     roots_of,
 )
 from .petsc_calls import read_array, release_read, release_write, write_array
-from .predictor import begin_step, points_of
+from .predictor import STAGE_PREDICTOR, begin_step, points_of
 from .stage_newton import newton_test, solve_stage
 from .step_record import take_steps
 
-MIDDLE = 0.5
-"""Time in a step at which the matrix is made, in units of the step; 0 for methods of a single stage."""
 _get_dense = petsc_function("MatDenseGetArray")
 _restore_dense = petsc_function("MatDenseRestoreArray")
 _object_state = petsc_function("PetscObjectStateGet")
@@ -173,7 +171,7 @@ class Workspace:
             # slope of its own.
             call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
             self.predict_as(ts.getARKIMEXType())
-            self.context["middle"] = MIDDLE
+            self.context["middle"] = STAGE_PREDICTOR.middle
         call("TSSetIFunction", ts.handle, 0, residual.address, context)
         call("TSSetIJacobian", ts.handle, B, B, residual_jacobian.address, context)
         call("TSSetApplicationContext", ts.handle, context)

@@ -12,12 +12,13 @@ from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import COLUMNS
 from ..backend.c_functions import floats, floats_in, integers
+from .time_scheme import POINTS
 
 SIDE = len(COLUMNS)
 """Numbers of each side of a jump."""
-MAX_STAGES = 16
+MAX_STAGES = 1 + max(max(stages) for stages in POINTS.values())
 """Maximum number of stored stages of a step."""
-MAX_STAGE_POINTS = 8
+MAX_STAGE_POINTS = max(len(this) + len(last) for stages in POINTS.values() for this, last in stages.values())
 """Maximum number of points through which a stage is extrapolated."""
 FLOAT = "<f8"
 WHOLE = "<i8"

@@ -42,6 +42,8 @@ class IntegratorSettings:
     """Duration of `relaxed` in periods."""
     relaxation_steps: float = 1e5
     """First steps of `relaxed` that would fill a period; the fast components decay within ten steps."""
+    relaxation_tolerance: float = 1e-3
+    """Tolerance of the scheme of `relaxed`."""
     kept: int = 8
     """Number of integrators kept for further runs on equal meshes."""
 
@@ -49,7 +51,7 @@ class IntegratorSettings:
 INTEGRATOR = IntegratorSettings()
 
 
-RELAXATION = TimeScheme("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
+RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance, prefix="cycle_relaxation_")
 """Scheme of `relaxed`."""
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Complex
+from ...determinant.exponents import EXPONENTS
 from ...discretization.beam import Beam
 
 
@@ -18,7 +19,7 @@ class LeadingMode:
     @property
     def period(self) -> float:
         """Period in tau2, or the decay time of a mode that does not oscillate."""
-        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), 1e-300)
+        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), EXPONENTS.least_divisor)
 
 
 def leading_mode(beam: Beam) -> LeadingMode:
@@ -27,8 +28,8 @@ def leading_mode(beam: Beam) -> LeadingMode:
     rest = np.zeros(layout.unknowns)
     J = layout.transverse(layout.transverse(beam.jacobian(rest)).T).T
     values, vectors = np.linalg.eig(J)
-    # The small imaginary part selects the member of a complex pair with Im w > 0.
-    k = int(np.argmax(values.real + 1e-9 * values.imag))
+    # The second key selects the member of a complex pair with Im w > 0.
+    k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknowns, complex)
     layout.transverse(z)[:] = vectors[:, k]
     # The tip's y is linear in z about the straight rod, and its 'velocity' along z is the deflection.

@@ -5,20 +5,36 @@ tolerances and saves every second Newton iteration. Stages of a method have diff
 extrapolation points depend on the method's tableau: `time_scheme.POINTS`.
 """
 
-from typing import Any
+from dataclasses import dataclass
+from math import inf
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
 from .context import AT_BASE, CONTEXT, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
 from .time_scheme import POINTS
 
-LARGEST_STEP_RATIO = 2.0
-"""Largest ratio of a step and the last one for which stages are extrapolated."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StagePredictorSettings(CompiledSettings):
+    """Settings for the prediction of stages."""
+
+    largest_step_ratio: float = 2.0
+    """Largest ratio of a step and the last one for which stages are extrapolated. At 1 no growing step would
+    be, and errors of a motion grow by a factor of five: Newton's method stops too early at PETSc's guess."""
+    middle: float = 0.5
+    """Time in a step at which the matrix is made, in units of the step; 0 for methods of a single stage."""
+    ranges: ClassVar = {"largest_step_ratio": (1.0, inf)}
+
+
+STAGE_PREDICTOR = StagePredictorSettings()
+
 NO_POINT = -1
 """Entry of the points behind the last point of a stage."""
 
@@ -98,7 +114,7 @@ def predict(c: Any, guess: Array) -> None:
     now = c.current * MAX_STAGES
     last = MAX_STAGES - now
     # Beyond this ratio the last step is too short to extrapolate from, and PETSc's own guess stays.
-    if len(points) and c.length <= LARGEST_STEP_RATIO * (times[now] - times[last]):
+    if len(points) and c.length <= STAGE_PREDICTOR.largest_step_ratio * (times[now] - times[last]):
         # Points count from the present half; those of the last step are MAX_STAGES on, which the modulus
         # wraps.
         extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)

@@ -5,6 +5,7 @@ options may select, takes three times as long per iteration: evaluation of f and
 are cheap compared with PETSc's overhead.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numba
@@ -14,6 +15,7 @@ from numba import types
 from ...arrays import Array
 from ...discretization.stress.rates import rate
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ..backend.c_functions import INT, POINTER, c_function, floats, integers, pointer, record_at
 from .context import (
     AT_BASE,
@@ -43,18 +45,29 @@ from .petsc_calls import (
 )
 from .predictor import predict, remember
 
-NEW_MATRIX_CONTRACTION = 0.3
-"""Contraction above which a new matrix at the iterate pays off."""
-STAGNANT = 0.5
-"""Contraction of small steps above which only rounding errors are left."""
-DIVERGING = 2.0
-"""A contraction above this is growth."""
-MAX_GROWING = 2
-"""Number of successive growths that ends the iteration."""
-MIN_CONTRACTION_RATIO = 0.3
-"""Smallest new contraction in units of the stored one."""
-FIRST_ITERATION_SAFETY = 3.0
-"""Safety factor on the stored contraction at the first iteration of a stage; with 1 errors double."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StageNewtonSettings(CompiledSettings):
+    """Settings for Newton's method inside a stage."""
+
+    new_matrix_contraction: float = 0.3
+    """Contraction above which a new matrix at the iterate pays off."""
+    stagnant: float = 0.5
+    """Contraction of small steps above which only rounding errors are left."""
+    diverging: float = 2.0
+    """A contraction above this is growth."""
+    max_growing: int = 2
+    """Number of successive growths that ends the iteration."""
+    min_contraction_ratio: float = 0.3
+    """Smallest new contraction in units of the stored one."""
+    first_iteration_safety: float = 3.0
+    """Safety factor on the stored contraction at the first iteration of a stage; with 1 errors double."""
+    iterations_before_giving_up: int = 3
+    """Number of iterations after which growth may end the iteration."""
+
+
+STAGE_NEWTON = StageNewtonSettings()
+
 ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 """Values of SNESConvergedReason."""
 
@@ -85,19 +98,19 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     # The first iteration has no step before it in this stage.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        c.contraction = max(MIN_CONTRACTION_RATIO * c.contraction if c.measured else 0.0, theta)
+        c.contraction = max(STAGE_NEWTON.min_contraction_ratio * c.contraction if c.measured else 0.0, theta)
         c.measured = 1
-    c.growing = c.growing + 1 if theta > DIVERGING else 0
+    c.growing = c.growing + 1 if theta > STAGE_NEWTON.diverging else 0
     c.last_step = dx
     # The contraction of an earlier stage is a guess for this one.
-    unsure = FIRST_ITERATION_SAFETY if iteration == 1 else 1.0
+    unsure = STAGE_NEWTON.first_iteration_safety if iteration == 1 else 1.0
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
-    if small or (theta > STAGNANT and iteration > 2 and dx <= c.rounding):
+    if small or (theta > STAGE_NEWTON.stagnant and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
-    if c.growing >= MAX_GROWING and iteration > 3:
+    if c.growing >= STAGE_NEWTON.max_growing and iteration > STAGE_NEWTON.iterations_before_giving_up:
         linearise_at_start(c)
         return NOT_CONTRACTING
-    if theta > NEW_MATRIX_CONTRACTION:
+    if theta > STAGE_NEWTON.new_matrix_contraction:
         c.matrix_due = AT_ITERATE
     return ITERATING
 

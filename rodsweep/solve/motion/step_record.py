@@ -1,11 +1,13 @@
 """Storage of a run's steps by compiled code: Python calls after each step would take 1/7 of the time."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
 from ..backend.petsc import PETSc
 from .context import CONTEXT, OUTPUTS
@@ -20,8 +22,17 @@ from .petsc_calls import (
     time_of,
 )
 
-FIRST_CAPACITY = 256
-"""Number of steps for which memory is allocated first; the memory doubles when it is full."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepRecordSettings(CompiledSettings):
+    """Settings for the memory of a run's steps."""
+
+    first_capacity: int = 256
+    """Number of steps for which memory is allocated first; the memory doubles when it is full."""
+
+
+STEP_RECORD = StepRecordSettings()
+
 OUT_OF_MEMORY = 55
 """PETSc's error code for a lack of memory."""
 STOPPED = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
@@ -34,7 +45,7 @@ def keep_step(c: Any, at: int, ts: int) -> int:
     outputs = integers(at, 3)
     if c.stored == c.capacity:
         # Doubling keeps the cost of copying proportional to the number of steps.
-        c.capacity = max(2 * c.capacity, FIRST_CAPACITY)
+        c.capacity = max(2 * c.capacity, STEP_RECORD.first_capacity)
         rows = resized_memory(c.rows, 8 * c.capacity * (n + 1))
         if rows == 0:
             return OUT_OF_MEMORY

@@ -1,5 +1,6 @@
 """Compiled measures of the states along an orbit: strains, motion of the tip, mean powers."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +13,23 @@ from ...discretization.plane import balance
 from ...discretization.state_layout import stress_place
 from ...discretization.stress.tip_motion import TipMatrices, tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.settings import CompiledSettings
 from ...model.material.jump import Unknowns, before_jump, behind_jump
 from .semidiscrete import Semidiscrete
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of (x, y, theta), and of (h1, h2, Pi), half a period later on a symmetric orbit."""
-OVERSAMPLING = 4
-"""Samples per time node for the search of extrema."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExtremumSettings(CompiledSettings):
+    """Settings for the extrema of a path."""
+
+    oversampling: int = 4
+    """Samples per time node for the search of extrema."""
+
+
+EXTREMA = ExtremumSettings()
 
 
 class TipPath(NamedTuple):
@@ -26,8 +37,8 @@ class TipPath(NamedTuple):
 
     strains: (h1, h2, Pi) at the nodes of every element, and their derivatives by the time in periods, for the
     solved states, (2, 3, K, elements (order + 1)). For (x, y, theta) of the tip over the period:
-    coefficients, (count, 3); samples at equidistant times, (OVERSAMPLING (count - 1), 3); smallest and
-    largest values, (3,) each.
+    coefficients, (count, 3); samples at equidistant times, (`EXTREMA.oversampling` (count - 1), 3); smallest
+    and largest values, (3,) each.
     """
 
     strains: Array
@@ -65,7 +76,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     tip_motion(strains[0], strains[1], m, tip, velocity)
     # Signs 0 for an orbit without symmetry: its values cover the whole period.
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
-    samples = sampled_columns(c, OVERSAMPLING * (len(c) - 1))
+    samples = sampled_columns(c, EXTREMA.oversampling * (len(c) - 1))
     return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
 
 

@@ -12,6 +12,7 @@ from math import nan
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...discretization.elements.elements import ELEMENTS
 from ...discretization.elements.mesh import Mesh, configuration
 from ...discretization.elements.periodic import (
     hermite_coefficients,
@@ -150,7 +151,7 @@ class CyclePath:
         return samples_of(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _at_lobatto(grid: Mesh, nodes: int) -> Array:
     """Matrix, applied from the right, from values at all nodes of a mesh to Lobatto nodes of the rod."""
     return grid.evaluation(lobatto_points(nodes)).T

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
+from ...discretization.elements.elements import ELEMENTS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import StateLayout
 from ...model.compiled.compilation import compiled_for_vectors
@@ -30,7 +31,7 @@ def reflected(orbit: Orbit) -> Reflected:
     return _reflected(orbit.form.layout, orbit.form.mesh)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
     return Reflected(REFLECTION.reversed(layout), layout.row({"m3": mesh.quadrature[:-1]}))
 

@@ -14,6 +14,7 @@ from scipy.sparse import csr_array
 
 from ...arrays import Array
 from ...discretization.elements.collocation import Collocation, radau
+from ...discretization.elements.elements import ELEMENTS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
 from .semidiscrete import Semidiscrete
@@ -120,7 +121,7 @@ class Orbit:
         )
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=ELEMENTS.pencils_kept)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
     """Equations that are common to all orbits of a form, with a symmetry and a method in time."""
     d = radau(stages).differentiation
@@ -130,7 +131,7 @@ def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: 
     return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=ELEMENTS.pairs_kept)
 def interval_lengths(intervals: int) -> Array:
     """Lengths of the intervals in units of the duration, (intervals,): equal, but the last two are halves.
 
@@ -152,7 +153,7 @@ def node_times(intervals: int, stages: int) -> Array:
     return np.append(0.0, starts + lengths * radau(stages).nodes)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=ELEMENTS.pairs_kept)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix from the points of source (intervals, stages) to those of the target, (target, source)."""
     intervals, stages = target

@@ -53,6 +53,8 @@ class OrbitMeshSettings:
     """Factor on the number of intervals where the wanted mesh is no finer than the present mesh."""
     halved_order: float = 0.6
     """Order after all elements are halved, in units of the order before, at equal errors."""
+    vector: int = 8
+    """Doubles of a processor's vector: a BLAS takes as long for fewer."""
     max_unknowns: int = 400
     """Largest number of unknowns of a state; a Newton step for a larger state would take more than a
     second."""
@@ -111,8 +113,8 @@ class OrbitMesh:
     @property
     def finer(self) -> "OrbitMesh":
         """Finer mesh for a new attempt without an error estimate."""
-        # A fifth more, and at least one more.
-        return replace(self.finer_in_space, intervals=self.intervals * 6 // 5 + 1)
+        more = int(ORBIT_MESH.more_intervals * self.intervals) + 1
+        return replace(self.finer_in_space, intervals=more)
 
     @property
     def finer_in_space(self) -> "OrbitMesh":
@@ -127,8 +129,8 @@ class OrbitMesh:
 
     @property
     def cost(self) -> float:
-        """Cost of an elimination in any unit; unknowns count in eights, as in processors and their BLAS."""
-        unknowns = 8 * ceil(self.unknowns / 8)
+        """Cost of an elimination in any unit; unknowns count in whole vectors of the processor."""
+        unknowns = ORBIT_MESH.vector * ceil(self.unknowns / ORBIT_MESH.vector)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
     def carry(self, orbit: Orbit) -> Orbit:

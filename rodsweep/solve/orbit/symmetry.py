@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...arrays import Array
+from ...discretization.elements.elements import ELEMENTS
 from ...discretization.state_layout import StateLayout
 from ...model.balance import Values
 
@@ -46,7 +47,7 @@ class Symmetry:
         return (1 - self.of(np.ones(layout.unknowns), layout)) / 2
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     """`Symmetry.matrix`, (unknowns, unknowns)."""
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)

@@ -11,19 +11,32 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ...arrays import Array
+from ...determinant.exponents import EXPONENTS
 from ...discretization.at_jumps import by_elements
 from ...discretization.elements.collocation import radau
+from ...discretization.elements.elements import ELEMENTS
 from ...discretization.elements.mesh import mesh
 from ...discretization.state_layout import COMPONENTS, stress_place
 from ...model.compiled.compilation import compiled_for_vectors
+from ...model.compiled.settings import CompiledSettings
 from .orbit import Orbit
 
-MIN_DECAY = 0.2
-"""Smallest decay of the coefficients in space per order, natural logarithm."""
-MAX_DECAY = 1.2
-"""Largest decay of the coefficients in space per order, natural logarithm."""
-LAST_COEFFICIENTS = 4
-"""Number of last coefficients in space whose size changes smoothly from orbit to orbit."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TailSettings(CompiledSettings):
+    """Settings for the decay of coefficients and for the tails of orbits."""
+
+    min_decay: float = 0.2
+    """Smallest decay of the coefficients in space per order, natural logarithm."""
+    max_decay: float = 1.2
+    """Largest decay of the coefficients in space per order, natural logarithm."""
+    rounding: float = 1e-16
+    """Size of coefficients, in units of the largest, below which their decay is not measured."""
+    last_coefficients: int = 4
+    """Number of last coefficients in space whose size changes smoothly from orbit to orbit."""
+
+
+TAILS = TailSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +55,7 @@ def tails_of(orbit: Orbit) -> Tails:
     """The tails of an orbit."""
     c = _space_coefficients(orbit)
     # Two coefficients, because by parity a single one may vanish.
-    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), 1e-300)
+    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENTS.least_divisor)
     return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
 
 
@@ -51,17 +64,17 @@ def _decay(c: Array) -> float:
     """Mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
-    highest = 1e-16
+    highest = TAILS.rounding
     along = 0.0
     squares = 0.0
     # From the last coefficient down, so that `highest` is an envelope in which zeros do not count.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
-            highest = max(highest, c[a, k] / max(c[a].max(), 1e-300))
+            highest = max(highest, c[a, k] / max(c[a].max(), EXPONENTS.least_divisor))
         along += (k - middle) * np.log(highest)
         squares += (k - middle) ** 2
     # Slope of the least-squares line through the logarithms, about the mean of the orders.
-    return min(max(-along / squares, MIN_DECAY), MAX_DECAY)
+    return min(max(-along / squares, TAILS.min_decay), TAILS.max_decay)
 
 
 def _space_coefficients(orbit: Orbit) -> Array:
@@ -75,7 +88,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
     return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _analysis_on_element(order: int) -> Array:
     """Matrix, applied from the right, from an element's nodes to Legendre coefficients, (p + 1, p + 1)."""
     return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
@@ -106,13 +119,14 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 def lasting_tails(orbit: Orbit) -> Array:
     """Tails in space and in time that change as smoothly as an orbit, (2,), in units of the largest values.
 
-    A single last coefficient may vanish, so in space LAST_COEFFICIENTS coefficients at all points are used.
+    A single last coefficient may vanish, so in space the last few at all points are used.
     """
     grid = orbit.form.mesh
     if not orbit.form.smooth_stresses:
         fields = _by_elements(orbit, orbit.points)
         ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
-        in_space = float((ends / np.maximum(np.abs(fields).max(axis=(1, 2, 3)), 1e-300)).max())
+        largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENTS.least_divisor)
+        in_space = float((ends / largest).max())
     else:
         in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
     return np.array([in_space, _tail_in_time(orbit)])
@@ -124,10 +138,10 @@ def _by_elements(orbit: Orbit, states: Array) -> Array:
     return by_elements(form.nodal, form.mesh, form.stresses(states))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _lasting_on_element(order: int) -> Array:
-    """Last LAST_COEFFICIENTS columns of `_analysis_on_element`, (p + 1, LAST_COEFFICIENTS)."""
-    return np.ascontiguousarray(_analysis_on_element(order)[:, -LAST_COEFFICIENTS:])
+    """Last columns of `_analysis_on_element`, (p + 1, `TAILS.last_coefficients`)."""
+    return np.ascontiguousarray(_analysis_on_element(order)[:, -TAILS.last_coefficients :])
 
 
 @compiled_for_vectors
@@ -154,7 +168,7 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
                     for i in range(count):
                         c[i] += stress * analysis[j, i]
                 end = max(end, (c * c).sum())
-        worst = max(worst, np.sqrt(end) / max(largest, 1e-300))
+        worst = max(worst, np.sqrt(end) / max(largest, EXPONENTS.least_divisor))
     return worst
 
 
@@ -163,7 +177,7 @@ def _tail_in_time(orbit: Orbit) -> float:
     return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=ELEMENTS.pencils_kept)
 def _last_in_interval(stages: int) -> Array:
     """Row from the values at an interval's start and stages to the last Legendre coefficient, (s + 1,)."""
     nodes: Array = np.append(0.0, radau(stages).nodes)
@@ -196,7 +210,7 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
                     top += row[j] * points[k + j, stress_place(a, i, nodes)]
                 size += top**2
             tail = max(tail, size)
-        worst = max(worst, np.sqrt(tail / max(largest, 1e-300)))
+        worst = max(worst, np.sqrt(tail / max(largest, EXPONENTS.least_divisor)))
     return float(worst)
 
 

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import POWERS, proves, remainder, right_of_hull
-from ...determinant.arm.family import CONVERGED, ArmFamily, propagators_at
+from ...determinant.arm.completeness import COMPLETENESS, proves, remainder, right_of_hull
+from ...determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
 from ...determinant.arm.region import Hull, Hulls, hull_at
-from ...determinant.arm.value import ROOT_NOISE, chain_along, chain_value
+from ...determinant.arm.value import ARM_VALUE, chain_along, chain_value
 from ...determinant.roots import roots_of_parabola, sort_descending
-from ...determinant.value import SECOND_STEP, second_difference
+from ...determinant.value import DETERMINANT, second_difference
 from ...model.compiled.compilation import compiled
-from .candidates import BELOW, CLOSE_BELOW
+from .candidates import CANDIDATES
 from .following import (
-    MAX_EIGENVALUE_CORRECTIONS,
+    FOLLOWING,
     Corrected,
     crowding_of,
     distinct_roots,
@@ -37,14 +37,14 @@ Level = tuple[float, Array, Array]
 def corrected_of_arm(w: complex, level: Level) -> Corrected:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
-    return newton_step(w, D, D_w, D_p, ROOT_NOISE * noise)
+    return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
 
 
 @compiled
 def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tuple[Corrected, float]:
     """(the last correction, error): Newton's method until the remaining error, crowding step^2, is small."""
     here = first
-    for _ in range(MAX_EIGENVALUE_CORRECTIONS):
+    for _ in range(FOLLOWING.max_corrections):
         error = settled_error(here, crowding, exact)
         if error < math.inf:
             return here, error
@@ -56,7 +56,7 @@ def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tu
 def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
     """The two roots near a real `middle`, from the quadratic Taylor polynomial of D."""
     D, D_w, S, _ = chain_value(middle, level[0], level[1])
-    h = SECOND_STEP * abs(middle)
+    h = DETERMINANT.second_step * abs(middle)
     after = chain_value(middle + h, level[0], level[1])
     before = chain_value(middle - h, level[0], level[1])
     second = second_difference(after, before, S, h)
@@ -86,8 +86,8 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _settled(first, crowding_of(w, k), rank <= modes, level)
-            # Interpolation changes D as relative changes of w and p by `CONVERGED` would.
-            error[k] += CONVERGED * (abs(last.w) + abs(p * last.slope))
+            # Interpolation changes D as relative changes of w and p by `ARM_FAMILY.converged` would.
+            error[k] += ARM_FAMILY.converged * (abs(last.w) + abs(p * last.slope))
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
@@ -104,13 +104,13 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
     w = track.w[i]
     error = track.error[i]
     k = track.order[i, modes - 1]
-    line = min(w[k].real - BELOW * error[k] - CLOSE_BELOW * abs(w[k]), 0.0)
+    line = min(w[k].real - CANDIDATES.below * error[k] - CANDIDATES.close_below * abs(w[k]), 0.0)
     here = 0
     for j in range(len(w)):
         if abs(w[j].real - line) <= 2 * error[j]:
             return 0
         here += w[j].real > line
-    for power in POWERS:
+    for power in COMPLETENESS.powers:
         points = right_of_hull(line, hull.a, hull.c, power)
         if len(points) == 0 or points[-1] > level[0]:
             continue

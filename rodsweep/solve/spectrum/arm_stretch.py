@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import POWERS, has_conjugate, none_is_missing, right_of_hull
+from ...determinant.arm.completeness import COMPLETENESS, has_conjugate, none_is_missing, right_of_hull
 from ...determinant.arm.count import count_right_of
 from ...determinant.arm.determinant import ArmDeterminant, arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of, is_smooth, level_at
@@ -195,7 +195,7 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
         W = ARM_STRETCH.headroom * float(np.abs(first).max())
         line = min(ARM_STRETCH.headroom * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
-        ends = [points[-1] for k in POWERS if len(points := right_of_hull(line, *hull, k))]
+        ends = [points[-1] for k in COMPLETENESS.powers if len(points := right_of_hull(line, *hull, k))]
         near = [end for end in ends if end <= ARM_STRETCH.headroom * W]
         family = family_of(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):

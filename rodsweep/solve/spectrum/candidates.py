@@ -14,6 +14,7 @@ from ...arrays import Complex
 from ...determinant.certificate.winding_number import Count
 from ...determinant.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
+from ...model.compiled.settings import CompiledSettings
 from ..backend.kept import forget_all
 from ..backend.petsc import PETSC_ERRORS
 from ..point import cause_of
@@ -21,7 +22,7 @@ from .problem import TransverseProblem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CandidateSettings:
+class CandidateSettings(CompiledSettings):
     """Settings for the eigenvalues of a mesh, and for the lines used to count them."""
 
     max_waves_per_node: float = 2.0
@@ -41,14 +42,14 @@ class CandidateSettings:
     """Relative gap below which two real parts count as equal."""
     lines_tried: int = 3
     """Number of lines tried before the count is given up."""
+    below: float = 3.0
+    """Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its
+    error."""
+    close_below: float = 1e-9
+    """Further distance, in units of the eigenvalue's modulus."""
 
 
 CANDIDATES = CandidateSettings()
-
-BELOW = 3.0
-CLOSE_BELOW = 1e-9
-"""Distance of the last wanted eigenvalue from the line of a proof without a count, in units of its error and
-of its modulus."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +130,7 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
 
 def line_of_proof(last: complex, error: float) -> float:
     """The line <= 0 of a proof without a count, left of the last wanted eigenvalue and all unstable ones."""
-    return min(last.real - BELOW * error - CLOSE_BELOW * abs(last), 0.0)
+    return min(last.real - CANDIDATES.below * error - CANDIDATES.close_below * abs(last), 0.0)
 
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:

@@ -5,24 +5,35 @@ crosses a line that moves in an open gap to another point (`rodsweep.determinant
 eigenvalues right of the line are all at every point between.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.moving_line import End, none_crosses
-from ...determinant.roots import BLURRED, ON_THE_AXIS
+from ...determinant.root_settings import ROOTS
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from .prediction import Track
 
-RECTANGLES = 60
-RECTANGLES_PER_POINT = 20
-"""Number of rectangles after which a proof is given up: the first number plus the second per point; a count
-at a point costs as much as twenty rectangles."""
-WIDE_ENOUGH = 0.2
-"""Relative half width above which all gaps are equally good; the last wide gap is taken."""
-NARROWEST_GAP = 1e-6
-"""Relative half width below which a gap is not used."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarriedCountSettings(CompiledSettings):
+    """Settings for counts carried from point to point."""
+
+    rectangles: int = 60
+    """Number of rectangles after which a proof is given up, besides `rectangles_per_point`."""
+    rectangles_per_point: int = 20
+    """Further rectangles for each point: a count at a point costs as much as twenty."""
+    wide_enough: float = 0.2
+    """Relative half width above which all gaps are equally good; the last wide gap is taken."""
+    narrowest_gap: float = 1e-6
+    """Relative half width below which a gap is not used."""
+
+
+CARRIED_COUNT = CarriedCountSettings()
 
 
 @compiled
@@ -33,14 +44,14 @@ def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, WIDE_ENOUGH)
+    return line, min((right - line) / -line, CARRIED_COUNT.wide_enough)
 
 
 @compiled
 def best_gap(track: Track, i: int, modes: int) -> int:
     """The gap for a count at point i, behind at least `modes` eigenvalues and left of the axis; 0 if none."""
     best = 0
-    widest = NARROWEST_GAP
+    widest = CARRIED_COUNT.narrowest_gap
     for gap in range(modes, track.w.shape[1]):
         width = line_in(track, i, gap)[1]
         if width >= widest:
@@ -69,7 +80,7 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
     """The widest gap among the first `known` that stays open between two points; 0 without an open gap."""
     best = 0
-    widest = NARROWEST_GAP
+    widest = CARRIED_COUNT.narrowest_gap
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
         here, wide = line_in(track, ends[0], gap)
         there, wide_there = line_in(track, ends[1], gap)
@@ -104,7 +115,7 @@ def carry_count(
         if gap > 0:
             first = _end(track, i, gap, p, coefficients)
             end = _end(track, j, gap, p, coefficients)
-            most = RECTANGLES + RECTANGLES_PER_POINT * (j - i)
+            most = CARRIED_COUNT.rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
             proved, _ = none_crosses(first, end, direction, most)
         if proved:
             # The proof holds for the gap of the line, though more eigenvalues may have been known.
@@ -136,9 +147,9 @@ def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> t
             k = track.order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
-            if abs(w.real) <= max(4 * error, ON_THE_AXIS * abs(w)):
+            if abs(w.real) <= max(ROOTS.axis_errors * error, ROOTS.on_the_axis * abs(w)):
                 good[s] = False
-            if rank < modes and not error <= min(BLURRED, accuracy / 2) * abs(w):
+            if rank < modes and not error <= min(ROOTS.blurred, accuracy / 2) * abs(w):
                 good[s] = False
             unstable[s] += w.real > 0
     return good, unstable

@@ -5,28 +5,40 @@ and whether two have exchanged, is left to the count.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.newton import REAL_BELOW
+from ...determinant.exponents import ROUND_OFF
+from ...determinant.newton import ROOT_NEWTON
 from ...determinant.parameter_path import determinant_along
-from ...determinant.roots import SAME_ROOT, sort_descending, two_roots
-from ...determinant.value import ROUND_OFF, TYPICAL_NOISE
+from ...determinant.root_settings import ROOTS
+from ...determinant.roots import sort_descending, two_roots
+from ...determinant.value import DETERMINANT
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from .prediction import Track, guess_at, guess_two, mates_of
 
-MAX_EIGENVALUE_CORRECTIONS = 8
-"""Maximum number of Newton steps for one eigenvalue."""
-FOLLOWED_ACCURACY = 1e-9
-"""Relative accuracy of eigenvalues that do not lead, and only show where to count."""
-SAFE_CURVATURE = 4.0
-"""Safety factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over all other roots, computed from
-the known roots only."""
-ROUNDING_STEP = 4.0
-"""A step below this multiple of the rounding error ends the corrections."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FollowingSettings(CompiledSettings):
+    """Settings for the corrections of followed eigenvalues."""
+
+    max_corrections: int = 8
+    """Maximum number of Newton steps for one eigenvalue."""
+    accuracy: float = 1e-9
+    """Relative accuracy of eigenvalues that do not lead, and only show where to count."""
+    safe_curvature: float = 4.0
+    """Safety factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over all other roots, computed
+    from the known roots only."""
+    rounding_step: float = 4.0
+    """A step below this multiple of the rounding error ends the corrections."""
+
+
+FOLLOWING = FollowingSettings()
 
 
 class Corrected(NamedTuple):
@@ -42,7 +54,7 @@ class Corrected(NamedTuple):
 def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> Corrected:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
-    return newton_step(w, D, D_w, D_p, TYPICAL_NOISE * noise)
+    return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
 
 
 @compiled
@@ -66,15 +78,15 @@ def crowding_of(w: Complex, k: int) -> float:
     for j in range(len(w)):
         if j != k:
             total += 1 / abs(w[k] - w[j])
-    return SAFE_CURVATURE * total
+    return FOLLOWING.safe_curvature * total
 
 
 @compiled
 def settled_error(here: Corrected, crowding: float, exact: bool) -> float:
     """Error of an eigenvalue, with the remainder crowding step^2; inf until that is small enough."""
     left = crowding * here.step * here.step
-    allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWED_ACCURACY * abs(here.w)
-    if left <= allowed or here.step <= ROUNDING_STEP * here.blur:
+    allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
+    if left <= allowed or here.step <= FOLLOWING.rounding_step * here.blur:
         return max(here.blur, min(left, here.step))
     return math.inf
 
@@ -91,7 +103,7 @@ def store_root(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool
     w[k] = last.w
     slope[k] = last.slope
     if mate >= 0:
-        if not w[k].imag > REAL_BELOW * abs(w[k]):
+        if not w[k].imag > ROOT_NEWTON.real_below * abs(w[k]):
             return False
         w[mate] = w[k].conjugate()
         slope[mate] = slope[k].conjugate()
@@ -105,7 +117,7 @@ def _settled(
 ) -> tuple[Corrected, float]:
     """(last correction, error): Newton steps until the estimated remainder, crowding step^2, is small."""
     here = first
-    for _ in range(MAX_EIGENVALUE_CORRECTIONS):
+    for _ in range(FOLLOWING.max_corrections):
         error = settled_error(here, crowding, exact)
         if error < math.inf:
             return here, error
@@ -120,7 +132,7 @@ def distinct_roots(w: Complex, error: Array) -> bool:
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
         for j in range(k):
-            if not abs(w[k] - w[j]) > SAME_ROOT * (error[k] + error[j]):
+            if not abs(w[k] - w[j]) > ROOTS.same_root * (error[k] + error[j]):
                 return False
     return True
 

@@ -7,6 +7,7 @@ their mean has to decide between two real eigenvalues and a pair.
 """
 
 import cmath
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,12 +15,22 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
 
-CLOSING = 4.0
-"""Two real eigenvalues are extrapolated together if their present rates give a meeting within this many
-steps, before or after."""
-MEETING = 0.25
-"""If the squared difference shrinks below this fraction of its last value, D decides on real or complex."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EigenvaluePredictionSettings(CompiledSettings):
+    """Settings for predicted eigenvalues that meet."""
+
+    closing: float = 4.0
+    """Two real eigenvalues are extrapolated together if their present rates give a meeting within this many
+    steps, before or after."""
+    meeting: float = 0.25
+    """If the squared difference shrinks below this fraction of its last value, D decides on real or
+    complex."""
+
+
+EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
 
 
 class Track(NamedTuple):
@@ -72,7 +83,7 @@ def mates_of(w: Complex, mate: NDArray) -> None:
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
     """Also makes mates of real eigenvalues that meet within some steps, the earliest meeting first."""
     while True:
-        soonest = CLOSING
+        soonest = EIGENVALUE_PREDICTION.closing
         a = -1
         b = -1
         for k in range(len(w)):
@@ -135,7 +146,7 @@ def _two_ahead(
     else:
         middle = middle + m1 * steps[1]
         square = square + s1 * steps[1]
-    if square * before <= 0 or abs(square) < MEETING * abs(before):
+    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION.meeting * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
     return middle + root, middle - root, False

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import cheapest_proof, none_is_missing
+from ...determinant.arm.completeness import COMPLETENESS, cheapest_proof, none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
 from ...determinant.arm.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
@@ -32,10 +32,6 @@ from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import EigenSolver, eigen_solver
 from .prediction import KnownRoots
 from .shift_invert import KRYLOV
-
-SPARE_FOR_PROOF = 2
-"""Further eigenvalues of an arm whose list is proved complete: of 100 random arms 59 then need a count, which
-costs more than they do, and 73 without them."""
 
 
 class TransverseProblem(ABC):
@@ -129,7 +125,7 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.bounded = isfinite(self._hull.a)
-        self.spare = SPARE_FOR_PROOF if to_prove and self.bounded else 0
+        self.spare = COMPLETENESS.spare if to_prove and self.bounded else 0
         growth, _ = local_growth(rod)
         self.shift = KRYLOV.shift_above_growth * float(growth.max())
 

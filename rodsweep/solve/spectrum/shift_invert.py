@@ -55,18 +55,16 @@ class KrylovSettings:
     few."""
     arm_solvers_kept: int = 8
     """Number of solvers kept for later points on equal meshes of arms."""
+    dense_copies: int = 9
+    """Dense matrices of a small pencil: A, its factors, and its constant pieces."""
+    sparse_copies: int = 11
+    """Numbers per entry of a large pencil: A with its pattern, its factors, and its constant pieces."""
 
 
 KRYLOV = KrylovSettings()
 
 SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
-
-
-DENSE_COPIES = 9
-"""Dense matrices of a small pencil: A, its factors, and its constant pieces."""
-SPARSE_COPIES = 11
-"""Numbers per entry of a large pencil: A with its pattern, its factors, and its constant pieces."""
 
 
 class Pattern(Protocol):
@@ -209,7 +207,7 @@ class ShiftInvertSolver(ABC):
         """
         n = len(self.line) - 1
         krylov = self.eps.getDimensions()[1] + 1
-        matrices = DENSE_COPIES * n * n if self.dense else SPARSE_COPIES * len(self.indices)
+        matrices = KRYLOV.dense_copies * n * n if self.dense else KRYLOV.sparse_copies * len(self.indices)
         return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
 
     def destroy(self) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.value import ROUND_OFF
+from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import tip_scale
 from ...discretization.straight.transverse_mesh import AnyMesh
@@ -27,13 +27,21 @@ class SpectrumRequest:
     """Number of Lobatto nodes for (Y, Theta); 0 for no vectors."""
 
 
-ROUNDING_OF_EIGENVALUES = 6 * ROUND_OFF
-"""Rounding error of an eigenvalue relative to its modulus, from rounding of the number itself and of the
-coefficients of D. The rounding error of D is added."""
-ROUNDING_OF_ARMS = 4 * ROUNDING_OF_EIGENVALUES
-"""The same for an arm with propagators: each rounds the coefficients of its element, and D may magnify this
-error. Of 3960 eigenvalues of random arms, compared with 34 digits, one is off by 1.6 times its stated
-error."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpectrumErrorSettings:
+    """Settings for rounding errors of eigenvalues, which are added to that of D."""
+
+    rounding: float = 6.0
+    """Rounding error of an eigenvalue, in units of the spacing of doubles at its modulus, from rounding of
+    the number itself and of the coefficients of D."""
+    rounding_of_arms: float = 24.0
+    """The same for an arm with propagators: each rounds the coefficients of its element, and D may magnify
+    this error. Of 3960 eigenvalues of random arms, compared with 34 digits, one is off by 1.6 times its
+    stated error."""
+
+
+SPECTRUM_ERRORS = SpectrumErrorSettings()
+
 EachRod = Any
 """A number of a rod, or the numbers of n rods solved together, (n,)."""
 
@@ -106,7 +114,8 @@ def stated_errors(w: Complex, error: Array, rod: Rod) -> Array:
 
     rod: the rod, or one of its path.
     """
-    return error + (ROUNDING_OF_EIGENVALUES if rod.standard else ROUNDING_OF_ARMS) * np.abs(w)
+    rounding = SPECTRUM_ERRORS.rounding if rod.standard else SPECTRUM_ERRORS.rounding_of_arms
+    return error + rounding * ROUND_OFF * np.abs(w)
 
 
 def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.arm_on_mesh import profile_compliance_on
+from ....discretization.elements.elements import ELEMENTS
 from ....discretization.elements.mesh import Mesh
 from ....discretization.state_layout import StateLayout
 from ....model.material.build import Build
@@ -63,7 +64,7 @@ def deflection_row(orbit: Orbit) -> Array:
     return _deflection_row(form.layout, form.mesh, form.rod.build)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
 def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """`deflection_row`, (n,), shared by all callers and not to be changed."""
     # Small deflection at the tip: the curvature at u acts with the lever 1 - u. Tip values drop out.

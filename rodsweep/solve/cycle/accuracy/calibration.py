@@ -12,6 +12,7 @@ from math import ceil, inf
 import numpy as np
 
 from ....arrays import Array
+from ....determinant.exponents import EXPONENTS
 from ....discretization.elements.resolution import RESOLUTION
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
@@ -218,5 +219,6 @@ def _power(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) ->
 
 def _logarithm(before: Array, after: Array) -> Array:
     """Logarithm of the quotient of two errors, of any shape; an error may be 0."""
-    quotient: Array = np.log(np.maximum(before, 1e-300) / np.maximum(after, 1e-300))
+    least = EXPONENTS.least_divisor
+    quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

@@ -6,29 +6,44 @@ from typing import NamedTuple
 from ...motion.time_scheme import TimeScheme
 from .amplitude_equation import AMPLITUDE_EQUATION
 
-USUAL_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-5)
-"""Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
-QUICK_SCHEME = TimeScheme("arkimex", "4", tolerance=1e-4)
-"""Scheme of the first run of a fast-growing motion, which often closes: no decision uses the growth."""
-CAREFUL_SCHEME = TimeScheme("arkimex", "5", tolerance=1e-9)
-"""Scheme where the sign of a small growth per period must be correct, and for stored paths."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchemeSettings:
     """Settings for the choice of the scheme of a motion by its growth."""
 
     weak_growth: float = 0.01
-    """Linear growth per period below which the scheme is CAREFUL_SCHEME."""
+    """Linear growth per period below which the scheme is `careful`."""
     growth_noise: float = 1e-3
     """Growth per period that the integrator may add; 3e-4 was measured."""
     careful_noise: float = 1e-5
-    """SCHEMES.growth_noise of CAREFUL_SCHEME; 8e-6 was measured."""
+    """`growth_noise` of the scheme `careful`; 8e-6 was measured."""
     usual_steps: int = 200
-    """Time steps per allowed return, over all returns, of USUAL_SCHEME: 22 to 101 were measured on motions of
-    400 returns. A motion that returns seldom takes far more, and so counts by its work."""
+    """Time steps per allowed return, over all returns, of the scheme `usual`: 22 to 101 were measured on
+    motions of 400 returns. A motion that returns seldom takes far more, and so counts by its work."""
     careful_steps: int = 2000
-    """SCHEMES.usual_steps of CAREFUL_SCHEME, whose steps are a tenth as long."""
+    """`usual_steps` of the scheme `careful`, whose steps are a tenth as long."""
+    usual_tolerance: float = 1e-5
+    """Tolerance of the scheme `usual`."""
+    quick_tolerance: float = 1e-4
+    """Tolerance of the scheme `quick`."""
+    careful_tolerance: float = 1e-9
+    """Tolerance of the scheme `careful`."""
+
+    @property
+    def usual(self) -> TimeScheme:
+        """Scheme of most motions: Newton's method supplies the accuracy of the cycle."""
+        return TimeScheme("arkimex", "4", tolerance=self.usual_tolerance)
+
+    @property
+    def quick(self) -> TimeScheme:
+        """Scheme of the first run of a fast-growing motion, which often closes: no decision uses the
+        growth."""
+        return TimeScheme("arkimex", "4", tolerance=self.quick_tolerance)
+
+    @property
+    def careful(self) -> TimeScheme:
+        """Scheme where the sign of a small growth per period must be correct, and for stored paths."""
+        return TimeScheme("arkimex", "5", tolerance=self.careful_tolerance)
 
 
 SCHEMES = SchemeSettings()
@@ -49,10 +64,7 @@ class TransientSchemes(NamedTuple):
 def schemes_of(growth: float, is_stored: bool) -> TransientSchemes:
     """Schemes for a linear growth per period; is_stored: whether the path of the motion is stored."""
     if abs(growth) < SCHEMES.weak_growth or is_stored:
-        return TransientSchemes(CAREFUL_SCHEME, CAREFUL_SCHEME, SCHEMES.careful_noise, SCHEMES.careful_steps)
-    return TransientSchemes(
-        QUICK_SCHEME if growth > AMPLITUDE_EQUATION.slow_growth else USUAL_SCHEME,
-        USUAL_SCHEME,
-        SCHEMES.growth_noise,
-        SCHEMES.usual_steps,
-    )
+        careful = SCHEMES.careful
+        return TransientSchemes(careful, careful, SCHEMES.careful_noise, SCHEMES.careful_steps)
+    first = SCHEMES.quick if growth > AMPLITUDE_EQUATION.slow_growth else SCHEMES.usual
+    return TransientSchemes(first, SCHEMES.usual, SCHEMES.growth_noise, SCHEMES.usual_steps)

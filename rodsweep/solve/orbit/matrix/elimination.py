@@ -20,12 +20,9 @@ from ....discretization.plane import jacobian
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
 from ..semidiscrete import Semidiscrete
-from .inversion import PANEL, invert
+from .inversion import INVERSION, invert
 from .substitution import reduce, to_end
 from .workspace import Factors
-
-ROWS_IN_CACHE = 8
-"""Rows of several blocks that fit into the first-level cache together."""
 
 
 @compiled_for_vectors
@@ -83,7 +80,7 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
     s = B.shape[0]
     n = B.shape[2]
     pivots = np.empty(n, np.int64)
-    rows = np.empty((n, PANEL))
+    rows = np.empty((n, INVERSION.panel))
     end = np.empty((n, n))
     d = p.differentiation
     mass = p.mass
@@ -135,8 +132,8 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
         for j in range(2, s):
             if i != j:
                 B[i, j] = 0.0
-    for first in range(0, n, ROWS_IN_CACHE):
-        last = min(n, first + ROWS_IN_CACHE)
+    for first in range(0, n, INVERSION.rows_in_cache):
+        last = min(n, first + INVERSION.rows_in_cache)
         for i in range(2, s):
             _subtract_parts(right[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):

@@ -1,43 +1,56 @@
 """Inverse of a small dense matrix in place, compiled: most of the work is products of panels."""
 
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
+from ....model.compiled.settings import CompiledSettings
 from ...backend.products import product
 
-PANEL = 12
-"""Number of columns swept one by one by `invert` before a product updates the remaining columns."""
-MIN_PIVOT = 0.1
-"""Smallest pivot in units of its column's largest entry; a smaller pivot is exchanged for this entry."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InversionSettings(CompiledSettings):
+    """Settings for inverses and products of blocks."""
+
+    panel: int = 12
+    """Number of columns swept one by one by `invert` before a product updates the remaining columns."""
+    min_pivot: float = 0.1
+    """Smallest pivot in units of its column's largest entry; a smaller pivot is exchanged for this entry."""
+    rows_in_cache: int = 8
+    """Rows of several blocks that fit into the first-level cache together."""
+    ranges: ClassVar = {"min_pivot": (0.0, 1.0)}
+
+
+INVERSION = InversionSettings()
 
 
 @compiled_for_vectors
 def invert(A: Array, pivots: Any, rows: Array) -> None:
-    """Replaces A by A^-1 with Gauss-Jordan elimination and partial pivoting, PANEL columns at a time.
+    """Replaces A by A^-1 with Gauss-Jordan elimination and partial pivoting, a panel of columns at a time.
 
-    A: (n, n). Work arrays: pivots, (n,) integers, and rows, (n, PANEL). A row of A in memory is treated as a
+    A: (n, n). Work arrays: pivots, (n,) integers, and rows, (n, panel). A row of A in memory is treated as a
     column of A's transpose: the inverse of the transpose is the transpose of the inverse.
     """
     n = len(A)
     ones = np.ones(2)
     extents = np.empty(6, np.int32)
-    for first in range(0, n, PANEL):
-        last = min(n, first + PANEL)
+    for first in range(0, n, INVERSION.panel):
+        last = min(n, first + INVERSION.panel)
         _sweep_panel(A, first, last, pivots)
         for j in range(n):
             if j < first or j >= last:
                 for i in range(last - first):
                     rows[j, i] = A[j, first + i]
                     A[j, first + i] = 0.0
-        extents[:] = first, n, last - first, PANEL, n, n
+        extents[:] = first, n, last - first, INVERSION.panel, n, n
         panel = A.ctypes.data + 8 * n * first
         row = 8 * n * last
         product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
         extents[0] = n - last
-        product(rows.ctypes.data + 8 * PANEL * last, panel, A.ctypes.data + row, extents, ones)
+        product(rows.ctypes.data + 8 * INVERSION.panel * last, panel, A.ctypes.data + row, extents, ones)
     # An exchange before the inversion is undone on the other side of the inverse, the last one first.
     for k in range(n - 1, -1, -1):
         if pivots[k] != k:
@@ -58,7 +71,7 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
             largest = max(largest, abs(row[i]))
         # Threshold pivoting: an exchange costs a pass over A, and a pivot ten times smaller loses one digit
         # at most.
-        if abs(row[k]) < MIN_PIVOT * largest:
+        if abs(row[k]) < INVERSION.min_pivot * largest:
             for i in range(k, n):
                 if abs(row[i]) == largest:
                     p = i

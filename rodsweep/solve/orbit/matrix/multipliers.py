@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array, Complex
+from ....determinant.exponents import EXPONENTS
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.small_eigenvalues import eigenvalues
 
@@ -71,7 +72,7 @@ def compressed(A: Array, negligible: float) -> Array:
         r = R[rank]
         # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; the tiny divisor
         # keeps a zero matrix from dividing by 0.
-        q[:] = columns[p] / max(size, 1e-300)
+        q[:] = columns[p] / max(size, EXPONENTS.least_divisor)
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _without(columns[j], q, r, j)

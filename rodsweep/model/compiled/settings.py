@@ -1,0 +1,70 @@
+"""Frozen settings whose fields compiled functions read as constants."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from numba.core import types
+from numba.core.datamodel import models, register_default
+from numba.core.imputils import lower_constant, lower_getattr_generic
+from numba.core.types.misc import maybe_literal
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.core.typing.typeof import typeof, typeof_impl
+
+
+class CompiledSettings:
+    """Base class of a frozen dataclass of numbers and tuples of numbers, made once for a module.
+
+    A compiled function may read the fields and properties of such a global value, but call no method. The
+    machine code contains the numbers, as it does for a global number, and is compiled again when a field that
+    it reads has changed.
+    """
+
+    __slots__ = ()
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    """Limits between which a field must lie, for example for a proof to hold, by its name."""
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for a field that does not lie between its limits."""
+        for name, (low, high) in self.ranges.items():
+            if not low < getattr(self, name) < high:
+                raise ValueError(f"{name} = {getattr(self, name)} does not lie between {low} and {high}")
+
+
+class _SettingsType(types.Type):
+    """The numba type of one settings object, which the type holds."""
+
+    def __init__(self, settings: CompiledSettings) -> None:
+        self.settings = settings
+        super().__init__(name=repr(settings))
+
+    def field(self, name: str) -> Any:
+        """(type, value) of a field; a whole number has its literal type, like a global number."""
+        value = getattr(self.settings, name)
+        return maybe_literal(value) or typeof(value), value
+
+
+register_default(_SettingsType)(models.OpaqueModel)
+
+
+@typeof_impl.register(CompiledSettings)
+def _type_of(settings: CompiledSettings, context: Any) -> _SettingsType:
+    return _SettingsType(settings)
+
+
+@infer_getattr
+class _FieldTypes(AttributeTemplate):
+    key = _SettingsType
+
+    def generic_resolve(self, settings: _SettingsType, name: str) -> types.Type:
+        kind: types.Type = settings.field(name)[0]
+        return kind
+
+
+@lower_constant(_SettingsType)
+def _no_value(context: Any, builder: Any, kind: _SettingsType, settings: CompiledSettings) -> Any:
+    return context.get_dummy_value()
+
+
+@lower_getattr_generic(_SettingsType)
+def _constant(context: Any, builder: Any, kind: _SettingsType, value: Any, name: str) -> Any:
+    return context.get_constant_generic(builder, *kind.field(name))
