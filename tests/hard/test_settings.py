@@ -71,6 +71,7 @@ ROUNDING = 1e-11
 """Relative; of numbers whose stated error is smaller."""
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
 BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
+STRONGLY_UNSTABLE = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
     ("INTEGRATOR", "relaxation_share"),
@@ -107,6 +108,11 @@ def small_branches(accuracy: float) -> Answer:
 
 def lopsided_branches(accuracy: float) -> Answer:
     return branch_answer(SOFT_IN_SHEAR, 0.0, 20.5, accuracy)
+
+
+def branch_of_legs(accuracy: float) -> Answer:
+    """Cycles with multipliers of 1e20, whose orbits are divided into legs."""
+    return branch_answer(STRONGLY_UNSTABLE, 181.0, 182.8, accuracy)
 
 
 @cache
@@ -442,7 +448,8 @@ CHAIN = Case(cycles_of_a_chain, 1e-6, 1e-9)
 BESIDE_HOPF = Case(cycle_beside_the_hopf_point, 1e-6, 1e-9)
 INTEGRATED = Case(cycle_by_integration, 1e-4, 1e-5)
 TORUS = Case(torus, 1e-6, 1e-7)
-SLOW = (LOPSIDED, TORUS)
+UNSTABLE = Case(branch_of_legs, 1e-4, 1e-6)
+SLOW = (LOPSIDED, TORUS, UNSTABLE)
 """Cases that take seconds."""
 SPECTRA = Case(spectra, 1e-8, 1e-10)
 FOLLOWED = Case(followed, 1e-8, 1e-10)
@@ -465,6 +472,7 @@ CASES = {
     "BRANCHES": BRANCH,
     "BRANCH_WORK": BRANCH,
     "LOCATING": BRANCH,
+    "LEGS": UNSTABLE,
     "LEAST_STRETCH": BRANCH,
     "ARC_STEPS": BRANCH,
     "ORBIT_NEWTON": BRANCH,

@@ -1,6 +1,8 @@
 """Settings for the elements of arms, on which minors of two solutions are integrated."""
 
+import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ...model.compiled.settings import CompiledSettings
 
@@ -45,6 +47,8 @@ class ArmElementSettings(CompiledSettings):
     arms_kept: int = 16
     """Arms whose propagators are kept: a bound of memory, which changes no number."""
 
+    ranges: ClassVar = {"headroom": (1.0, math.inf)}
+
     @property
     def width(self) -> int:
         """Number of initial values of all lanes: the length of the last axis of arrays over elements."""
@@ -56,6 +60,7 @@ class ArmElementSettings(CompiledSettings):
         return self.headroom * self.smallest_level
 
     def __post_init__(self) -> None:
+        CompiledSettings.__post_init__(self)
         if self.stages % 4:
             raise ValueError(f"{self.stages} stages are no multiple of 4")
 

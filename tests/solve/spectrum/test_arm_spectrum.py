@@ -9,13 +9,13 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm import hull
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.newton import refined
+from rodsweep.determinant.arm.region import UNKNOWN
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum import search
+from rodsweep.solve.spectrum import problem, search
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
@@ -148,14 +148,14 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=step))
     wanted, whole = [], search.candidates_on
 
-    def attempt(problem, mesh, number, vectors, tight):
+    def attempt(rod_problem, mesh, number, vectors, tight):
         wanted.append(number)
-        return whole(problem, mesh, number, vectors, tight)
+        return whole(rod_problem, mesh, number, vectors, tight)
 
     monkeypatch.setattr(search, "candidates_on", attempt)
     monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, enough_unproved=2))
     if not countable:
-        monkeypatch.setattr(hull, "HULL", replace(hull.HULL, least_remainder=1.0))
+        monkeypatch.setattr(problem, "hull_of", lambda rod: UNKNOWN)
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))
     assert found.certified == countable
     assert found.unstable_count > 2 if countable else found.status == SpectrumStatus.not_certified
