@@ -105,7 +105,7 @@ def test_without_a_bound_no_count_is_given():
 @pytest.mark.parametrize("gamma3", [0.0, 1e-5, 1e-2])
 @pytest.mark.parametrize("F", [2.0, 4.0])
 def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_modes(F, gamma3):
-    """Of the tip's growing modes most are divided out of D, or none."""
+    """Of the tip's growing modes those close to the line are divided out of D, or none."""
     rod = Rod(F=F, k1=1e4, k2=1.0, gamma3=gamma3, build=Build(profile=SOFT_STEP))
     dense = eigenvalues(rod if gamma3 else Rod(F=F, k1=1e4, k2=1.0, gamma3=1e-9, build=rod.build), 10)
     hull, determinant = hull_of(rod), ArmDeterminant(rod)
@@ -118,7 +118,7 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
     fast = count_right_of(line, determinant, hull, found.w, found.error)
     one_less = count_right_of(line, determinant, hull, found.w[2:], found.error[2:])
     assert (alone.number, fast.number, one_less.number) == (number,) * 3
-    assert fast.nodes < alone.nodes
+    assert max(fast.nodes, alone.nodes) < 65  # without the dominant wave 84 and 135 in four cases
 
 
 @pytest.mark.parametrize("seed", range(6))

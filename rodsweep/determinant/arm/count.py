@@ -1,92 +1,40 @@
 """Number of an arm's transverse eigenvalues right of a vertical line, without mesh or shift.
 
 The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
-by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
-tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
-the tangents meet.
+by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from what
+both say about D around them (`rodsweep.determinant.arm.phase_node`).
 
-Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that
-D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
-
-    Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
-    |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
-
-Inside the hull, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimate with the maximum of |f| on a
-circle bounds the change of f. The maximum is estimated from `CIRCLE` points and a safety factor. Inside the
-hull the count is therefore an estimate; the rounding errors of D and the errors of its elements are estimates
-everywhere.
-
-Known eigenvalues are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are far from the line.
-The nodes are then few even between many unstable modes, and the known eigenvalues right of the line are added
-to the count.
+Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
+far from the line. Those of them right of the line are added to the count.
 """
 
 import cmath
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
-from ..value import Value
 from .completeness import is_whole
 from .determinant import ArmDeterminant
-from .region import Hull, clearance
-from .value import chain_size, chain_value
+from .dominant_wave import ArmSamples
+from .phase_node import FIRST_RADIUS, LEVELS_ABOVE, DividedDeterminant, PhaseNode, node_at, tangent
+from .region import Hull
 
-LARGEST_TURN = 1.5
-"""Largest allowed error of a tangent's phase, in radians. The errors of two tangents then sum to less than
-pi."""
-CIRCLE = 8
-"""Points of a circle about a node inside the hull."""
-BETWEEN_POINTS = 1.5
-"""Safety factor on the maximum of |f| over the points of a circle, for larger values between the points."""
-CLEARANCE = 0.9
-"""Largest allowed change of f, in units of |D|."""
-ROUNDING_OF_ARM_D = 100.0
-"""Bound of the rounding error of D, in units of its noise; a node needs a larger |D|."""
-FIRST_RADIUS, SMALLEST_RADIUS, LARGEST_RADIUS = 12.0, 0.75, 48.0
-"""Radii of circles to try, in units of the length over which D changes: the first at the first node of a
-side, and the smallest and largest at any node. Every trial halves the radius."""
-STEEPEST = 1.0
-"""Largest |L| times the unit of the radii, so that circles shrink with the distance to a zero of D."""
 SHARP = 1e-3
 """Largest error of an eigenvalue that is divided out, in units of its distance from the line."""
+CLOSE_TO_LINE = 1.0
+"""Largest distance from the line of eigenvalues that are divided out, in units of their height above the real
+axis, or of |line|: without farther ones D would follow its dominant wave no more."""
 NONE_KNOWN: Complex = np.empty(0, complex)
 SMALLEST_ARM_REACH = 1e-12
 """Reach in units of |w| below which the line counts as running through a zero of D."""
-LEVELS_ABOVE = 1
-"""Number of levels of elements above the own one that serve a node: the many evaluations of a count are worth
-elements of their own."""
 MAX_NODES = 5000
 """Maximum nodes on one side of the box; cones with tapers from 0.1 to 1 need 15 to 210 on all sides."""
 OVERLAP = 0.95
 """Distance of two nodes in units of the sum of their expected reaches."""
 LARGEST_GROWTH = 0.5
 """Largest expected growth of the reach per distance: the next node is 3.6 reaches ahead at most."""
-GIVEN_UP = 0.2
-"""A circle is given up for the next smaller one once its reach is below this fraction of its radius: the
-smaller one may reach 0.27 of the radius."""
-UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.array([0, 2, 1, 3, 4, 6, 5, 7]) + 0.5) / CIRCLE)
-"""Directions of the points; the first four differ most in (v - w)^2, so that most circles too large for f are
-given up after one or two points."""
-
-
-class PhaseNode(NamedTuple):
-    """A point w with the direction of D, L = D'/D, both without known eigenvalues, and the validity of the
-    tangent.
-
-    reach: distance within which the tangent is valid. radius: radius of the best circle, in units of the
-    length over which D changes, or 0.
-    """
-
-    w: complex
-    direction: complex
-    L: complex
-    reach: float
-    radius: float
 
 
 class PhaseLost(ArithmeticError):
@@ -95,14 +43,6 @@ class PhaseLost(ArithmeticError):
     def __init__(self, nodes: int):
         super().__init__("an eigenvalue lies too close to the line, or the box is too large")
         self.nodes = nodes
-
-
-class DividedDeterminant(NamedTuple):
-    """D without known eigenvalues, `known`, (n,), closed under conjugation, and a region with all others."""
-
-    determinant: ArmDeterminant
-    hull: Hull
-    known: Complex
 
 
 def count_right_of(
@@ -125,12 +65,15 @@ def count_right_of(
     top = complex(line, corner.imag)
     known = known[error < SHARP * np.abs(known.real - line)]
     known = known[is_whole(known)]
-    divided = DividedDeterminant(determinant, hull, known)
+    height = np.maximum(np.abs(known.imag), abs(line))
+    known = known[np.abs(known.real - line) < CLOSE_TO_LINE * height]
+    largest = size_of_count(line, determinant, hull)
+    divided = DividedDeterminant(determinant, hull, known, largest)
     nodes = 0
     total = 0.0
     try:
         # Elements for the largest |w| first: they serve most others.
-        determinant.level(size_of_count(line, determinant, hull), LEVELS_ABOVE)
+        determinant.level(largest, LEVELS_ABOVE)
         for start, end in ((complex(corner.real, 0.0), corner), (corner, top), (top, complex(line, 0.0))):
             change, used = phase_change(start, end, divided)
             total += change
@@ -184,10 +127,9 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
         if not here.reach > SMALLEST_ARM_REACH * abs(here.w) or nodes > MAX_NODES:
             raise PhaseLost(nodes)
         ahead = min(_stride(here.reach, growth), length - t)
-        radius = min(2 * here.radius, LARGEST_RADIUS) if here.radius > 0 else FIRST_RADIUS
         while True:
             w = end if ahead == length - t else start + direction * (t + ahead)
-            there = node_at(w, divided, radius)
+            there = node_at(w, divided, 2 * here.radius)
             nodes += 1
             growth = (there.reach - here.reach) / ahead
             if abs(there.w - here.w) < here.reach + there.reach:
@@ -195,7 +137,7 @@ def phase_change(start: complex, end: complex, divided: DividedDeterminant) -> t
             # The reaches leave a gap: place the next node closer, at last within the present one's reach.
             nearer = min(_stride(here.reach, growth), 0.9 * ahead)
             ahead = nearer if nearer > here.reach else min(0.99 * here.reach, ahead / 2)
-        total += _turn(here, there)
+        total += _turn(here, there, divided.determinant.gauss_samples)
         t = length if there.w == end else t + ahead
         here = there
     return total, nodes
@@ -206,114 +148,11 @@ def _stride(reach: float, growth: float) -> float:
     return 2 * OVERLAP * reach / (1 - OVERLAP * min(max(growth, -1.0), LARGEST_GROWTH))
 
 
-def _turn(here: PhaseNode, there: PhaseNode) -> float:
+def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
     """The change of arg D between two nodes whose reaches overlap."""
-    step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
+    between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
     # the reaches overlap.
-    expected = (here.L * step * share + there.L * step * (1 - share)).imag
+    expected = tangent(here, between, samples).imag - tangent(there, between, samples).imag
     return expected + cmath.phase(there.direction / here.direction * cmath.exp(complex(0.0, -expected)))
-
-
-def node_at(w: complex, divided: DividedDeterminant, radius: float = FIRST_RADIUS) -> PhaseNode:
-    """The node at w; its reach is 0 if rounding errors hide D.
-
-    radius: radius of the largest circle to try, in units of the length over which D changes.
-    """
-    determinant, hull, known = divided
-    length = determinant.length(w)
-    level = determinant.level(abs(w) + max(radius, SMALLEST_RADIUS) * length, LEVELS_ABOVE)
-    return _node(w, known, (length, radius), hull, level)
-
-
-@compiled
-def _node(
-    w: complex, known: Complex, trial: tuple[float, float], hull: Hull, level: tuple[float, Array]
-) -> PhaseNode:
-    """The node about w.
-
-    trial: (length over which D changes, largest radius in units of it). level: (W, propagators) for |v| <= W,
-    which hold the largest circle about w.
-    """
-    value = chain_value(w, level[0], level[1])
-    if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
-        return PhaseNode(w, value.D, 0j, 0.0, 0.0)
-    direction = value.D / abs(value.D)
-    L = value.D_w / value.D
-    for n in range(len(known)):
-        away = w - known[n]
-        direction *= away.conjugate() / abs(away)
-        L -= 1 / away
-    distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
-    reach = 0.0
-    radius = 0.0
-    if distance > 0:
-        S = max((normal * L).real, 0.0) / distance
-        reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
-    if not reach > trial[0]:
-        inside, radius = _reach_inside(value, (w, L), known, trial, level)
-        reach = max(reach, inside)
-    return PhaseNode(w, direction, L, reach, radius)
-
-
-@compiled
-def _reach_inside(
-    value: Value,
-    tangent: tuple[complex, complex],
-    known: Complex,
-    trial: tuple[float, float],
-    level: tuple[float, Array],
-) -> tuple[float, float]:
-    """(reach of a node inside the hull, best radius), from the largest |f| on circles.
-
-    tangent: (w, L). For the other arguments see `_node`.
-    """
-    w, L = tangent
-    unit = min(trial[0], STEEPEST / max(abs(L), 1e-300))
-    room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
-    here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
-    best = 0.0
-    best_radius = 0.0
-    radius = max(trial[1], SMALLEST_RADIUS)
-    while radius >= SMALLEST_RADIUS:
-        rho = radius * unit
-        # No smaller circle reaches farther than half of this one could.
-        enough = max(best, _reach_of_circle(rho / 2, BETWEEN_POINTS, room))
-        last = radius / 2 < SMALLEST_RADIUS
-        reach = math.inf
-        size = -math.inf  # log of the largest |f| of the points of the circle
-        for direction in UNIT_CIRCLE:
-            v = w + rho * direction
-            log = chain_size(v, level[0], level[1]) - _log_of_known(v, known)
-            size = max(size, log - (L * (v - w)).real)
-            M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
-            reach = _reach_of_circle(rho, M, room)
-            if reach <= best or (reach < GIVEN_UP * rho and not last):
-                reach = 0.0
-                break
-        if reach > best:
-            best = reach
-            best_radius = radius
-        elif best > 0:
-            break
-        if best >= enough:
-            break
-        radius /= 2
-    return best, best_radius
-
-
-@compiled
-def _reach_of_circle(rho: float, M: float, room: float) -> float:
-    """Distance within which f changes by less than `room`, in units of |D|, if |f| is at most M at rho."""
-    q = room / M
-    return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
-
-
-@compiled
-def _log_of_known(v: complex, known: Complex) -> float:
-    """log prod |v - w_n| over known eigenvalues."""
-    total = 0.0
-    for n in range(len(known)):
-        total += math.log(max(abs(v - known[n]), 1e-300))
-    return total

@@ -9,7 +9,7 @@ end of an element.
 import cmath
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..value import Value
 from .collocation import STAGES
+from .dominant_wave import ArmSamples
 from .propagators import element_propagators, gauss_method, tail_of
 from .value import chain_value
 
@@ -85,6 +86,14 @@ class ArmDeterminant:
     def length(self, w: complex) -> float:
         """Change of w that changes an exponent of D, integrated along the arm, by about one."""
         return 1 / max(mean_waves(w, self.rod.F, self._sampled, self._samples.weights)[1], 1e-300)
+
+    @cached_property
+    def gauss_samples(self) -> ArmSamples:
+        """The arm at the Gauss points of each smooth piece."""
+        points, _, weights = gauss_method(STAGES)
+        lengths = np.diff(self.rod.build.breaks)[:, None]
+        local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
+        return ArmSamples(float(self.rod.F), np.array(local), (lengths * weights).ravel())
 
     def level(self, size: float, above: int | None = None) -> tuple[float, Array]:
         """(W >= size, propagators for |w| <= W, (elements, terms, 16)) of the next level that exists.

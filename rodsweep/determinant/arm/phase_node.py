@@ -1,0 +1,199 @@
+"""Points of a count with a tangent of log D each, and the distance within which the tangent holds.
+
+The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both, if each is
+wrong by less than pi/2 where they meet.
+
+Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that
+D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
+
+    Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
+    |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
+
+Inside the hull, f(v) = D(v) exp(-h(v)) has f'(w) = 0 with
+
+    h(v) = L (v - w)   or   h(v) = Phi(v) - Phi(w) + (L - Phi'(w)) (v - w),
+
+Phi the dominant wave (`rodsweep.determinant.arm.dominant_wave`). Cauchy's estimate with the maximum of |f| on
+a circle bounds the change of f. The maximum is estimated from `CIRCLE` points and a safety factor. Inside the
+hull the count is therefore an estimate; the rounding errors of D and the errors of its elements are estimates
+everywhere.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ...model.compiled.compilation import compiled
+from ..value import Value
+from .determinant import ArmDeterminant
+from .dominant_wave import ArmSamples, dominant_wave, slope_of_wave
+from .region import Hull, clearance
+from .value import chain_size, chain_value
+
+LARGEST_TURN = 1.5
+"""Largest allowed error of a tangent's phase, in radians. The errors of two tangents then sum to less than
+pi."""
+CIRCLE = 8
+"""Points of a circle about a node inside the hull."""
+BETWEEN_POINTS = 1.5
+"""Safety factor on the maximum of |f| over the points of a circle, for larger values between the points."""
+CLEARANCE = 0.9
+"""Largest allowed change of f, in units of |D|."""
+ROUNDING_OF_ARM_D = 100.0
+"""Bound of the rounding error of D, in units of its noise; a node needs a larger |D|."""
+FIRST_RADIUS, SMALLEST_RADIUS, LARGEST_RADIUS = 12.0, 0.75, 48.0
+"""Radii of circles to try without the dominant wave, in units of the length over which D changes: the first
+at the first node of a side, and the smallest and largest at any node. Every trial halves the radius."""
+OF_HEIGHT = 0.8
+"""Largest radius with the dominant wave, in units of Im w: beyond Im w it has branch points."""
+STEEPEST = 1.0
+"""Largest |L| times the unit of the radii, so that circles shrink with the distance to a zero of D."""
+LEVELS_ABOVE = 1
+"""Number of levels of elements above the own one that serve a node: the many evaluations of a count are worth
+elements of their own."""
+GIVEN_UP = 0.2
+"""A circle is given up for the next smaller one once its reach is below this fraction of its radius: the
+smaller one may reach 0.27 of the radius."""
+UNIT_CIRCLE: Complex = np.exp(2j * np.pi * (np.array([0, 2, 1, 3, 4, 6, 5, 7]) + 0.5) / CIRCLE)
+"""Directions of the points; the first four differ most in (v - w)^2, so that most circles too large for f are
+given up after one or two points."""
+Level = tuple[float, Array]
+"""(W, propagators for |w| <= W)."""
+
+
+class PhaseNode(NamedTuple):
+    """A point w with the direction of D, L = D'/D, both without known eigenvalues, and where h is valid.
+
+    wave: (Phi, dPhi/dw) in h, 0 without. reach: distance within which h is valid. radius: that of the best
+    circle, or 0.
+    """
+
+    w: complex
+    direction: complex
+    L: complex
+    wave: tuple[complex, complex]
+    reach: float
+    radius: float
+
+
+class DividedDeterminant(NamedTuple):
+    """D without known eigenvalues, `known`, (n,), closed under conjugation, and a region with all others.
+
+    largest: |w| at which D may be evaluated.
+    """
+
+    determinant: ArmDeterminant
+    hull: Hull
+    known: Complex
+    largest: float
+
+
+@compiled
+def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
+    """h(v) of a node."""
+    Phi, slope = node.wave
+    ahead = (node.L - slope) * (v - node.w)
+    return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
+
+
+def node_at(w: complex, divided: DividedDeterminant, radius: float = 0.0) -> PhaseNode:
+    """The node at w; its reach is 0 if rounding errors hide D.
+
+    radius: the largest one to try without the dominant wave; 0 if unknown.
+    """
+    determinant, hull, known, largest = divided
+    length = determinant.length(w)
+    radius = min(radius, LARGEST_RADIUS * length) if radius > 0 else FIRST_RADIUS * length
+    radius = max(min(max(radius, OF_HEIGHT * w.imag), largest - abs(w)), SMALLEST_RADIUS * length)
+    level = determinant.level(abs(w) + radius, LEVELS_ABOVE)
+    return _node(w, known, (length, radius), hull, (determinant.gauss_samples, level))
+
+
+@compiled
+def _node(
+    w: complex, known: Complex, trial: tuple[float, float], hull: Hull, arm: tuple[ArmSamples, Level]
+) -> PhaseNode:
+    """The node about w.
+
+    trial: (length over which D changes, largest radius). arm: samples, and the level of propagators for
+    |v| <= W, which hold the largest circle about w.
+    """
+    value = chain_value(w, arm[1][0], arm[1][1])
+    if not abs(value.D) > ROUNDING_OF_ARM_D * value.noise:
+        return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
+    direction = value.D / abs(value.D)
+    L = value.D_w / value.D
+    for n in range(len(known)):
+        away = w - known[n]
+        direction *= away.conjugate() / abs(away)
+        L -= 1 / away
+    distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
+    reach = 0.0
+    if distance > 0:
+        S = max((normal * L).real, 0.0) / distance
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * LARGEST_TURN)))
+    node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
+    return node if reach > trial[0] else _node_inside(node, value, known, trial, arm)
+
+
+@compiled
+def _node_inside(
+    node: PhaseNode,
+    value: Value,
+    known: Complex,
+    trial: tuple[float, float],
+    arm: tuple[ArmSamples, Level],
+) -> PhaseNode:
+    """The node with the largest reach by |f| on circles; value: D at the node. For the others see `_node`."""
+    w = node.w
+    samples, (W, propagators) = arm
+    smallest = SMALLEST_RADIUS * min(trial[0], STEEPEST / max(abs(node.L), 1e-300))
+    room = CLEARANCE - ROUNDING_OF_ARM_D * value.noise / abs(value.D)
+    here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
+    best = node
+    rho = max(trial[1], smallest)
+    while rho >= smallest:
+        wave = (0j, 0j)
+        if rho <= OF_HEIGHT * w.imag:
+            wave = (dominant_wave(w, samples), slope_of_wave(w, samples))
+        tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
+        # No smaller circle reaches farther than half of this one could.
+        enough = max(best.reach, _reach_of_circle(rho / 2, BETWEEN_POINTS, room))
+        last = rho / 2 < smallest
+        reach = math.inf
+        size = -math.inf  # log of the largest |f| of the points of the circle
+        for direction in UNIT_CIRCLE:
+            v = w + rho * direction
+            log = chain_size(v, W, propagators) - _log_of_known(v, known)
+            size = max(size, log - tangent(tried, v, samples).real)
+            M = BETWEEN_POINTS * math.exp(min(size - here, 700.0))
+            reach = _reach_of_circle(rho, M, room)
+            if reach <= best.reach or (reach < GIVEN_UP * rho and not last):
+                reach = 0.0
+                break
+        if reach > best.reach:
+            best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
+        elif best.radius > 0:
+            break
+        if best.radius > 0 and best.reach >= enough:
+            break
+        rho /= 2
+    return best
+
+
+@compiled
+def _reach_of_circle(rho: float, M: float, room: float) -> float:
+    """Distance within which f changes by less than `room`, in units of |D|, if |f| is at most M at rho."""
+    q = room / M
+    return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
+
+
+@compiled
+def _log_of_known(v: complex, known: Complex) -> float:
+    """log prod |v - w_n| over known eigenvalues."""
+    total = 0.0
+    for n in range(len(known)):
+        total += math.log(max(abs(v - known[n]), 1e-300))
+    return total
