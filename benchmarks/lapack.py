@@ -5,6 +5,7 @@ import scipy.linalg
 
 from rodsweep.arrays import Array, Complex
 from rodsweep.discretization.elements.resolution import Resolution
+from rodsweep.discretization.straight.arm_pencil import ArmMesh, ArmPencil
 from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.rod import Rod
@@ -15,8 +16,14 @@ INFINITE_BELOW = 1e-11
 """beta of an infinite eigenvalue, in units of the largest, as rounding leaves it."""
 
 
-def whole_matrices(rod: Rod, mesh: Resolution) -> tuple[Array, Array]:
+def whole_matrices(rod: Rod, mesh: Resolution | ArmMesh) -> tuple[Array, Array]:
     """(A, diagonal of B), shape (unknowns, unknowns) and (unknowns,), the statical unknowns last."""
+    if isinstance(mesh, ArmMesh):
+        pencil = ArmPencil(mesh)
+        found = pencil.matrices(rod)
+        A = np.zeros((pencil.unknowns, pencil.unknowns))
+        A[pencil.rows, pencil.columns] = found.A
+        return A, found.B
     form = dense_form(rod, assemble(mesh.elements, mesh.order))
     return form.A, form.B
 

@@ -13,18 +13,27 @@ import scipy.linalg
 import scipy.sparse.linalg
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum.study import ORDERS, PENCIL, WANTED_MODES, leading, mesh_of, shift_of
+from rodsweep.bench.spectrum import arms
+from rodsweep.bench.spectrum.arms import mesh_of_arm, on_arm
+from rodsweep.bench.spectrum.own import PENCIL, WANTED_MODES, leading
+from rodsweep.bench.spectrum.study import ORDERS, mesh_of
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.newton import refined
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.problem import problem_of
 
 from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices
 
 
+def matrices_at(rod: Rod, size: int) -> tuple[Array, Array]:
+    """(A, diagonal of B) of a rod or an arm at an order, shape (unknowns, unknowns) and (unknowns,)."""
+    return whole_matrices(rod, mesh_of(size) if rod.standard else mesh_of_arm(rod, size))
+
+
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
     """LAPACK's QZ (ggev), eigenvalues only; s at full weight, as its rounding needs."""
-    A, B = whole_matrices(rod, mesh_of(size))
+    A, B = matrices_at(rod, size)
     scale = np.ones(len(B))
     scale[2 * len(B) // 3 :] = PENCIL_NORM.shear_weight
     return leading(qz(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
@@ -32,13 +41,13 @@ def dense_qz(rod: Rod, size: int) -> Eigenvalues:
 
 def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
     """LAPACK's LU and geev."""
-    return leading(inverse_spectrum(*whole_matrices(rod, mesh_of(size))), WANTED_MODES + 1)
+    return leading(inverse_spectrum(*matrices_at(rod, size)), WANTED_MODES + 1)
 
 
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
     """ARPACK through SciPy on the factorised shift-and-invert operator, with rodsweep's shift."""
-    A, B = whole_matrices(rod, mesh_of(size))
-    shift = shift_of(rod)
+    A, B = matrices_at(rod, size)
+    shift = problem_of(rod).shift
     factors = scipy.linalg.lu_factor(A - np.diag(shift * B), check_finite=False)
     operator = scipy.sparse.linalg.LinearOperator(
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
@@ -103,25 +112,42 @@ def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
 
 
 def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
-    """The same of the first-order system in (y, theta, s, theta'), where no stiffness appears."""
-    D, one, n = _chebyshev(size), np.eye(size + 1), size + 1
-    zero = np.zeros_like(one)
-    A = np.block(
-        [
-            [zero, zero, D, -rod.F * one],
-            [zero, zero, rod.g * one, D],
-            [D, -rod.nu * one, -rod.c2 * one, zero],
-            [zero, D, zero, -one],
-        ]
-    )
-    B = scipy.linalg.block_diag(one, rod.gamma3 * one, zero, zero)
-    rows = [0, n, 3 * n - 1, 4 * n - 1]  # y and theta at the tip, s and theta' at the clamp, make room for
-    A[rows] = np.eye(4 * n)[[2 * n, 3 * n, n - 1, 2 * n - 1]]  # s, theta' = 0 at the tip, y, theta = 0 there
-    B[rows] = 0.0
+    """The same of the first-order system in (y, theta, s, m), where no stiffness appears, on each piece of an
+    arm between two jumps.
+    """
+    edges = (0.0, 1.0) if rod.standard else rod.build.breaks
+    pieces = [_first_order(rod, a, b, size) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    A, B = (scipy.linalg.block_diag(*blocks) for blocks in zip(*pieces, strict=True))
+    n, last = size + 1, 4 * (size + 1) * (len(pieces) - 1)
+    for start in range(0, len(B), 4 * n):
+        upper, lower = start + np.array([0, n, 2 * n, 3 * n]), start + np.array([1, 2, 3, 4]) * n - 1
+        rows = [*upper[:2], *lower[2:]]  # of the balances at the upper end, of the strains at the lower end
+        A[rows] = B[rows] = 0.0
+        A[rows, [*upper[2:], *lower[:2]]] = 1.0  # s and m there, y and theta
+        if start > 0:
+            A[rows[2:], upper[:2] - 4 * n] = -1.0
+        if start < last:
+            A[rows[:2], lower[2:] + 4 * n] = -1.0
     return leading(qz(A, B), WANTED_MODES + 1)
 
 
+def _first_order(rod: Rod, a: float, b: float, size: int) -> tuple[Array, Array]:
+    """(A, B) of the equations at all points of the piece from a to b, from its upper end to its lower."""
+    inside = np.clip((1 + np.cos(np.pi * np.arange(size + 1) / size)) / 2, END_OF_PIECE, 1 - END_OF_PIECE)
+    here = rod.local(a + (b - a) * inside)
+    D = _chebyshev(size) / (b - a)
+    zero = np.zeros_like(D)
+    nu, c2, c3, g = map(np.diag, (here.nu, here.c2, here.c3, here.g))
+    A = np.block(
+        [[zero, zero, D, -rod.F * c3], [zero, zero, g, D], [D, -nu, -c2, zero], [zero, D, zero, -c3]]
+    )
+    return A, scipy.linalg.block_diag(np.diag(here.gamma2), np.diag(here.gamma3), zero, zero)
+
+
 INTERVALS = (10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 40, 56, 80)
+END_OF_PIECE = 1e-12
+"""Distance from a jump at which the coefficients of a piece are taken, in units of its length."""
+ARM_INTERVALS = (10, 12, 14, 16, 20, 24, 32)
 START_ORDERS = (8, 10, 11, 12, 14, 18, 24, 32, 40)
 """Of meshes whose eigenvalues are refined on D."""
 OTHER_MESH = "other discretisations"
@@ -153,4 +179,14 @@ def contenders() -> list[Contender]:
         Contender(peer.name, str(size), peer.group, partial(peer.solve, size=size))
         for peer in PEERS
         for size in peer.sizes
+    ]
+
+
+def arm_contenders() -> list[Contender]:
+    """The peers that take an arm as it is, at all of their sizes on a piece of it."""
+    taken = {dense_inverse: arms.ORDERS, scipy_eigs: arms.ORDERS, chebyshev_first_order: ARM_INTERVALS}
+    return [
+        Contender(peer.name, str(size), peer.group, partial(on_arm, peer.solve, size))
+        for peer in PEERS
+        for size in taken.get(peer.solve, ())
     ]

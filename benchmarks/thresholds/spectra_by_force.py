@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from scipy.optimize import bisect, brentq
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum.study import leading
+from rodsweep.bench.spectrum.own import leading
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
+from rodsweep.discretization.straight.arm_pencil import ArmMesh
+from rodsweep.discretization.straight.arm_resolution import arm_mesh
 from rodsweep.model.dispersion import most_amplified_wave
 
 from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices
@@ -34,9 +36,12 @@ SCIPY_ROUNDING = 8.9e-16
 
 
 @lru_cache(maxsize=64)
-def mesh_of(case: ThresholdCase) -> Resolution:
+def mesh_of(case: ThresholdCase) -> Resolution | ArmMesh:
     """Fine enough at the thresholds of a rod."""
-    wave = most_amplified_wave(case.rod(case.onset if isnan(case.hopf) else case.hopf))[1]
+    rod = case.rod(case.onset if isnan(case.hopf) else case.hopf)
+    if not rod.standard:
+        return arm_mesh(rod, MESH_MODES, MESH_ACCURACY)
+    wave = most_amplified_wave(rod)[1]
     return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
 
 

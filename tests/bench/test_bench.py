@@ -11,23 +11,24 @@ import mpmath as mp
 import numpy as np
 import pytest
 from conftest import ROOT
+from reference import dense_arm
 from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
 from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
+from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
+from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
+from rodsweep.bench.spectrum.own import KRYLOV_SCHUR, PLAIN, PROVED, WANTED_MODES, own_spectrum
 from rodsweep.bench.spectrum.study import (
     HARD_RODS,
-    KRYLOV_SCHUR,
     ORDERS,
     RACE,
-    WANTED_MODES,
     every_size,
     hard_table,
     krylov_schur,
-    own_spectrum,
     spectrum_study,
 )
 from rodsweep.bench.study import Contender, Measurement, Study, contest, every_nth_setting, race
@@ -74,6 +75,34 @@ def test_own_error_on_the_hard_rods_is_rounding():
     for rod in HARD_RODS.values():
         for certify in (False, True):
             assert relative_error(own_spectrum(rod, certify), exact_spectrum(rod, WANTED_MODES)) < 1e-14
+
+
+@pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
+def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
+    """The other code loses digits in stiff arms."""
+    found = dense_arm.eigenvalues(rod, p=10)[:WANTED_MODES]
+    assert relative_error(found, exact_arm_spectrum(rod)) < 1e-8
+    for certify in (False, True):
+        assert relative_error(own_spectrum(rod, certify), exact_arm_spectrum(rod)) < 1e-13
+
+
+def test_no_arm_is_solved_twice():
+    """A solved arm is kept, and its second spectrum would cost nothing."""
+    arm = UnsolvedArms(ARMS["cone"])
+    forces = [arm.another().F for _ in range(60)]
+    assert len(set(forces)) == 60
+    assert forces[-1] < ARMS["cone"].F * (1 + 1e-13)
+
+
+def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
+    monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
+    bad = Contender("coarse", "3", "a", lambda arm: np.ones(WANTED_MODES, complex))
+    lines = arm_table(arm_spectra([bad], 1), 1).splitlines()
+    assert lines[2] == "| method | cone |"
+    for name in (PLAIN, PROVED, KRYLOV_SCHUR):
+        (line,) = (line for line in lines if line.startswith(f"| {name} |"))
+        assert re.fullmatch(r"\d+\.\d\d ms, \de-1\d", line.split(" | ")[1].rstrip(" |"))
+    assert lines[-1].startswith("| coarse | no better than 1e+")
 
 
 def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
@@ -123,10 +152,11 @@ def test_time_of_other_programs_is_counted():
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCES", 1)
+    monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
     exact = Contender("a peer", "7", "g", partial(own_spectrum, certify=False))
     study = spectrum_study(quick=True, peers=Peers({RACE: [exact]}, skipped=["Another is skipped."]))
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
-        assert study.text.count(f"| {name} |") == 2
+        assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
         assert f"| {name} | 4 |" in study.text
     assert study.text.endswith("\n\nAnother is skipped.")
     study.draw(tmp_path / "a.png")

@@ -5,11 +5,14 @@ from math import inf, isnan, nan
 
 import pytest
 from conftest import ROOT
+from reference import dense_arm
 
 from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds import study as thresholds
 from rodsweep.bench.thresholds.study import (
+    ARM_CASES,
+    ARM_INTRODUCTION,
     CASES,
     HOPF,
     ONSET,
@@ -30,6 +33,14 @@ def test_numbers_of_the_cases_are_those_of_the_reference(case):
     for kind in (ONSET, HOPF):
         first = next((float(event["F"]) for event in rod["events"] if event["kind"] == kind), nan)
         assert getattr(case, kind) == pytest.approx(first, rel=1e-15, abs=0, nan_ok=True)
+
+
+@pytest.mark.parametrize("case", ARM_CASES, ids=lambda case: case.name)
+def test_numbers_of_the_arms_are_those_of_another_code(case):
+    w = dense_arm.eigenvalues(case.rod(case.hopf), p=10)
+    assert abs(w[0].real) < 1e-8 * abs(w[0])
+    w = dense_arm.eigenvalues(case.rod(case.onset), p=10)
+    assert abs((w[0] - w[1]) ** 2) < 1e-7 * abs(w[0]) ** 2
 
 
 def test_what_is_missed_or_invented_has_no_finite_error():
@@ -56,9 +67,11 @@ def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"], CASE["Fig. 2d"]))
     study = thresholds_study(quick=True, peers=NO_PEERS)
     rows = [line.split(" | ") for line in study.text.splitlines() if line.startswith("| rodsweep")]
-    assert len(rows) == 4
-    assert all(float(row[5].strip(" |")) < 1e-14 for row in rows)
-    assert all(row[6].strip(" |") == "none" for row in rows[2:])
+    assert len(rows) == 8
+    of_rods, of_arms = rows[:4], rows[4:]
+    assert all(float(row[5].strip(" |")) < 1e-14 for row in of_rods)
+    assert all(row[6].strip(" |") == "none" for row in of_rods[2:])
+    assert all(float(cell.strip(" |")) < 1e-12 for row in of_arms for cell in row[5:])
     assert {m.group for m in study.measurements} == {"rodsweep"}
     assert len(study.table()["eigenproblems"]) == len(study.measurements)
     study.draw(tmp_path / "a.png")
@@ -70,8 +83,12 @@ def test_peers_take_part_in_the_race_of_their_threshold(monkeypatch):
     found = Contender("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))
     peers = Peers({HOPF: [found]}, notes=["A note."], skipped=["Another is skipped."])
     text = thresholds_study(quick=True, peers=peers).text
-    introduction, onsets, hopf_points, skipped = text.split("\n\n")
+    introduction, onsets, hopf_points, of_arms, onsets_of_arms, hopf_points_of_arms, skipped = text.split(
+        "\n\n"
+    )
     assert introduction.endswith(" A note.")
-    assert "of Hopf points" not in onsets
+    assert of_arms == ARM_INTRODUCTION
+    assert "of Hopf points" not in onsets + onsets_of_arms
     assert "| of Hopf points | a |" in hopf_points
+    assert "| of Hopf points | a |" in hopf_points_of_arms
     assert skipped == "Another is skipped."

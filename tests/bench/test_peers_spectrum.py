@@ -5,12 +5,16 @@ import pytest
 from benchmarks.spectrum import peers
 from benchmarks.spectrum.eigensolvers import (
     PEERS,
+    arm_contenders,
     chebyshev_first_order,
     dense_inverse,
     displacement_elements,
 )
+from rodsweep.bench.spectrum.arms import ARM_RACE, ARMS, UnsolvedArms, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.study import HARD_RODS, RACE, WANTED_MODES
+from rodsweep.bench.spectrum.own import WANTED_MODES
+from rodsweep.bench.spectrum.study import HARD_RODS, RACE
+from rodsweep.bench.study import grouped
 from rodsweep.model.rod import Rod
 
 EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
@@ -26,6 +30,15 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
     assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
 
 
+@pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
+def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
+    roots = exact_arm_spectrum(rod)
+    for (name,), own in grouped(arm_contenders(), "method").items():
+        errors = [relative_error(contender.run(UnsolvedArms(rod)), roots) for contender in own]
+        assert min(errors) < 1e-10, name
+        assert errors[0] > 100 * min(errors), name
+
+
 def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_them():
     stiff = HARD_RODS[next(name for name in HARD_RODS if name.startswith("stiff"))]
     roots = exact_spectrum(stiff, WANTED_MODES)
@@ -38,3 +51,4 @@ def test_every_peer_takes_part_at_all_of_its_sizes(tmp_path):
     found = peers(quick=True, place=tmp_path).of(RACE)
     for peer in PEERS:
         assert [int(c.setting) for c in found if c.method == peer.name] == list(peer.sizes)
+    assert {c.method for c in peers(quick=True, place=tmp_path).of(ARM_RACE)} < {peer.name for peer in PEERS}

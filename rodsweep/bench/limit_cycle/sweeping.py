@@ -10,6 +10,7 @@ from functools import partial
 from math import nan
 from typing import Any
 
+from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.accuracy.refinement import refine
@@ -32,8 +33,11 @@ RODS = (
     Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
+    Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, taper=0.5),
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build("neo_hookean", "swelling")),
 )
-"""Rods with cycles near and far from Hopf points, stiff rods, and a rod shortened to half by its force."""
+"""Rods with cycles near and far from Hopf points, stiff rods, and a rod shortened to half by its force;
+a cone as far from its Hopf point as the first rod, and the first rod made of rubber."""
 QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01
@@ -158,8 +162,11 @@ def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
 
 
 def name_of(point: Rod) -> str:
-    """Label of a rod: its parameters in the order of the tables."""
-    return f"{point.F:g}, {point.k1:g}, {point.k2:g}, {point.gamma3:g}, {point.gamma1:g}"
+    """Label of a rod: its parameters in the order of the tables, then what distinguishes an arm."""
+    further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
+    further += [] if point.build.standard else [point.build.law, point.build.section]
+    values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
+    return ", ".join([*(f"{value:g}" for value in values), *further])
 
 
 def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:

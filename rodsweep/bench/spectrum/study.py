@@ -12,11 +12,10 @@ import numpy as np
 
 from ...arrays import Complex
 from ...discretization.elements.resolution import RESOLUTION, Resolution
-from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ...solve.spectrum.krylov_schur import eigen_solver
-from ...solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
-from ...solve.spectrum.shift_invert import KRYLOV
+from ...solve.spectrum.problem import problem_of
+from ...solve.spectrum.search import warm_up
 from ..peers import Peers
 from ..study import (
     Contender,
@@ -31,18 +30,12 @@ from ..study import (
     race,
     table,
 )
+from .arms import ARM_RACE, arm_spectra, arm_table
 from .exact import exact_spectrum, relative_error
+from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
 
-WANTED_MODES = 4
-ACCURACY = 1e-12
-"""Accuracy requested from rodsweep; its error does not depend on the request."""
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Sizes of the pencil."""
-PLAIN = "rodsweep, certificate off"
-PROVED = "rodsweep, certificate on"
-KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
-THIS_TOOL, PENCIL = "this tool", "the same pencil"
-"""Groups of methods in the figure."""
 RACE = "spectrum"
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
@@ -69,7 +62,7 @@ QUICK_STRIDE = 3
 def spectrum_study(quick: bool, peers: Peers) -> Study:
     """Runs the benchmark: the paper's rods at equal errors, then every method at every size on hard rods."""
     warm_up()
-    rounds = QUICK_ROUNDS if quick else ROUNDS
+    rounds, stride = (QUICK_ROUNDS, QUICK_STRIDE) if quick else (ROUNDS, 1)
     rods = [
         Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
         for k1, k2, gamma3, top in PAPER_RODS.values()
@@ -79,9 +72,10 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     every = contenders() + peers.of(RACE)
     targets = TARGETS[: 1 if quick else None]
     blocks = [equal_errors(every, rods, exact, target, rounds) for target in targets]
-    measurements = every_size(every_nth_setting(every, QUICK_STRIDE if quick else 1), rounds)
-    blocks += [*peers.notes, hard_table(measurements), *peers.skipped]
-    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0])
+    measurements = every_size(every_nth_setting(every, stride), rounds)
+    arms = arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
+    blocks += [*peers.notes, hard_table(measurements), arm_table(arms, rounds), *peers.skipped]
+    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0], undrawn=arms)
 
 
 def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
@@ -163,31 +157,16 @@ def best(measurements: Sequence[Measurement]) -> str:
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
 
 
-def own_spectrum(rod: Rod, certify: bool) -> Complex:
-    """rodsweep as in its task, with automatic size, shape (modes,)."""
-    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
-
-
 def mesh_of(order: int) -> Resolution:
     """One element of the given order, or several equal elements of at most RESOLUTION.largest_order."""
     elements = ceil(order / RESOLUTION.largest_order)
     return Resolution(elements, ceil(order / elements))
 
 
-def shift_of(rod: Rod) -> float:
-    """Shift of rodsweep's own shift-and-invert."""
-    return KRYLOV.shift_above_growth * most_amplified_wave(rod)[0]
-
-
 def krylov_schur(rod: Rod, size: int) -> Complex:
     """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
-    w = eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True)
+    w = eigen_solver(mesh_of(size)).solve(rod, problem_of(rod).shift, WANTED_MODES, tight=True)
     return leading(w, WANTED_MODES + 1)
-
-
-def leading(w: Complex, count: int) -> Complex:
-    """The eigenvalues with the largest real parts, largest first; from shape (n,) to (count,)."""
-    return w[np.argsort(-w.real, kind="stable")][:count]
 
 
 def contenders() -> list[Contender]:

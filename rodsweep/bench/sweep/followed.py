@@ -12,10 +12,11 @@ from .launch import CONFIG, RESULT, SOLVED, CommandRun, SweepCase
 FOLLOWED_CONFIG = """
 task: spectrum
 parameters:
-  F: {{start: 0, stop: 60, num: {0}}}
+  F: {{start: 0, stop: {F_max}, num: {0}}}
   k1: {{start: 100, stop: 1.0e4, num: {1}, spacing: log}}
   k2: {{start: 100, stop: 1.0e4, num: {2}, spacing: log}}
   gamma3: {{start: 1.0e-4, stop: 1.0e-2, num: {3}, spacing: log}}
+  taper: {taper}
 spectrum: {{modes: 4, follow: {4}}}
 """
 FOLLOWED = "followed"
@@ -24,11 +25,16 @@ ALONE = "alone"
 
 @dataclass(frozen=True, slots=True)
 class LongAxis:
-    """A grid (F, k1, k2, gamma3) named after its longest axis, and a smaller grid for points solved alone."""
+    """A grid (F, k1, k2, gamma3) named after its longest axis, and a smaller grid for points solved alone.
+
+    F_max: last force. taper: 1, or that of cones.
+    """
 
     name: str
     shape: tuple[int, int, int, int]
     smaller: tuple[int, int, int, int]
+    F_max: float = 60.0
+    taper: float = 1.0
 
 
 AXES = (
@@ -36,10 +42,12 @@ AXES = (
     LongAxis("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
     LongAxis("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
     LongAxis("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
+    LongAxis("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
 QUICK_AXES = (
     LongAxis("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
     LongAxis("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
+    LongAxis("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
 )
 
 
@@ -50,7 +58,9 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
         for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
             directory = place / f"{method} {axis.name}".replace(" ", "_")
             directory.mkdir()
-            text = FOLLOWED_CONFIG.format(*shape, str(method == FOLLOWED).lower())
+            text = FOLLOWED_CONFIG.format(
+                *shape, str(method == FOLLOWED).lower(), F_max=axis.F_max, taper=axis.taper
+            )
             (directory / CONFIG).write_text(text)
             case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)
             found.append(followed_measurement(case, method, run(case, 1)))
@@ -82,7 +92,8 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
         '"alone" is `follow: false` on a part of the same grid. Seconds are stated by the run, including '
         "loading of compiled code, scheduling and storing; µs of the solver are from `seconds` in the file. "
-        '"With a mesh" counts points that could not be followed or not be proved:\n\n'
+        '"With a mesh" counts points that could not be followed or not be proved. Cones have half the '
+        "radius at their tips:\n\n"
     ) + table(
         "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
         "| MB a rank",

@@ -10,9 +10,11 @@ from functools import partial
 from math import inf, isinf, isnan, log10, nan
 from typing import Any
 
+from ...model.material.build import STANDARD, Build
 from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ..peers import Peers
+from ..spectrum.arms import SEGMENTS
 from ..study import Contender, Measurement, Study, contest, grouped, middle, plural, table
 
 ONSET, HOPF = "onset", "hopf"
@@ -32,9 +34,11 @@ class ThresholdCase:
     onset: float
     hopf: float
     top: float = 60.0
+    taper: float = 1.0
+    build: Build = STANDARD
 
     def rod(self, F: float) -> Rod:
-        return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3)
+        return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)
 
     def error_of(self, kind: str, found: float) -> float:
         """Relative error; nan if there is no threshold, inf if it was missed or invented."""
@@ -47,7 +51,7 @@ class ThresholdCase:
 
 @dataclass(frozen=True, slots=True)
 class FirstThreshold:
-    """First threshold of a kind, nan if none was found, and the work spent on it.
+    """First threshold of a kind, nan if none was found, and the work spent on it, nan if it is not counted.
 
     solves: eigenproblems. determinants: evaluations of D. products: matrix-vector products, for methods that
     solve no complete eigenproblem.
@@ -71,22 +75,45 @@ CASES = (
 """The flutter window of "narrow", from 74.83 to 75.98, falls between the points of a coarse grid. In "soft",
 more and more pairs become unstable, and a long step passes the first one."""
 QUICK_CASES = tuple(case for case in CASES if case.name in ("Fig. 2b", "Fig. 2d", "filament"))
+ARM_CASES = (
+    ThresholdCase("cone", 1e4, 1e2, 1e-2, 4.57243445318968512, 11.0801159252882371, taper=0.5),
+    ThresholdCase(
+        "five segments",
+        1e4,
+        1e4,
+        1e-4,
+        2.98373047605650440,
+        5.68247274040263724,
+        build=Build(profile=SEGMENTS),
+    ),
+)
+ARM_INTRODUCTION = (
+    "The same for arms: a cone with half the radius at its tip, and five segments with radii of 1, 0.6, 1.2, "
+    "0.5 and 0.8. rodsweep finds all changes in 0 < F < 60 to the requested accuracy of 1e-10."
+)
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
 ROUNDS = 5
 QUICK_ROUNDS = 1
 MOST_DIGITS = 16
 F_MAX = 200.0
+ARM_F_MAX = 60.0
+"""Largest force of the search on arms, several times their Hopf points."""
 RODSWEEP = "rodsweep"
 
 
 def thresholds_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: a table for the onset, a table for the Hopf point, and the skipped peers."""
+    """Runs the benchmark: for rods and for arms a table of the onset and one of the Hopf point."""
     warm_up()
     cases, rounds = (QUICK_CASES, QUICK_ROUNDS) if quick else (CASES, ROUNDS)
-    found = {kind: timed_on(kind, cases, contenders(kind) + peers.of(kind), rounds) for kind in TITLES}
-    tables = [threshold_table(kind, measurements) for kind, measurements in found.items()]
-    blocks = [" ".join([introduction(rounds), *peers.notes]), *tables, *peers.skipped]
-    return Study("thresholds", "\n\n".join(blocks), found[ONSET] + found[HOPF], "rod")
+    blocks = [" ".join([introduction(rounds), *peers.notes])]
+    found = []
+    for group in (cases, ARM_CASES):
+        blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
+        for kind in TITLES:
+            measured = timed_on(kind, group, contenders(kind) + peers.of(kind), rounds)
+            blocks.append(threshold_table(kind, measured))
+            found += measured
+    return Study("thresholds", "\n\n".join([*blocks, *peers.skipped]), found, "rod")
 
 
 def contenders(kind: str) -> list[Contender]:
@@ -99,8 +126,12 @@ def contenders(kind: str) -> list[Contender]:
 
 def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
     """All changes of the rod by rodsweep; returns the first change of a kind."""
-    result = solve_thresholds(case.rod(0.0), ThresholdsRequest(F_MAX, 1e-10, certify, 64))
+    rod = case.rod(0.0)
+    F_max = F_MAX if rod.standard else ARM_F_MAX
+    result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
     at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
+    if not rod.standard:
+        return FirstThreshold(at)
     return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
 
 
@@ -134,9 +165,9 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
             middle(m.extra.get(name, nan) for m in own)
             for name in ("eigenproblems", "determinants", "products", "digits")
         )
-        work = "none" if isnan(solves) else f"{solves:.0f}"
+        work = "" if isnan(solves) else f"{solves:.0f}"
         for count, what in ((determinants, "D"), (products, "M u")):
-            work += "" if isnan(count) else f", {count:.0f} {what}"
+            work += "" if isnan(count) else f"{', ' * bool(work)}{count:.0f} {what}"
         errors = [m.failure or ("none" if isnan(m.error) else f"{m.error:.0e}") for m in own]
         row = {"method": method, "setting": setting, "work": work, "digits": digits}
         rows.append(row | {"ms": middle(1e3 * m.seconds for m in own), "errors": " | ".join(errors)})

@@ -1,0 +1,140 @@
+"""Spectra of arms that vary along their length, which have no closed form of D.
+
+The race ARM_RACE runs on `UnsolvedArms` and gives the leading eigenvalues, at least WANTED_MODES, shape
+(modes,).
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from math import inf, nextafter
+
+from ...arrays import Complex
+from ...determinant.arm.determinant import ArmDeterminant
+from ...discretization.straight.arm_pencil import ArmMesh
+from ...discretization.straight.arm_resolution import arm_mesh
+from ...model.material.build import Build
+from ...model.material.profile import Profile
+from ...model.rod import Rod
+from ...solve.spectrum.arm_solver import arm_solver
+from ...solve.spectrum.problem import ArmProblem
+from ..study import Contender, Measurement, contest, grouped, plural, table
+from .exact import relative_error
+from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
+
+ARM_RACE = "arms"
+SEGMENTS = Profile(
+    (0.0, 0.2, 0.2, 0.4, 0.4, 0.6, 0.6, 0.8, 0.8, 1.0),
+    tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6, 1.2, 1.2, 0.5, 0.5, 0.8, 0.8)),
+)
+"""Five segments whose radii are 1, 0.6, 1.2, 0.5 and 0.8 of the radius at the clamp."""
+ARMS = {
+    "cone": Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5),
+    "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=SEGMENTS)),
+    "cone of rubber": Rod(
+        F=16.0, k1=2e2, k2=1e4, gamma3=1e-4, taper=0.5, build=Build("neo_hookean", "swelling")
+    ),
+}
+ORDERS = (6, 8, 10, 12, 14, 16, 20)
+"""Orders of the elements of a pencil."""
+COARSE = 1e-2
+"""Accuracy for which the edges of the elements are chosen; the order gives the accuracy."""
+TARGET = 1e-10
+"""Error at which the methods are compared."""
+FINER = 16.0
+"""The exact D of an arm has the elements for |w| times this factor."""
+NEWTON_STEPS = 3
+
+
+class UnsolvedArms:
+    """An arm under a force that grows by a rounding unit with every run, since solved arms are kept.
+
+    rod: the arm under the smallest force.
+    """
+
+    def __init__(self, rod: Rod):
+        self._values = dict(rod.values)
+        self._build = rod.build
+
+    def another(self) -> Rod:
+        """The arm under the next force."""
+        self._values["F"] = nextafter(self._values["F"], inf)
+        return Rod(**self._values, build=self._build)
+
+
+def exact_arm_spectrum(rod: Rod) -> list[complex]:
+    """The leading eigenvalues, by Newton's method on D with finer elements."""
+    determinant = ArmDeterminant(rod)
+    roots: list[complex] = own_spectrum(rod, certify=True).tolist()
+    for _ in range(NEWTON_STEPS):
+        values = [determinant.value_at_level(w, FINER) for w in roots]
+        roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
+    return roots
+
+
+def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
+    """Measurements of all methods at all sizes on all arms."""
+    measurements = []
+    for name, rod in ARMS.items():
+        judge = partial(_judged, exact_arm_spectrum(rod))
+        measurements += contest(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
+    return measurements
+
+
+def _judged(exact: list[complex], w: Complex) -> dict[str, float]:
+    """Error of eigenvalues, shape (modes,)."""
+    return {"error": relative_error(w, exact)}
+
+
+def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
+    """Table: for every method and arm the time and the error of the cheapest size that reaches TARGET."""
+    rows = [
+        {"method": method, "cells": " | ".join(_cheapest(own) for own in grouped(every, "case").values())}
+        for (method,), every in grouped(measurements, "method").items()
+    ]
+    return (
+        f"Leading {WANTED_MODES} eigenvalues of arms to {TARGET:.0e}: ms and error of the cheapest size that "
+        f"reaches this error, {plural(rounds, 'round')}. Cones have half the radius at their tips, the "
+        "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
+        "Errors are distances from the roots of D on elements for 16 times the |w|:\n\n"
+    ) + table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
+
+
+def _cheapest(measurements: Sequence[Measurement]) -> str:
+    """Table cell of one method on one arm."""
+    reached = [m for m in measurements if m.error <= TARGET]
+    if not reached:
+        return f"no better than {min(m.error for m in measurements):.0e}"
+    best = min(reached, key=lambda m: m.seconds)
+    return f"{1e3 * best.seconds:.2f} ms, {best.error:.0e}"
+
+
+def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
+    """As few elements as resolve the variation of the arm, with the given order."""
+    return ArmMesh(arm_mesh(rod, WANTED_MODES, COARSE).edges, order)
+
+
+def on_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
+    """Eigenvalues, shape (modes,), by a method for rods."""
+    return solve(arms.another(), size)
+
+
+def _krylov_schur(rod: Rod, order: int) -> Complex:
+    """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
+    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, WANTED_MODES, tight=True)
+    return leading(w, WANTED_MODES + 1)
+
+
+def _own(certify: bool, arms: UnsolvedArms) -> Complex:
+    return own_spectrum(arms.another(), certify)
+
+
+def contenders() -> list[Contender]:
+    """rodsweep with and without certificate, and Krylov-Schur at all orders."""
+    own = [
+        Contender(PLAIN, "", THIS_TOOL, partial(_own, False)),
+        Contender(PROVED, "", THIS_TOOL, partial(_own, True)),
+    ]
+    krylov = [
+        Contender(KRYLOV_SCHUR, str(order), PENCIL, partial(on_arm, _krylov_schur, order)) for order in ORDERS
+    ]
+    return own + krylov
