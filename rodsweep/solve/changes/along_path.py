@@ -15,8 +15,9 @@ from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable
 from .arm_crossings import CrossingSearch
+from .arm_path import ArmPath, path_problem
 from .leading_eigenvalue import Tracer
-from .path_problem import ArmPath, PathProblem, path_problem
+from .path_problem import PathProblem
 from .search_range import Reach
 from .unstable_modes import Counts, Crossing, Kind
 

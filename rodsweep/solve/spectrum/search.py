@@ -72,8 +72,8 @@ class JudgedCandidates:
         return self.verdict is not None and self.verdict.count.number is None, self.short
 
 
-def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod; a failure is a status, never an exception."""
+def solve_spectrum(rod: Rod, request: SpectrumRequest, wanted: int | None = None) -> Spectrum:
+    """The leading `request.modes` eigenvalues of a rod; a failure is a status. wanted: see `Search`."""
 
     def failed(cause: str) -> Spectrum:
         forget_all()
@@ -81,7 +81,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     if rod.uniform and not rod.standard:
         return _from_equivalent(rod, request)
-    return solved(lambda: Search(rod, request).outcome(), failed)
+    return solved(lambda: Search(rod, request, wanted).outcome(), failed)
 
 
 def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -105,12 +105,12 @@ class Search:
     def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
         self.problem = problem_of(rod, request.modes if request.certify else 0)
         self.request = request
-        self.modes = request.modes
+        self.wanted = self.modes = request.modes
         self.with_vectors = request.vector_nodes > 0
         bounded = self.problem.bounded
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.aim)
-        self.wanted = request.modes if wanted is None else wanted
+        self.request_more(request.modes if wanted is None else wanted)
         self.best: JudgedCandidates | None = None
         self.stalled = self.failures = 0
         self.lost: Verdict | None = None
