@@ -6,6 +6,7 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
+from rodsweep.determinant.arm.beside_axis import modes_beside_axis
 from rodsweep.determinant.arm.count import count_right_of
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull import hull_of
@@ -119,6 +120,16 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
     one_less = count_right_of(line, determinant, hull, found.w[2:], found.error[2:])
     assert (alone.number, fast.number, one_less.number) == (number,) * 3
     assert max(fast.nodes, alone.nodes) < 65  # without the dominant wave 84 and 135 in four cases
+
+
+@pytest.mark.parametrize("F", [4.5, 12.0])
+def test_modes_beside_the_axis_are_those_of_the_dense_eigenvalues(F):
+    rod = Rod(F=F, k1=1e5, k2=100.0, gamma3=1e-3, taper=0.117)
+    dense = eigenvalues(rod, 24)
+    beside = dense[(dense.imag > 0) & (dense.imag < 3000) & (np.abs(dense.real) < 0.3 * dense.imag)]
+    found = modes_beside_axis(ArmDeterminant(rod), 3000.0, np.empty(0, complex))
+    assert len(beside) == 1
+    np.testing.assert_allclose(found, beside, rtol=1e-7)
 
 
 @pytest.mark.parametrize("seed", range(6))
