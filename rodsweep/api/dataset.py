@@ -14,7 +14,7 @@ from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL, attribute_digests, variable_digest
-from ..results.file.recent import journalled_points, journalled_reasons, put_in, unfolded
+from ..results.file.recent import journalled_points, journalled_reasons, put_in, read_unfolded
 from ..results.file.validation import Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
@@ -33,7 +33,7 @@ def open_result(path: str | Path) -> xr.Dataset:
     Raises InputError if the file is no result, is damaged, or was changed by another program.
     """
     path = file_path(path, 'rs.open("RESULT.h5")')
-    return unfolded(path, lambda: _opened(path))
+    return read_unfolded(path, lambda: _opened(path))
 
 
 def file_path(given: object, example: str) -> Path:

@@ -64,7 +64,8 @@ def sweep(
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
     """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
-    first, last = indices[0] + 1, indices[-1] + 1
+    first = indices[0] + 1
+    last = indices[-1] + 1
     points = f"point {first}" if first == last else f"points {first} to {last}"
     trace = "".join(traceback.format_exception(error))
     warnings.warn(f"{points}: {described(error)}\n{trace}", RuntimeWarning, stacklevel=2)

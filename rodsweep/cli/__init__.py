@@ -24,7 +24,7 @@ import click  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
-from .launchers import speaks  # noqa: E402 - after the environment is set
+from .launchers import prints_messages  # noqa: E402 - after the environment is set
 from .page_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
@@ -47,7 +47,7 @@ def main() -> None:
     code = 0
     message = ""
     _prepare_streams()
-    if not speaks() and "run" not in sys.argv[1:2]:
+    if not prints_messages() and "run" not in sys.argv[1:2]:
         sys.exit(0)  # under a launcher one rank prints or draws; the others have nothing to do
     try:
         commands.main(standalone_mode=False)
@@ -75,7 +75,7 @@ def main() -> None:
         traceback.print_exc()
         code = BUG_STATUS
         message = "this is a bug; please report it with the lines above"
-    if message and speaks():
+    if message and prints_messages():
         with suppress(OSError):  # standard error may also be on the full disk
             click.echo(f"rodsweep: {_one_line(message)}", err=True)
     _drop_what_cannot_be_written()

@@ -33,7 +33,7 @@ NAMED = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
 
 
 def as_options(sentence: str) -> str:
-    """A sentence with the names of options in place of those of quantities."""
+    """A sentence in which names of quantities are replaced by names of options."""
     named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     named = named.replace("--segments", "--segment")
     return named if named.startswith("--") else f"--{named}"

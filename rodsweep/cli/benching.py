@@ -35,7 +35,6 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
         from ..bench.thresholds.study import thresholds_study
-        from .benching import machine, where_and_when
     except ModuleNotFoundError as error:
         raise EnvironmentIncomplete(
             f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"

@@ -9,7 +9,7 @@ from .. import __version__
 from ..errors import InputError
 from ..wording import counted
 from .arm_options import arm_options
-from .file_names import beside, followed, result_file
+from .file_names import link_target, result_file, with_ending
 from .launchers import rank_variables
 
 FILE = click.Path(path_type=Path)
@@ -76,7 +76,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from .run.running import CONTINUE
 
     output = result_file(output)
-    merged = merge_files(output, tuple(map(followed, shards)), plan_without_solver)
+    merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources = counted(len(shards), "file")
     click.echo(f"{output}: {merged.points} points from {sources}, {merged.missing} missing")
     if merged.kernels:
@@ -95,8 +95,8 @@ def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.recent import take_snapshot
 
-    output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
-    done, points = take_snapshot(followed(file), output)
+    output = result_file(output or with_ending(file, f"-snapshot{file.suffix}"))
+    done, points = take_snapshot(link_target(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
 
@@ -119,7 +119,7 @@ def show(file: Path, statuses: bool) -> None:
     from ..post.summary import show_summary
     from ..results.file.view import read_view
 
-    show_summary(read_view(followed(file)), statuses)
+    show_summary(read_view(link_target(file)), statuses)
 
 
 @commands.command()

@@ -17,17 +17,17 @@ def result_file(path: Path) -> Path:
         raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
     if path.suffix not in RESULTS:
         raise InputError(f"{path} is not a name for results, which are HDF5: it must end in {endings}")
-    return followed(path)
+    return link_target(path)
 
 
-def beside(file: Path, ending: str) -> Path:
+def with_ending(file: Path, ending: str) -> Path:
     """The name of `file` with a different ending, in the same folder; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
     return file.with_name(file.stem + ending)
 
 
-def followed(path: Path) -> Path:
+def link_target(path: Path) -> Path:
     """Target of a link, where the journal and the lock of a result are; all paths but links unchanged.
 
     InputError for a link that leads to itself and cannot be replaced.

@@ -9,6 +9,6 @@ def rank_variables() -> list[str]:
     return [os.environ[name] for name in names if name in os.environ]
 
 
-def speaks() -> bool:
+def prints_messages() -> bool:
     """Whether this process prints messages before MPI is started: rank 0, or a process without a launcher."""
     return next(iter(rank_variables()), "0") == "0"

@@ -20,7 +20,7 @@ from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
 from . import main
-from .launchers import speaks
+from .launchers import prints_messages
 
 OUTCOMES = 4096
 """Number of random outcomes, taken by the points in turn. Compression does not look back this far."""
@@ -70,7 +70,9 @@ class InstantSpectra(SpectrumTask):
 
 def note_memory(directory: Path) -> None:
     """Writes the peak memory of this rank so far into the directory."""
-    (directory / f"{FIRST_RANK if speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
+    (directory / f"{FIRST_RANK if prints_messages() else OTHER_RANKS}-{os.getpid()}").write_text(
+        str(peak_memory())
+    )
 
 
 def peak_memory() -> int:

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
-from .file_names import beside, followed
+from .file_names import link_target, with_ending
 from .portrait_rod import LEFT_OUT, rod_from, showing
 
 PORTS = click.IntRange(0, 65535)
@@ -74,9 +74,9 @@ def plot(
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
-    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
+    output = output or with_ending(files[0], ".gif" if what == "animation" else ".png")
     values = _values(at)
-    views = [section(read_view(followed(file)), values) for file in files]
+    views = [section(read_view(link_target(file)), values) for file in files]
     drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
     click.echo(drawn)
 
@@ -107,10 +107,10 @@ def export(
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
-    output = followed(output or beside(file, ".csv"))
+    output = link_target(output or with_ending(file, ".csv"))
     names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
     request = Request(table=table, columns=names, units=units, replace=replace)
-    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
+    click.echo(f"wrote {output}: {export_view(read_view(link_target(file)), output, request)}")
 
 
 @click.command()
@@ -122,9 +122,9 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
-    output = followed(output or beside(files[0], ".html"))
+    output = link_target(output or with_ending(files[0], ".html"))
     require_page(output, files)
-    click.echo(write_report([read_view(followed(file)) for file in files], output, with_shapes))
+    click.echo(write_report([read_view(link_target(file)) for file in files], output, with_shapes))
 
 
 @click.command()
@@ -133,7 +133,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 @click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option("--F-max", "F_max", type=float, default=200.0, show_default=True, help="Largest force.")
-@click.option("--accuracy", type=float, help="Relative accuracy; by default that of each task.")
+@click.option("--accuracy", type=float, help="Relative accuracy; by default the accuracy of each task.")
 @click.option(
     "-o", "--output", type=FILE, default=Path("portrait.png"), show_default=True,
     help="A .png, .pdf or .svg file, or a .html page with tables.",
@@ -150,7 +150,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     from ..tasks.rod_portrait import PortraitRequest, rod_results
     from ..tasks.running.in_memory import solved_view
 
-    output = followed(output)
+    output = link_target(output)
     require_portrait(output)
     parameters = {name: value for name, value in options.items() if name in PARAMETERS}
     material = {name: options[name] for name in ("law", "section", "profile")}
@@ -173,4 +173,4 @@ def explore(source: Path | None, port: int, is_opened: bool) -> None:
     """Explore a rod or an arm live on a local page, from the result FILE, a CONFIG, or an example."""
     from ..explore.starting import explore as start
 
-    start(None if source is None else followed(source), port, is_opened)
+    start(None if source is None else link_target(source), port, is_opened)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
-from .arm.axes import MOST_POINTS, moved_by, names_over
+from .arm.axes import MOST_POINTS, names_over, parameter_of_axis
 from .arm.section import ArmSection
 from .values import Axis, Number, Strict, Text, Values
 
@@ -96,7 +96,7 @@ class Axes(LinearAxes):
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes
-        return {name: given[axis].size for axis in self.over if (name := moved_by(axis))}
+        return {name: given[axis].size for axis in self.over if (name := parameter_of_axis(axis))}
 
     @property
     def numbers(self) -> dict[str, float]:

@@ -42,9 +42,9 @@ class BranchOptions(Strict):
         allowed = PARAMETERS[self.along].allowed
         for key, value in (("start", self.start), ("stop", self.stop)):
             if not allowed.contains(value) or not isfinite(value):
+                finite = " (not inf: a branch has finite ends)" if PARAMETERS[self.along].rigid else ""
                 raise ValueError(
-                    f"{key} = {value:g} is not allowed along {self.along}; allowed: {allowed.phrase}"
-                    + " (not inf: a branch has finite ends)" * bool(PARAMETERS[self.along].rigid)
+                    f"{key} = {value:g} is not allowed along {self.along}; allowed: {allowed.phrase}{finite}"
                 )
         if not self.start < self.stop:
             raise ValueError(f"start = {self.start:g} is not below stop = {self.stop:g}")

@@ -139,7 +139,7 @@ class PhaseDiagramConfig(LinearConfig):
         if "gamma1" in self.parameters.numbers and not (options.criticality or options.cycles):
             raise ValueError(
                 "parameters.gamma1 is given but the task phase_diagram does not use it without "
-                "phase_diagram.criticality: true or phase_diagram.cycles: true; remove it or set that"
+                "phase_diagram.criticality: true or phase_diagram.cycles: true; remove it or set one of these"
             )
         return self
 

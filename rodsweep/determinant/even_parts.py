@@ -27,8 +27,8 @@ SQUARES_BELOW = 0.1
 
 
 EvenSum = tuple[EvenFunctions, complex, float]
-"""(the even functions, the sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error: that of D from
-`even_parts`, else that of the sum)."""
+"""(even functions, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is the error
+of D if `even_parts` returns it, else the error of the sum."""
 
 
 @compiled

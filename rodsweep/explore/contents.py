@@ -5,7 +5,7 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.events import DocumentReady, Pan, Tap
-from bokeh.models import Button, Div
+from bokeh.models import Button
 
 from .controls import Changed, Controls
 from .look import colours, read, sheet
@@ -20,6 +20,7 @@ from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
 from .solving.diagrams import has_cycle_curves
 from .state import PageState
+from .texts import Sign, show_texts
 
 
 class PageContents:
@@ -39,8 +40,8 @@ class PageContents:
         self.branches = BranchPicture()
         self.diagram = DiagramPicture()
         self.numbers = NumbersTable()
-        self.working = Div(name="working", css_classes=["working"], stylesheets=[texts])
-        self.sharing = Sharing(self.cards, loaded)
+        self.sign = Sign(name="working")
+        self.sharing = Sharing(self.cards, self.beating.line, loaded)
         self.buttons = {
             kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])
             for kind, name, label in (
@@ -51,8 +52,6 @@ class PageContents:
                 ("stop", "stop", "Stop"),
             )
         }
-        self.buttons["stop"].update(visible=False, stylesheets=[widgets, sheet("late.css")])
-        self.numbers.root.stylesheets = [texts]
         for div in (card.message for card in self.cards):
             div.update(sizing_mode="stretch_width", stylesheets=[texts])
 
@@ -72,10 +71,11 @@ class PageContents:
             picture.card.figure.on_event(Tap, react["load"])
         # Add models last: a document subscribes only to events that its models already handle.
         for root in (
-            self.working, self.controls.root, self.numbers.root, self.sharing.root, *self.buttons.values(),
+            self.controls.root, self.sharing.root, *self.buttons.values(),
             *(card.root for card in self.cards),
         ):  # fmt: skip
             document.add_root(root)
+        show_texts(document, (self.sign, self.numbers.root))
         document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"

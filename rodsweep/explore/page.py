@@ -88,8 +88,8 @@ class Page:
         self._show_solving()
 
     def stop(self) -> None:
-        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures of an earlier rod
-        do not stay without a word.
+        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures that show an
+        earlier rod say so.
         """
         for kind in STOPPABLE:
             if kind in self.solving:
@@ -138,11 +138,11 @@ class Page:
         except InputError as error:
             self._refuse(str(error))
             return
-        self.contents.show_point(state, F)
         for kind in (*OF_TIP, *ON_REQUEST):
             self._drop(kind)
         for kind in AT_ONCE:
             self._ask(kind)
+        self.contents.show_point(state, F)
         self._show_solving()
         self._rest()
 
@@ -232,9 +232,9 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        shown = (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST)
-        self.contents.working.text = sign([kind for kind in shown if kind in self.solving], self.progress)
-        self.contents.buttons["stop"].visible = any(kind in self.solving for kind in STOPPABLE)
+        kinds = [kind for kind in (*AT_ONCE, *WHEN_IDLE, *ON_REQUEST) if kind in self.solving]
+        is_stoppable = any(kind in STOPPABLE for kind in kinds)
+        self.contents.sign.update(text=sign(kinds, self.progress), is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

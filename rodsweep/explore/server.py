@@ -4,11 +4,14 @@ import asyncio
 import signal
 import socket
 import sys
+from collections.abc import Awaitable
 from typing import Any
 
 from bokeh.application import Application
 from bokeh.application.handlers import FunctionHandler
 from bokeh.document import Document
+from bokeh.document.events import DocumentPatchedEvent
+from bokeh.server.connection import ServerConnection
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
 from tornado.httpserver import HTTPServer
@@ -38,6 +41,34 @@ class UndelayedServer(HTTPServer):
         super().handle_stream(stream, address)
 
 
+class BatchConnection(ServerConnection):
+    """A connection that sends all changes of a callback in one message, not in one message each."""
+
+    def __init__(self, *arguments: Any):
+        super().__init__(*arguments)
+        self._changes: list[DocumentPatchedEvent] = []
+
+    def send_patch_document(self, event: DocumentPatchedEvent) -> Awaitable[None]:
+        """Queues a change. The session awaits the results after the callback; the first sends all changes."""
+        self._changes.append(event)
+        return self._send_all()
+
+    async def _send_all(self) -> None:
+        changes, self._changes = self._changes, []
+        if changes:
+            await self._socket.send_message(self.protocol.create("PATCH-DOC", changes))
+
+
+class BatchTornado(BokehTornado):
+    """Bokeh's application with a `BatchConnection` for each page."""
+
+    def new_connection(self, *arguments: Any) -> ServerConnection:
+        """Makes the connection of a page that opens."""
+        connection = BatchConnection(*arguments)
+        self._clients.add(connection)
+        return connection
+
+
 class ExploreServer:
     """Server and solvers of the page. port: 0 for any free port.
 
@@ -51,7 +82,7 @@ class ExploreServer:
         self.port: int = sockets[0].getsockname()[1]
         self.solvers = Solvers()
         application = Application(FunctionHandler(self._open))
-        tornado = BokehTornado(
+        tornado = BatchTornado(
             {"/": application},
             extra_websocket_origins=[f"{host}:{self.port}" for host in HOSTS],
             unused_session_lifetime_milliseconds=UNUSED_SESSION,
@@ -67,7 +98,7 @@ class ExploreServer:
         return f"http://{ADDRESS}:{self.port}/"
 
     def start(self) -> None:
-        """Starts the solvers; the server answers browsers once the event loop runs."""
+        """Starts the solvers. The server answers browsers once the event loop runs again."""
         self.server.start()
         self.solvers.warm_up()
 
@@ -106,8 +137,8 @@ async def serve(state: PageState, stored: StoredResults | None, port: int, is_op
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stopped.set)
     server = ExploreServer(state, stored, port)
-    server.start()
     print(f"{server.url} shows the page; Ctrl-C ends it", flush=True)
+    server.start()
     if is_opened:
         import webbrowser
 

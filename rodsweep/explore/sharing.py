@@ -5,7 +5,9 @@ from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
 
-from bokeh.models import Button, Column, CustomJS, Div, FileInput, Row, Select
+from bokeh.core.properties import String
+from bokeh.model import DataModel
+from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer, Row, Select
 
 from ..config.document.parsing import parse
 from ..config.document.reading import validated
@@ -17,12 +19,12 @@ from .stored import state_of
 
 SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Code of the browser that writes the state into the address."""
-SAVE = 'download(new Blob([yaml.tags[0]], {type: "application/yaml"}), "explore.yaml")'
+SAVE = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
 GIVE_FILM = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
-COPY = "navigator.clipboard.writeText(source.tags[0])"
+COPY = "navigator.clipboard.writeText(lines.{})"
 TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks to choose from for the config; the first is the default."""
 FILM = """# the film of the arm:
@@ -31,32 +33,43 @@ FILM = """# the film of the arm:
 """
 
 
-class Sharing:
-    """Texts and buttons for sharing. loaded: callback for a config that the user loads, with its text."""
+class SharedLines(DataModel):
+    """What the buttons copy and save, up to date with every change; no part of the layout."""
 
-    def __init__(self, cards: Sequence[Card], loaded: Callable[[str], None]):
+    config = String(default="")
+    python = String(default="")
+
+
+class Sharing:
+    """Texts and buttons for sharing.
+
+    arm: the animated line. loaded: callback for a config that the user loads, with its text.
+    """
+
+    def __init__(self, cards: Sequence[Card], arm: GlyphRenderer, loaded: Callable[[str], None]):
         self._loaded = loaded
         self._state = PageState()
         widgets = sheet("widgets.css")
         texts = sheet("text.css")
         self.address, self.yaml, self.python = (
-            Div(name=name, tags=[""], sizing_mode="stretch_width", stylesheets=[texts])
+            Div(name=name, sizing_mode="stretch_width", stylesheets=[texts])
             for name in ("address", "yaml", "python")
         )
+        self.lines = SharedLines()
         self.task = Select(
             title="Config of the task", name="task", options=TASKS, value=TASKS[0], stylesheets=[widgets]
         )
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
-        save.js_on_click(CustomJS(args={"yaml": self.yaml}, code=read("download.js") + SAVE))
+        save.js_on_click(CustomJS(args={"lines": self.lines}, code=read("download.js") + SAVE))
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._take)
         copies = [
-            Button(label=f"Copy the {what}", name=f"copy_{source.name}", stylesheets=[widgets])
-            for what, source in (("config", self.yaml), ("Python lines", self.python))
+            Button(label=f"Copy the {what}", name=f"copy_{name}", stylesheets=[widgets])
+            for what, name in (("config", "yaml"), ("Python lines", "python"))
         ]
-        for button, source in zip(copies, (self.yaml, self.python), strict=True):
-            button.js_on_click(CustomJS(args={"source": source}, code=COPY))
+        for button, name in zip(copies, ("config", "python"), strict=True):
+            button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY.format(name)))
         self.film = Div(name="film", tags=[""], visible=False)
         self.film.js_on_change(
             "tags", CustomJS(args={"film": self.film}, code=read("download.js") + GIVE_FILM)
@@ -64,23 +77,22 @@ class Sharing:
         self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=SHOW_ADDRESS))
         self.root = Column(
             self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
-            *_picture_buttons(cards), self.film, name="sharing", sizing_mode="stretch_width",
+            *_picture_buttons(cards, arm), self.film, name="sharing", sizing_mode="stretch_width",
         )  # fmt: skip
 
     def show(self, state: PageState) -> None:
-        """Takes the address, config and Python lines of a state; `write` shows them."""
+        """Takes the state; `write` shows it."""
         self._state = state
-        self.address.tags = [state.address()]
-        self.python.tags = [state.python()]
-        self.yaml.tags = [self._config()]
+        self.lines.update(config=self._config(), python=state.python())
 
     def write(self) -> None:
         """Writes the texts of the latest state. Each is a new layout of the page, for which pictures that
-        follow a slider must not wait.
+        follow a slider must not wait. Browsers refuse to change an address more than six times a second.
         """
-        self.address.text = f'<a href="?{escape(self.address.tags[0])}">This page as an address</a>'
-        for shown in (self.python, self.yaml):
-            shown.text = f"<pre>{escape(shown.tags[0])}</pre>"
+        address = self._state.address()
+        self.address.update(text=f'<a href="?{escape(address)}">This page as an address</a>', tags=[address])
+        for shown, lines in ((self.python, self.lines.python), (self.yaml, self.lines.config)):
+            shown.text = f"<pre>{escape(lines)}</pre>"
 
     def give_film(self, gif: bytes) -> None:
         """Lets the browser save a film."""
@@ -88,7 +100,7 @@ class Sharing:
         self.film.tags = [""]  # a film of half a megabyte need not stay in the page
 
     def _choose_task(self, attribute: str, old: str, new: str) -> None:
-        self.yaml.tags = [self._config()]
+        self.lines.config = self._config()
         self.write()
 
     def _config(self) -> str:
@@ -100,7 +112,7 @@ class Sharing:
         self._loaded(b64decode(new).decode(errors="replace"))
 
 
-def _picture_buttons(cards: Sequence[Card]) -> list[Select | Row]:
+def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
     """A menu of pictures, and a button for each file format."""
     widgets = sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
@@ -110,7 +122,8 @@ def _picture_buttons(cards: Sequence[Card]) -> list[Select | Row]:
     for kind in ("png", "svg"):
         button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])
         code = read("download.js") + read("picture.js")
-        button.js_on_click(CustomJS(args={"figures": figures, "choice": choice, "type": kind}, code=code))
+        arguments = {"figures": figures, "choice": choice, "type": kind, "animated": arm}
+        button.js_on_click(CustomJS(args=arguments, code=code))
         buttons.append(button)
     return [choice, Row(*buttons)]
 

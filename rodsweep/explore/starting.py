@@ -4,7 +4,7 @@ import asyncio
 from pathlib import Path
 
 from ..errors import InputError
-from .state import PageState
+from .solving.forks import prepare
 
 
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
@@ -19,7 +19,9 @@ def explore(source: Path | None, port: int, is_opened: bool) -> None:
         raise InputError(
             "the page needs bokeh, which is not installed; pip install 'rodsweep[explore]' brings it"
         ) from None
+    prepare()
     from .server import serve
+    from .state import PageState
     from .stored import opened
 
     state, stored = (PageState(), None) if source is None else opened(source)

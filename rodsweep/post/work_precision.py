@@ -25,7 +25,7 @@ MIN_DRAWN_ERROR = 1e-17
 PANEL_SIZE = 3.6
 """Width and height of a panel, in inches."""
 PANEL_TITLE_WIDTH = 36
-"""Largest length of a line of its title, in characters."""
+"""Largest length of a line of a panel's title, in characters."""
 
 
 def draw_work_precision(measured: Table, xlabel: str, target: float | None, output: Path) -> None:

@@ -54,7 +54,7 @@ CURVES_OF_ARMS_SECONDS = 4.5
 """Time of the boundaries of a diagram of arms that are not uniform, with some 100 points in all: 3.3, 4.6 and
 5.3 s in diagrams of cones, rubber and rubber segments. It hardly depends on the number of rows."""
 CRITICALITY_OF_ARMS_SECONDS = 2.5
-"""Time of the normal forms along the Hopf curves of such a diagram: 0.7 to 3.8 s for some 50 points."""
+"""Time of the normal forms along the Hopf curves of a diagram of arms: 0.7 to 3.8 s for some 50 points."""
 HOPF_SEARCH_MS = 25.0
 """Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
@@ -145,7 +145,8 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Cost of spectra along stretches, from that of points solved alone; standard: uniform, linear rods."""
+    """Cost of spectra along stretches, from the cost of points solved alone; standard: uniform, linear
+    rods."""
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
     each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS

@@ -120,7 +120,8 @@ def each_point(points: Points, clause: str) -> str:
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """Parts of the rod that move for the given values of k1, k2 and gamma3, each of any shape."""
+    """What `check` lists: each deformation and the rotational drag, and whether the given values, of any
+    shape, include it."""
     dragged = bool((columns["gamma3"] > 0).any())
     return [
         *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
@@ -176,7 +177,8 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def _profile(config: Config, profile: Profile) -> str:
-    """A profile in words; that of a cone in SI units is made by rodsweep, from the drag at each radius."""
+    """A profile in words. The profile of a cone in SI units is made by rodsweep, from the drag at each
+    radius."""
     if config.stated_build is None and config.parameters.arm is not None and config.parameters.arm.tapering:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)

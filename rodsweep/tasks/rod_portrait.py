@@ -106,7 +106,7 @@ def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: fl
 
 
 def mode_forces(thresholds: View) -> dict[str, float]:
-    """Force of the first threshold of each kind at which the leading mode is drawn, by kind."""
+    """Forces at which the leading mode is drawn, by kind of threshold: the first threshold of each kind."""
     kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
     found = {}
     for kind in MODE_KINDS:

@@ -69,7 +69,8 @@ def _in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> 
 
 
 def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
-    """The arm with one drag as a rod without load, in the plane of its height; build: as in `plane_rods`."""
+    """The arm as a rod without load, with the given drag, in the plane of its height. build: as in
+    `plane_rods`."""
     own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
     return Rod(F=0.0, **own, build=build or arm.build_with(drag))
 

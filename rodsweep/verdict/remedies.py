@@ -14,9 +14,9 @@ LEAST_EXCESS = 1.1
 """Ratio of value to limit below which four digits are printed, because two digits could read 1.0."""
 
 
-def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
+def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
     """Headline on the effect furthest beyond its limit, then a sentence on each further kind of effect."""
-    first, *others = _one_of_a_kind(assessment.those(Validity.does_not_apply))
+    first, *others = _one_of_a_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
     says = [
@@ -30,7 +30,7 @@ def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
     return says
 
 
-def kinds_in_words(effects: Iterable[Effect]) -> str:
+def effect_kinds_in_words(effects: Iterable[Effect]) -> str:
     """Kinds of neglected effects, joined by "and"."""
     return " and ".join(dict.fromkeys(map(kind_of, effects)))
 

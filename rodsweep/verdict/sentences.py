@@ -9,7 +9,7 @@ from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, Span
 from .load import Load, rounded, rounded_percent
 from .planes import PlaneOfMotion, Planes
-from .remedies import does_not_apply, kinds_in_words
+from .remedies import effect_kinds_in_words, not_applicable_sentences
 from .validity import Assessment
 
 
@@ -18,12 +18,12 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     plane = planes.first
     if plane.found.failures:
         return ["The thresholds could not be found with every drag: " + "; ".join(plane.found.failures) + "."]
-    beyond = assessment.those(Validity.does_not_apply)
+    beyond = assessment.effects_with(Validity.does_not_apply)
     if not beyond:
         return [*_verdict(plane), *_other_plane(planes, "is")]
-    headline = does_not_apply(plane.arm, assessment)
+    headline = not_applicable_sentences(plane.arm, assessment)
     if assessment.of_thresholds == Validity.does_not_apply:
-        return [*headline, *_without(plane, kinds_in_words(beyond)), *_other_plane(planes, "would be")]
+        return [*headline, *_without(plane, effect_kinds_in_words(beyond)), *_other_plane(planes, "would be")]
     flutter = plane.found.force(Kind.hopf)
     known = "No flutter was found" if flutter is None else f"Flutter, at {_where(plane, flutter)},"
     return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]

@@ -9,7 +9,9 @@ from ..model.units import compact
 
 def shape_words(arm: SlenderArm) -> str:
     """Shape and material of an arm, like "a cone of rubber"."""
-    shape = "an arm" if not arm.shape.varies else "a cone" if arm.taper != 1 else "an arm of segments"
+    shape = "an arm"
+    if arm.shape.varies:
+        shape = "a cone" if arm.taper != 1 else "an arm of segments"
     return shape if arm.law == LINEAR.law else f"{shape} of rubber"
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from math import floor, isnan, log10, nan
+from math import ceil, floor, isnan, log10, nan
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import (
@@ -69,7 +69,7 @@ class Assessment:
         """Validity of the model for the verdict on the load."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
-    def those(self, validity: Validity) -> list[Effect]:
+    def effects_with(self, validity: Validity) -> list[Effect]:
         """Effects with the given validity by decreasing excess, without effects on cycles only."""
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(counted, key=lambda effect: -float(effect.excess))
@@ -133,4 +133,4 @@ def rounded_down(value: float) -> float:
 def rounded_up(value: float) -> float:
     """Rounds a positive number up to DIGITS_OF_FACTORS digits."""
     unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
-    return -floor(-value / unit) * unit
+    return ceil(value / unit) * unit

@@ -14,6 +14,7 @@ from surveyed import few, survey_only
 
 import rodsweep as rs
 from rodsweep.errors import InputError
+from rodsweep.explore.pictures.card import STABLE
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.state import PageState
 
@@ -82,11 +83,48 @@ def test_the_count_is_certified_in_the_picture(browser):
     assert browser.model("spectrum_figure", "title.text") == "2 unstable modes, certified"
 
 
-def test_the_animation_advances(browser):
+VIEW = "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('beating_figure'))"
+
+
+def test_the_animation_advances_without_painting_the_figure_again(browser):
     shape = "return Array.from(Bokeh.documents[0].get_model_by_name('arm_source').data.y)"
-    first = browser.run(shape)
+    first = browser.run(f"window.paints = 0; {VIEW}.repainted.connect(() => window.paints++); {shape}")
     assert len(first) > 10
     browser.wait_for(f"{shape.removeprefix('return ')}[{len(first) - 1}] != {first[-1]!r}")
+    assert browser.run("return window.paints") == 0
+    drawn = f"{VIEW}.canvas_view.overlays.canvas.nextSibling"
+    blue = f"const image = {drawn}.getContext('2d').getImageData(0, 0, {drawn}.width, {drawn}.height)"
+    assert (
+        browser.run(f"{blue}; return image.data.filter((byte, i) => i % 4 == 2 && byte > 150).length") > 100
+    )
+
+
+def test_a_saved_picture_has_the_arm_that_is_animated(browser):
+    browser.run(
+        "Bokeh.documents[0].get_model_by_name('picture').value = 'beating';"
+        "HTMLAnchorElement.prototype.click = function () { window.picture = this.href };"
+        "document.querySelector('details').open = true"
+    )
+    button = "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('svg_button')).el.shadowRoot"
+    browser.wait_for(f"{button}.querySelector('button')")
+    browser.run(f"{button}.querySelector('button').click()")
+    browser.wait_for("window.picture")
+    browser.run("fetch(window.picture).then((file) => file.text()).then((text) => window.drawn = text)")
+    browser.wait_for("window.drawn")
+    assert STABLE in browser.run("return window.drawn")
+
+
+def test_all_of_an_answer_comes_in_one_message(browser):
+    browser.run(
+        "const page = Bokeh.documents[0], apply = page.apply_json_patch.bind(page); window.patches = [];"
+        "page.apply_json_patch = (patch, ...rest) => {"
+        "  window.patches.push(patch.events.map((event) => page.get_model_by_id(event.model?.id)?.name));"
+        "  apply(patch, ...rest) }"
+    )
+    change(browser, "F_field", "41")
+    solved(browser)
+    [answer] = [names for names in browser.run("return window.patches") if "spectrum_source" in names]
+    assert {"spectrum_source", "mode_source", "numbers", "working"} <= set(answer)
 
 
 def test_a_click_in_the_diagram_moves_the_point_and_everything_follows(browser):
@@ -98,7 +136,7 @@ def test_a_click_in_the_diagram_moves_the_point_and_everything_follows(browser):
     assert (F, k2) == (pytest.approx(55, abs=1), pytest.approx(300, rel=0.1))
     answer = rs.Rod(F=F, k1=1e4, k2=k2, gamma3=0.01).spectrum()
     assert numbers(browser)["growth_rate"] == written(answer.growth_rate)
-    assert browser.run("return location.search").startswith(f"?tab=rod&F={F:g}&")
+    browser.wait_for(f"location.search.startsWith('?tab=rod&F={F:g}&')")  # written when the page has rested
 
 
 def test_a_click_on_the_thresholds_moves_the_load(browser):

@@ -92,7 +92,7 @@ def test_an_answer_to_another_place_of_the_tip_is_not_shown():
     done(Reply("answer", answer_to(question), 0.0))
     run_callbacks(page.document)
     assert len(page.contents.beating.motion.data["x"]) == 0
-    assert page.contents.working.text == "solving motion ..."
+    assert page.contents.sign.text == "solving motion ..."
 
 
 @pytest.mark.parametrize("place", [(40.0, -3.0), (0.0, 0.0), (-1.0, 0.0)])
@@ -142,4 +142,4 @@ def test_a_rod_without_a_cycle_has_no_film():
     page.solve("film")
     run_callbacks(page.document)
     assert "no cycle to film" in page.contents.beating.card.message.text
-    assert page.contents.working.text == ""
+    assert page.contents.sign.text == ""

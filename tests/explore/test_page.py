@@ -82,7 +82,7 @@ def test_pictures_and_numbers_are_those_of_the_solver():
     shapes = page.contents.beating.shapes.data
     nodes = int(shapes["number"][0])
     assert np.max(np.reshape(shapes["y"], (-1, nodes))[:, -1]) == pytest.approx(cycle.tip_y_max, rel=1e-2)
-    assert page.contents.working.text == ""
+    assert page.contents.sign.text == ""
 
 
 def test_a_change_of_the_load_asks_no_thresholds_again():
@@ -121,7 +121,7 @@ def test_a_bad_value_asks_nothing_and_has_its_sentence():
 
 def test_the_sign_names_what_is_being_solved_until_it_is_answered():
     page = page_with(ImmediateSolvers(("spectrum", "thresholds")))
-    assert page.contents.working.text == "solving cycle, growth rates ..."
+    assert page.contents.sign.text == "solving cycle, growth rates ..."
 
 
 def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
@@ -133,7 +133,7 @@ def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
     question, done = next(each for each in kept if each[0].kind == "spectrum")
     done(Reply("answer", answer_to(question), 0.0))
     run_callbacks(page.document)
-    assert "spectrum" in page.contents.working.text
+    assert "spectrum" in page.contents.sign.text
     assert len(page.contents.spectrum.source.data["growth"]) > 0
 
 
@@ -175,10 +175,11 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
     run_callbacks(page.document, seconds=True)
     page.change({"F": "61"})
     sharing = page.contents.sharing
-    assert "F=61" in sharing.address.tags[0]
-    assert "F: 61" in sharing.yaml.tags[0]
-    assert "61" not in sharing.yaml.text
+    assert "F: 61" in sharing.lines.config
+    assert "F=61" in sharing.lines.python
+    assert "61" not in sharing.yaml.text + sharing.python.text + sharing.address.tags[0]
     run_callbacks(page.document, seconds=True)
+    assert "F=61" in sharing.address.tags[0]
     assert "F: 61" in sharing.yaml.text
     assert "F=61" in sharing.address.text
 
@@ -219,16 +220,16 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
 
     solvers = Halfway()
     page = page_with(solvers)
-    stop = page.contents.buttons["stop"]
+    sign = page.contents.sign
     assert page.contents.buttons["cycles"].visible
     run_callbacks(page.document)
-    assert not stop.visible
+    assert not sign.is_stoppable
     page.solve("cycles")
     run_callbacks(page.document)
-    assert page.contents.working.text == "solving folds and torus points (curve 1 of &lt;2&gt;, 50%) ..."
-    assert stop.visible
+    assert page.contents.sign.text == "solving folds and torus points (curve 1 of &lt;2&gt;, 50%) ..."
+    assert sign.is_stoppable
     page.stop()
-    assert (page.contents.working.text, stop.visible, solvers.dropped) == ("", False, ["cycles"])
+    assert (sign.text, sign.is_stoppable, solvers.dropped) == ("", False, ["cycles"])
 
 
 def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
@@ -263,8 +264,8 @@ def test_a_failure_takes_the_sign_and_the_button_away():
     page = page_with(Failing())
     page.solve("cycles")
     run_callbacks(page.document)
-    assert page.contents.working.text == ""
-    assert not page.contents.buttons["stop"].visible
+    assert page.contents.sign.text == ""
+    assert not page.contents.sign.is_stoppable
     assert page.contents.diagram.card.message.text == "the solver ended unexpectedly"
 
 
@@ -298,4 +299,4 @@ def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
     for picture in (contents.branches, contents.diagram, contents.beating):
         assert picture.card.message.text == STOPPED
         assert not picture.card.figure.visible
-    assert page.contents.working.text == ""
+    assert page.contents.sign.text == ""

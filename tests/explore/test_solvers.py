@@ -148,6 +148,17 @@ def test_a_solver_that_dies_says_so_and_the_next_question_is_answered(solver):
     assert replies[1].outcome == "answer"
 
 
+def test_what_is_forked_has_started_neither_mpi_nor_petsc_nor_threads():
+    lines = [
+        "import os, sys",
+        "import rodsweep.explore.solving.worker",
+        "print(*{'mpi4py.MPI', 'petsc4py.PETSc'} & set(sys.modules), len(os.listdir('/proc/self/task')))",
+    ]
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}  # as the command sets it
+    argv = [sys.executable, "-c", "\n".join(lines)]
+    assert subprocess.run(argv, env=environment, capture_output=True, text=True, check=True).stdout == "1\n"
+
+
 def test_closing_ends_all_processes():
     solvers = Solvers()
     solvers.warm_up()

@@ -158,7 +158,7 @@ def test_curves_of_folds_are_solved_by_their_button_only():
     assert "cycles" not in asked(solvers)
     page.solve("cycles")
     assert "cycles" in asked(solvers)
-    assert "folds and torus points" in page.contents.working.text
+    assert "folds and torus points" in page.contents.sign.text
 
 
 OF_ARM = "length: [8 cm, 10 cm], radius: 5 mm, young: 100 kPa, viscosity: 12 Pa s"

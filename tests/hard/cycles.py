@@ -11,7 +11,7 @@ from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle.accuracy.refined_cycle import RefinedCycle
+from rodsweep.solve.cycle.accuracy.cycle_verdict import RefinedCycle
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import Neighbour, followed_cycle

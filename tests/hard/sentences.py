@@ -667,7 +667,7 @@ def _sizes(page, v, own):
     found = ranges(page, "^period: RANGE tau2; largest y of the tip: RANGE L", v["period"], v["tip_y_max"])
     found += ranges(page, "^period: RANGE tau1", v["period_tau1"]) if "period_tau1" in v else []
     ratio = v["frequency"] / v["linear_frequency"]
-    of_mode = "^frequency RANGE rad/tau2, over that of the leading mode RANGE"
+    of_mode = "^frequency RANGE rad/tau2, RANGE times the frequency of the leading mode"
     found += ranges(page, of_mode, v["frequency"], ratio)
     tips = [v[f"tip_{name}"] for name in ("x_min", "x_max", "theta_max")]
     found += ranges(page, "least x RANGE L, largest x RANGE L, largest theta RANGE rad", *tips)

@@ -12,13 +12,13 @@ from rodsweep.discretization.stress.balance import balance, balance_change
 from rodsweep.discretization.stress.jacobian import jacobian
 from rodsweep.model.algebra import SE2, SE3
 from rodsweep.model.compiled.digest import digest, kernel_of
-from rodsweep.model.compiled.unrolling import OverAlgebra
+from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
 from rodsweep.model.rod import Rod
 
 ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), mesh(2, 3)
 SPACE = ROD.changed(gamma1=0.7).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {SE2: ROD.changed(gamma1=0.7).material, SE3: SPACE}
-HEAD = "from rodsweep.model.compiled.unrolling import OverAlgebra\n\n@OverAlgebra\n"
+HEAD = "from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra\n\n@UnrolledOverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 
@@ -51,7 +51,7 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
     assert np.abs(out[0] - out[1]).max() <= 1e-13 * np.abs(out[1]).max()
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def decided(g, x):
     total = 0.0
     both = [[x[a] * x[b] if g.forward[a][b] else 0.0 for b in g.components] for a in g.components]
@@ -63,7 +63,7 @@ def decided(g, x):
     return total
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def left_early(g, x):
     for a in g.components:
         if x[a] > 0:
@@ -95,8 +95,8 @@ def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text
     for k, body in enumerate(("    return x[0]", text)):
         path = tmp_path / f"{k}.py"
         path.write_text(
-            "from rodsweep.model.compiled.unrolling import OverAlgebra\n\n"
-            f"@OverAlgebra\ndef f(g, x):\n{body}\n"
+            "from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra\n\n"
+            f"@UnrolledOverAlgebra\ndef f(g, x):\n{body}\n"
         )
         spec = importlib.util.spec_from_file_location("of_a_test", path)
         module = importlib.util.module_from_spec(spec)

@@ -254,7 +254,7 @@ THREE = (FORCES, [1e4, 1e5], [1e2], [1e-2], [1.0, 0.5])
         (
             make_view((FORCES, *THREE[2:3] * 4), [0] * 5, **WORDS),
             {},
-            "and only F varies; leave out --what maps",
+            "and only F varies; without --what maps",
         ),
         (make_view(([50.0], *THREE[2:3] * 4), [0], **WORDS), {}, "and no parameter varies"),
         (scattered(), {}, "no grid over F and k2"),

@@ -21,6 +21,14 @@ from .printing import Printed, brief_html, brief_text, first_lines, whole_html, 
 
 EIGENVALUE = ("growth_rate", "frequency")
 """Names of the real and the imaginary part of an eigenvalue."""
+NOT_PRINTED = ("status", "seconds")
+"""Variables without a row of their own: the heading has the status, and the time depends on the machine."""
+SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
+"""SI units, by which variables of an arm are recognised beside variables in units of the rod."""
+TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
+"""Variables with the total number of items of a list, stored or not, by the name of the list."""
+IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
+"""Lists printed in full. Of every other list only the number of rows is printed."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -183,16 +191,6 @@ class Answer:
                 if name not in IN_FULL and (rows := len(columns[0].values))
             },
         )
-
-
-NOT_PRINTED = ("status", "seconds")
-"""Variables without a row of their own: the heading has the status, and the time depends on the machine."""
-SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
-"""SI units, by which variables of an arm are recognised beside variables in units of the rod."""
-TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
-"""Variables with the total number of items of a list, stored or not, by the name of the list."""
-IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
-"""Lists printed in full. Of every other list only the number of rows is printed."""
 
 
 @cache

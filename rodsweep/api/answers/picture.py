@@ -162,8 +162,8 @@ def plot(
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
-    several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []
-    if not several:
+    several = [data] if isinstance(data, Drawable) else data
+    if not isinstance(several, Sequence) or not several:
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
     values = choices_of(at)
     views = [section(view_for(one, EXAMPLE), values) for one in several]

@@ -44,7 +44,7 @@ class Printed:
     totals: Mapping[str, int]
 
     @property
-    def ends(self) -> Iterator[str]:
+    def closing_lines(self) -> Iterator[str]:
         """Lines below the tables: lists that are not printed, and variables without a value."""
         if self.named:
             yield "; ".join(f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.named.items())
@@ -97,7 +97,7 @@ def whole_text(printed: Printed) -> str:
             for number, block in enumerate(blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
-    return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.ends))]))
+    return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.closing_lines))]))
 
 
 def whole_html(printed: Printed) -> str:
@@ -110,7 +110,7 @@ def whole_html(printed: Printed) -> str:
         heads = [tuple(column.name for column in columns), tuple(map(_unit, columns))]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
         parts.append(_html_table(heads, rows_of) if rows_of else "")
-    return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.ends)])
+    return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
 
 
 def _heads(printed: Printed) -> list[str]:

@@ -66,7 +66,9 @@ class _Run:
         self.stop = stop
         self.options = options
         self.shard = options.shard
-        self.began, self.started, self.seconds = time.monotonic(), provenance.now(), 0.0
+        self.began = time.monotonic()
+        self.started = provenance.now()
+        self.seconds = 0.0
         self.log = Log(output, team.rank, self._where, options.strict)
         self.solver = guarded(job.solver(), job.layout, self.log)
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])

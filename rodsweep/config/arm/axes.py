@@ -60,7 +60,7 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))
 
 
-def moved_by(axis: str) -> str:
+def parameter_of_axis(axis: str) -> str:
     """The only parameter that an axis of an arm's grid changes; "" for several parameters or none."""
     return axis if axis in PARAMETERS else MOVES.get(axis, "")
 

@@ -11,6 +11,9 @@ from ...model.arm.quantities import RELATIVE, UNITS
 from ...model.units import in_si, share_of_flutter, split, written_in
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
+ENDS = ("start", "stop")
+"""Keys of the ends of a range."""
+
 
 def as_quantities(value: Any, info: ValidationInfo) -> Axis:
     """A quantity, or a list or range of quantities, as an Axis in SI units; ValueError otherwise."""
@@ -51,7 +54,7 @@ def _read(name: str, value: Any) -> float:
         raise ValueError(str(error)) from None
 
 
-def with_shares(given: Mapping[str, Any]) -> dict[str, Any]:
+def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     """Keys of an arm, with a load relative to flutter moved to its key in RELATIVE.
 
     Raises ValueError if only a part of the load is relative, or if both keys are given.
@@ -76,10 +79,6 @@ def with_shares(given: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-ENDS = ("start", "stop")
-"""Keys of the ends of a range."""
-
-
 def _shares(value: Any) -> tuple[list[float | None], bool]:
     """(numbers of a load as multiples of the flutter load, None if not relative; whether any is relative)."""
     shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
@@ -90,7 +89,9 @@ def as_drags(value: Any) -> Axis:
     """Axis of indices in DRAGS from a drag's name, a list of names, or "range"; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
-    names = list(DRAGS) if value == RANGE_OF_DRAG else value if isinstance(value, list | tuple) else [value]
+    names = value if isinstance(value, list | tuple) else [value]
+    if value == RANGE_OF_DRAG:
+        names = list(DRAGS)
     if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
         raise ValueError(
             f"{short(value)} is not a drag; write {RANGE_OF_DRAG}, one of {', '.join(DRAGS)}, or a list of "

@@ -17,7 +17,7 @@ from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..material import LawName, SectionName
 from ..values import Axis, Strict, Values
 from .axes import AXIS_OF, LOAD_AXES, SECTION, UNCOVERED, UncoveredArm
-from .quantities import Drags, Quantities, drags_written, with_shares
+from .quantities import Drags, Quantities, drags_written, with_relative_load
 from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
@@ -76,7 +76,7 @@ class ArmSection(Strict):
     @classmethod
     def _with_shares(cls, given: Any) -> Any:
         """Moves a load relative to flutter to its own key, and adds the length of segments."""
-        return with_length(with_shares(given)) if isinstance(given, dict) else given
+        return with_length(with_relative_load(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
     def _has_length_and_modulus(self) -> "ArmSection":

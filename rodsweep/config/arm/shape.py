@@ -88,7 +88,8 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
 
 
 def refuse_compressible(arm: "ArmSection", section: str) -> None:
-    """ValueError where the section of the material swells and Poisson's ratio is not that of rubber."""
+    """Raises ValueError if the section of the material swells but Poisson's ratio is not 0.5, as of
+    rubber."""
     ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
     wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
     if section == "swelling" and wrong is not None:

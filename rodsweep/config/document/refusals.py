@@ -42,7 +42,8 @@ def sentence_of(config: type[Config], problem: Any) -> str:
         return f"{key}: {text}" if key and not text.startswith(key) else text
     if kind == "invalid_key":
         return f"{short(value)} is not a key; keys are words"
-    field = _section(config, location[:-1]).model_fields.get("".join(location[-1:]))
+    key_alone = location[-1] if location else ""
+    field = _section(config, location[:-1]).model_fields.get(key_alone)
     allowed = what_is_allowed(field) if field else problem["msg"]
     return f"{key} = {short(value)} is not allowed; it should be {allowed}"
 

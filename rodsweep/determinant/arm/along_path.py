@@ -45,7 +45,7 @@ ARM_DOUBLES = ArmDoubleSettings()
 class ArmAlongPath:
     """D of the arms of one path, as a function of the path variable p.
 
-    family: the family of arms that contains p, or None: then D is that of the arm at p itself.
+    family: the family of arms that contains p; None to compute D from the arm at p itself.
     """
 
     def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
@@ -59,8 +59,10 @@ class ArmAlongPath:
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """(w, dw/dp, error of w) of the eigenvalue w near the guess, at p."""
         family = self.family(p)
+        # The family holds for |w| <= W: half of W leaves Newton's method room.
         if family is not None and abs(guess) < family.W / 2:
             w, slope, error = eigenvalue_in(family, guess, p)
+            # Beside a double eigenvalue the interpolation errors of the family are magnified.
             if error <= BLURRED * abs(w):
                 return w, slope, error
         here = self.determinant(p)
@@ -110,6 +112,7 @@ class ArmAlongPath:
                 return FAILED
             small = abs(in_p) <= LAST_NEWTON_STEP * e_p
             if small and (abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2):
+                # Only now: the spread takes D on further elements.
                 more = max(self._spread(x, p, S) / blur, 1.0)
                 e_p = max(more * e_p, abs(in_p)) + ROUNDING * abs(p)
                 return Zero(x, p, max(more * e_x, abs(in_x)), e_p)

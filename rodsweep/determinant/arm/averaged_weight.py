@@ -81,6 +81,7 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
             integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
     ahead = np.interp(u + h, u, log_t)
     behind = np.interp(u - h, u, log_t)
+    # Beyond its ends the arm continues with its end values, so that every window has the same width.
     means = np.interp(u + h, u, integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
     means -= np.interp(u - h, u, integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
     split = 0.0
@@ -97,6 +98,7 @@ def _fill(regions: Array, u: Array, local: Array, trial: tuple[float, float, flo
         split = max(split, squared_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
         whole = max(whole, squared_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
         if i > 0:
+            # As theta(0) = 0, |theta(u)|^2 is at most int_0^u c3 du times int c3 |m|^2 du.
             bend += (u[i] - u[i - 1]) * (c3 + local[2, i - 1]) / 2
         here = ((t - alpha) * nu) ** 2 / (alpha * c2) * bend
         if i > 0:

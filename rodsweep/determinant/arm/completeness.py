@@ -47,7 +47,8 @@ elements, over 45 random arms."""
 
 
 class Remainder(NamedTuple):
-    """R, its rounding error, and the least that an unknown eigenvalue right of the line would contribute."""
+    """R of the module's text, its rounding error, and the least term of an unknown eigenvalue right of the
+    line."""
 
     R: float
     blur: float
@@ -63,7 +64,8 @@ def none_is_missing(
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
-    pairs = is_whole(known)
+    # R must be real: an eigenvalue without its conjugate stays among the unknown ones.
+    pairs = has_conjugate(known)
     examined = 0
     for k in POWERS:
         points = right_of_hull(line, hull.a, hull.c, k)
@@ -75,14 +77,17 @@ def none_is_missing(
     return False, examined
 
 
-def is_whole(known: Complex) -> Array:
-    """Mask of the eigenvalues that are real or whose conjugates are among them, (n,)."""
+def has_conjugate(known: Complex) -> Array:
+    """Mask, (n,), of the eigenvalues whose conjugates are known, too; real eigenvalues are their own."""
     conjugates = set(known.conj().tolist())
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
 
-def last_point(line: float, hull: Hull, known: Complex) -> float:
-    """The largest |w| of a proof with the most points, from eigenvalues, (n,); inf if it is not tried."""
+def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
+    """The largest |w| at which a proof with the most points evaluates D; inf if this proof is not tried.
+
+    known: eigenvalues, (n,).
+    """
     points = right_of_hull(line, hull.a, hull.c, POWERS[0])
     tried = len(points) > 0 and points[-1] <= FARTHEST * np.abs(known).max()
     return float(points[-1]) if tried else math.inf
@@ -102,6 +107,7 @@ def right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """k points, (k,), for which the term of R of every w in the hull right of the line is positive; empty if
     no such points exist.
     """
+    # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
     x = max(FIRST_POINT * abs(line), a * a, 1e-6)
     points = np.empty(k)
     for j in range(k):
@@ -149,6 +155,7 @@ def remainder(
         value = chain_value(complex(points[j], 0.0), level[0], level[1])
         slope = (value.D_w / value.D).real
         R += weight * slope
+        # The c_j alternate in sign: R may be far smaller than the terms that are rounded.
         blur += abs(weight * slope) * ROUNDING_OF_SLOPE * value.noise / abs(value.D)
     for n in range(len(known)):
         w = known[n]
@@ -181,5 +188,6 @@ def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
         for x in points:
             size /= math.hypot(x - start, height)
             turn += math.atan2(height, x - stop)
+        # Off the real axis both of a pair contribute.
         least = min(least, 2 * size * math.cos(turn) if turn < math.pi / 2 else 0.0)
     return least

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..certificate.winding_number import COUNT, Count
-from .completeness import is_whole
+from .completeness import has_conjugate
 from .determinant import ArmDeterminant
 from .dominant_wave import ArmSamples
 from .phase_node import FIRST_RADIUS, LEVELS_ABOVE, DividedDeterminant, PhaseNode, node_at, tangent
@@ -64,10 +64,10 @@ def count_right_of(
     corner = _corner(line, hull)
     top = complex(line, corner.imag)
     known = known[error < SHARP * np.abs(known.real - line)]
-    known = known[is_whole(known)]
+    known = known[has_conjugate(known)]
     height = np.maximum(np.abs(known.imag), abs(line))
     known = known[np.abs(known.real - line) < CLOSE_TO_LINE * height]
-    largest = size_of_count(line, determinant, hull)
+    largest = largest_w_of_count(line, determinant, hull)
     divided = DividedDeterminant(determinant, hull, known, largest)
     nodes = 0
     total = 0.0
@@ -99,7 +99,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     return True
 
 
-def size_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of a line evaluates D."""
     corner = _corner(line, hull)
     return abs(corner) + FIRST_RADIUS * determinant.length(corner)

@@ -105,6 +105,7 @@ class ArmDeterminant:
             above = ARM_ELEMENTS.levels_above
         level = ARM_ELEMENTS.min_level
         if size > 4.0**ARM_ELEMENTS.min_level:
+            # A power of 4 that rounding has enlarged stays on its own level.
             level = math.ceil(math.log(size) / math.log(4) - 1e-12)
         for existing in range(level, level + above + 1):
             if existing in self._levels:
@@ -170,10 +171,12 @@ def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
     breaks = rods[0].build.breaks
     shares = density.reshape(len(breaks) - 1, -1)
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
+        # The samples are midpoints of equal parts: the sum is the integral at the ends of the parts.
         mass = np.append(0.0, np.cumsum(share)) * (stop - start) / PIECE_SAMPLES
         count = max(1, math.ceil(mass[-1]))
         places = start + (stop - start) * np.arange(PIECE_SAMPLES + 1) / PIECE_SAMPLES
         edges.append(np.interp(mass[-1] * np.arange(1, count + 1) / count, mass, places))
+        # Exactly on the break: beyond it the coefficients jump.
         edges[-1][-1] = stop
     return np.concatenate(edges)
 

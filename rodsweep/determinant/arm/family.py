@@ -111,6 +111,7 @@ def _places(low: float, high: float, scale: float, number: int) -> Array:
     t = (chebyshev_points(number) + 1) / 2
     if scale < LINEAR:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
+    # Beyond the interval, by rounding, the model may have no arm.
     return np.minimum(low + (high - low) * t, high)
 
 

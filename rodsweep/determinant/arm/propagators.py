@@ -71,6 +71,7 @@ def tail_of(local: LocalCoefficients) -> Array:
 
     local: at Gauss points, (n, elements, stages).
     """
+    # The sixth, g, follows from the others and the force.
     values = np.array(local[:5])
     size = np.maximum(np.abs(values).max(axis=-1), TINY)  # a compliance or a drag may be 0
     largest: Array = (np.abs(values @ _last_terms(values.shape[-1])).max(axis=-1) / size).max(axis=0)

@@ -53,6 +53,7 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
     e = ROOT_RESIDUAL * abs(D) + ROOT_NOISE * noise
     error = e / max(abs(D_w), 1e-300)
     if error > BLURRED * abs(w):
+        # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         second = abs(second_derivative(w, S, determinant))
         if abs(D_w) ** 2 < 16 * e * second:
             spread = math.sqrt(2 * e / second)
@@ -66,6 +67,7 @@ def refined(w: complex, determinant: ArmDeterminant, farthest: float = math.inf)
     A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
     """
     real = w.imag == 0
+    # Only steps that at least halve are taken, the first one included.
     last = 2 * farthest
     for _ in range(MAX_REFINEMENTS):
         value = determinant.value(w)
@@ -126,6 +128,7 @@ def roots(
     start = first[chosen]
     error = error[chosen]
     length = length[chosen]
+    # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     w, reach = _separated(start, error, determinant)
     stands = np.isfinite(reach) | (error <= A_ROOT * length)
     _refine(w, start, reach, stands, determinant)
@@ -139,12 +142,14 @@ def roots(
     displacement = np.abs(w - start[kept]) / np.maximum(np.abs(w), length[kept])
     _raise_errors_of_equal_roots(w, error, determinant)
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen[kept], w, error, displacement, wave, axis, int(ahead))
 
 
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
-    """Makes elements for all |w| up to a size; those for the largest |w| serve them too, if it is near."""
+    """Makes elements that serve all |w| up to `size`: the elements for `largest` if it is little more, else
+    new ones."""
     if size < largest <= MOST_ABOVE * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)

@@ -120,18 +120,26 @@ def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
     return state
 
 
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
-def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
-    """Matrices (values, angles, integrals, ends) on an element [0, 1] with p + 1 nodes and m Gauss points.
+class Reconstruction(NamedTuple):
+    """Matrices on an element [0, 1] with p + 1 nodes and m Gauss points, all applied from the right.
 
-    All are applied from the right. values: interpolation from nodes to Gauss points, (p + 1, m). angles:
-    integrals of nodal polynomials from 0 to the Gauss points, (p + 1, m). integrals: integrals from 0 to the
-    nodes of functions given at the Gauss points, (m, p + 1). ends: integrals of nodal polynomials from 0 to
-    the nodes, (p + 1, p + 1).
+    values: interpolation from nodes to Gauss points, (p + 1, m). angles: integrals of nodal polynomials from
+    0 to the Gauss points, (p + 1, m). integrals: integrals from 0 to the nodes of functions given at the
+    Gauss points, (m, p + 1). ends: integrals of nodal polynomials from 0 to the nodes, (p + 1, p + 1).
     """
+
+    values: Array
+    angles: Array
+    integrals: Array
+    ends: Array
+
+
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
+def reconstruction(order: int) -> Reconstruction:
+    """The matrices that turn strains into a shape, for elements of an order."""
     x = gauss_lobatto(order)[0]
     g = gauss(order + RECONSTRUCTION.extra_points)[0]
-    return interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T
+    return Reconstruction(interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T)
 
 
 def primitive(nodes: Array, ends: Array) -> Array:

@@ -74,12 +74,15 @@ class ArmPencil:
             -(weight * inside.nu)[:, :, None] * V,
             -weight * inside.c2,
         ]
+        # The last entry is the follower force at the tip, -F a(1) theta(1).
         entries = np.concatenate([*(block.ravel() for block in blocks), [-rod.F]])
+        # Entries of the clamp are summed behind the pattern and dropped.
         summed = np.bincount(self._where, entries, minlength=len(self.rows) + 1)[: len(self.rows)]
         lumped = self._w * self._h[:, None] / 2
         push = self._at_nodes(lumped * at_nodes.gamma2)
         turn = self._at_nodes(lumped * at_nodes.gamma3)
         least = PENCIL_NORM.least_angle_weight**2 * self._at_nodes(lumped)
+        # Without rotational drag theta has no mass, and its scale would be infinite.
         angle = np.maximum(turn, least)
         masses = np.concatenate([push, angle, weight.ravel() * PENCIL_NORM.shear_weight**2])
         scale = 1 / np.sqrt(masses)

@@ -70,6 +70,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     bending = law.bending(nu)
     bending_slope = law.bending_slope(nu)
     bending_curvature = law.bending_curvature(nu)
+    # The force compresses the arm at rest: d nu/dF = -c1/(dN/dS1).
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
     change = ChangeWithForce(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
@@ -152,11 +153,13 @@ def _on_sides(law: Law, nu: Array, c1: Array, c3: Array) -> Derivatives:
 
 
 def inverse_derivatives(of: Derivatives) -> Derivatives:
-    """Derivatives of the inverse function, from those of a function f: those of f(g(y)) = y vanish."""
+    """Derivatives of the inverse function g, from the derivatives of f: f(g(y)) = y, differentiated three
+    times."""
     f1, f2, f3 = of
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)
     inner = np.einsum("...ijkl,...jb,...kc,...ld->...ibcd", f3, g1, g1, g1)
+    # The inner second derivative takes each pair of the three directions once.
     for places in ("bcd", "bdc", "cdb"):
         pair = places[:2]
         last = places[2]

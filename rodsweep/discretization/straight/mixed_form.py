@@ -109,6 +109,7 @@ class MixedForm:
         moved = self._along(change.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
         at_rest = self._along(self.nodal.rest, S)
+        # F enters by the strain and the tangent at rest and by Sigma1 = -F.
         forces = coad(self._along(E, S), self._stressed(S)) + coad(at_rest, moved)
         forces = forces + coad(self._strain(S), self._along(Sigma, S))
         return self.unknown(W * ad(self._along(E, V), V), W * forces + self._slope(moved))
@@ -122,7 +123,7 @@ class MixedForm:
         W = self.mesh.quadrature[:-1]
         c = self.nodal.compliance[:, :-1]
         return self.layout.row(
-            {"n2": c[1] * W, "m3": c[2] * remaining(self.mesh, self.nodal.rest[0])[:-1] * W}
+            {"n2": c[1] * W, "m3": c[2] * integral_to_tip(self.mesh, self.nodal.rest[0])[:-1] * W}
         )
 
     def fields(self, X: Values) -> tuple[Values, Values]:
@@ -201,9 +202,9 @@ def axial_field(values: Array) -> Array:
     return field
 
 
-def remaining(grid: Mesh, values: Array) -> Array:
+def integral_to_tip(grid: Mesh, values: Array) -> Array:
     """Integrals from each node to the tip of a field given at all nodes, both (nodes + 1,)."""
-    ends = reconstruction(grid.order)[3]
+    ends = reconstruction(grid.order).ends
     total = np.zeros(grid.nodes + 1)
     for e, length in enumerate(grid.lengths):
         element = slice(e * grid.order, (e + 1) * grid.order + 1)

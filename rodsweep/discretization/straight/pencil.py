@@ -147,7 +147,7 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     return result
 
 
-def slope(mesh: Elements, values: Complex, points: Array) -> Complex:
+def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
     """Derivatives at points of k fields given at all nodes, (nodes + 1, k); shape (points, k)."""
     nodes, _ = gauss_lobatto(mesh.order)
     derivative = 2 * differentiation(nodes)
@@ -188,6 +188,7 @@ def assemble(elements: int, order: int) -> Pencil:
             (4, s, theta, -weight[:, None] * test),
             (5, s, s, -np.diag(weight)),
         ]
+    # The follower force at the tip, -F a(1) theta(1).
     entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
     masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM.shear_weight**2])
     return _gather(elements, order, entries, mass[1:], 1 / np.sqrt(masses))

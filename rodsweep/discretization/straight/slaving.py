@@ -61,6 +61,7 @@ def _at_right_end(K: Array, before: float) -> float:
     """The ratio d/m of `slaving_of` at the right end of an element, from the ratio at the left end. K:
     stiffness, (nodes, nodes).
     """
+    # 0 is the clamp, whose node is no unknown; else all elements before act as a stiffness 1/before.
     if before == 0:
         K = K[1:, 1:]
     else:

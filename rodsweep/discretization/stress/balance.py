@@ -32,7 +32,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
-from ...model.compiled.unrolling import OverAlgebra
+from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import stress_at_jump, stress_change_at_jump
 from ...model.material.response import LINEAR_LAW, LocalSection, stress, stress_change
 from ..elements.mesh import NodeMatrices
@@ -40,7 +40,7 @@ from ..nodal_rod import NodalChange, NodalRod
 from ..state_layout import stress_place, velocity_place
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
     """Writes E and s(S) of a state x, (unknowns,), at all nodes into E and S, both (d, nodes + 1)."""
     size = E.shape[1]
@@ -66,7 +66,7 @@ def apply_law(S: Array, c: NodalRod) -> None:
             S[0, i], S[2, i] = stress(c.law, at, S[0, i], S[2, i])
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes D*_E Sigma at all nodes into out, (d, nodes + 1), from E and s(S) of `fields`."""
     size = len(m.weights)
@@ -89,7 +89,7 @@ def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatri
             out[a, i] = force[a]
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
     """Writes the weak form of W D_E V at all nodes into G, from E and V; all (d, nodes + 1)."""
     size = len(m.weights)
@@ -102,7 +102,7 @@ def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> N
     add_weak_slope(g, V, G, m)
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
     """Adds -D^T W V to G, both (d, nodes + 1)."""
     size = len(m.weights)
@@ -114,7 +114,7 @@ def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
                 G[a, i] -= slope * v[a]
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes V and G of a state x, (unknowns,), at all nodes into V and G, both (d, nodes + 1).
 
@@ -135,7 +135,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
     strain_rates(g, E, V, G, m)
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the equations W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,)."""
     size = len(m.weights)
@@ -171,7 +171,7 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
         dS[0, i], dS[2, i] = stress_change(c.law, at, moved, q1, q3)
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:

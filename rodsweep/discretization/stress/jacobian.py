@@ -18,7 +18,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
-from ...model.compiled.unrolling import OverAlgebra
+from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import tangent_at_jump
 from ...model.material.response import LINEAR_LAW, LocalSection, tangent
 from ..elements.mesh import NodeMatrices
@@ -27,7 +27,7 @@ from ..state_layout import stress_place, velocity_place
 from .balance import fields
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
@@ -73,7 +73,7 @@ def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
             J[r, p3] += by_pull * T.N3 + by_moment * (T.M3 - 1)
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def _derivative(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra,
     at: tuple[Array, Array, Array],
@@ -95,7 +95,7 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
         _kept_rows(g, k, at, J, compliance, c, m)
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def _velocity_slopes(
     g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
@@ -113,7 +113,7 @@ def _velocity_slopes(
                     slopes[o, b, i] = c.mobility[o, i] * B[o][b]
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
     g: Algebra,
     at: tuple[Array, Array, Array],
@@ -162,7 +162,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
                     rows[a][stress_place(b, i, n)] += same[a][b]
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
@@ -184,7 +184,7 @@ def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
                 rows[a][first + i] += sign * m.weights[i] * E[b, i]
 
 
-@OverAlgebra
+@UnrolledOverAlgebra
 def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra,
     k: int,

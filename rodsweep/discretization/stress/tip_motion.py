@@ -34,8 +34,8 @@ class TipMatrices(NamedTuple):
 @lru_cache(maxsize=ELEMENTS.meshes_kept)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """`TipMatrices` of a mesh."""
-    values, angles, integrals, ends = reconstruction(grid.order)
-    parts = values, angles, integrals[:, -1], ends[:, -1], grid.lengths
+    m = reconstruction(grid.order)
+    parts = m.values, m.angles, m.integrals[:, -1], m.ends[:, -1], grid.lengths
     return TipMatrices(*map(np.ascontiguousarray, parts))
 
 

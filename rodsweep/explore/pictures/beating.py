@@ -11,14 +11,15 @@ from ...arrays import Array
 from ..look import read
 from ..scales import PictureAxis
 from ..solving.letting_go import Tip
-from .card import NEUTRAL, POINT, STABLE, Card, empty_source, new_figure, sentence_of, show_range
+from .card import NEUTRAL, POINT, STABLE, Card, columns, empty_source, new_figure, sentence_of, show_range
 
 SECONDS = 2.0
 """Duration of one period on the screen."""
 ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
 """Words for ends of motions; for all further ends the sentence of the status is shown."""
 SHAPE = ("x", "y", "number")
-"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each."""
+"""Columns of a source of shapes: coordinates of all nodes of all shapes, and the number of nodes of each
+shape."""
 
 
 class BeatingPicture:
@@ -37,7 +38,9 @@ class BeatingPicture:
         figure.line("x", "y", color=NEUTRAL, line_width=1, source=self.path)
         for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
             figure.scatter("x", "y", visible=False, source=source)  # so that the source is on the page
-        figure.line("x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm)
+        self.line = figure.line(
+            "x", "y", color=STABLE, line_width=5, line_cap="round", source=self.arm, visible=False
+        )  # fmt: skip
         figure.scatter([0], [0], marker="square", size=12, color=POINT)
         for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
             arguments = {"figure": figure, "grip": self.grip, "phase": phase}
@@ -49,7 +52,8 @@ class BeatingPicture:
         """Code that the browser runs once when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
-        return CustomJS(args=sources | {"period": SECONDS}, code=read("beating.js"))
+        more = {"period": SECONDS, "figure": self.card.figure, "colour": STABLE}
+        return CustomJS(args=sources | more, code=read("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
         """Registers the function called after a drag of the tip: kind of question, place of the tip in L."""
@@ -71,7 +75,9 @@ class BeatingPicture:
             x, y = (found[name][None] * length.factor for name in "xy")
         self.shapes.data = source_of(x, y)
         tips = (x[:, -1], y[:, -1]) if has_cycle else (x[:0, -1], y[:0, -1])
-        self.path.data = {name: np.append(tip, tip[:1]) for name, tip in zip("xy", tips, strict=True)}
+        self.path.data = columns(
+            **{name: np.append(tip, tip[:1]) for name, tip in zip("xy", tips, strict=True)}
+        )
         self._fit(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
             f"{n} ({length.label})" for n in "xy"
@@ -99,7 +105,7 @@ class BeatingPicture:
         self.motion.tags = [SECONDS * step / turn, SECONDS]
         self.reached.data = source_of(shape_x, shape_y)
         self.motion.data = source_of(x, y)
-        self.path.data = {"x": x[:, -1], "y": y[:, -1]}
+        self.path.data = columns(x=x[:, -1], y=y[:, -1])
         self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = ENDS.get(found["status"], found["sentence"])

@@ -44,13 +44,20 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """A vertical line over the full height of a figure."""
-    return Span(location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5)
+    """A vertical line over the full height of a figure; a move paints only the figure's upper canvas."""
+    return Span(
+        location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
+    )  # fmt: skip
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
     """A data source with empty columns `names`."""
     return ColumnDataSource({each: [] for each in names}, name=name)
+
+
+def columns(**arrays: Array) -> dict[str, list[Any]]:
+    """Columns of a data source as lists, for short arrays: each array takes two messages of its own."""
+    return {name: array.tolist() for name, array in arrays.items()}
 
 
 def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:

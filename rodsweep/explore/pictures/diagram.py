@@ -98,7 +98,9 @@ class DiagramPicture:
         self.legend = Legend(items=keys, location="top_left", visible=False)
         figure.add_layout(self.legend)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossings)
-        figure.scatter("x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point)
+        figure.scatter(
+            "x", "y", marker="cross", size=22, line_width=3, color=POINT, source=self.point, level="overlay"
+        )  # fmt: skip
         self.card = Card("diagram", figure)
 
     @property

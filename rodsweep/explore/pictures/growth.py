@@ -12,6 +12,7 @@ from .card import (
     STABLE,
     UNSTABLE,
     Card,
+    columns,
     empty_source,
     limits,
     new_figure,
@@ -66,7 +67,7 @@ class GrowthPicture:
         rates = found["growth_rate"]
         names = ("first", "second", "third")
         F = found["F"] * load.factor
-        self.rates.data = {"F": F, **{name: rates[:, i] for i, name in enumerate(names)}}
+        self.rates.data = columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
         leading = rates[:, 0]
         show_range(self.card.figure.y_range, *limits(np.append(leading[np.isfinite(leading)], 0.0)))
         show_range(self.card.figure.x_range, F[0], F[-1])

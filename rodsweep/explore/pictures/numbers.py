@@ -4,7 +4,8 @@ from html import escape
 from typing import Any
 
 import numpy as np
-from bokeh.models import Div
+
+from ..texts import PageText
 
 ROWS = {
     "spectrum": {
@@ -44,7 +45,7 @@ class NumbersTable:
     """The table of the latest answers."""
 
     def __init__(self) -> None:
-        self.root = Div(name="numbers", sizing_mode="stretch_width", css_classes=["numbers"])
+        self.root = PageText(name="numbers")
         self.found: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:

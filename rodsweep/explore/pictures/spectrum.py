@@ -10,6 +10,7 @@ from .card import (
     STABLE,
     UNSTABLE,
     Card,
+    columns,
     empty_source,
     limits,
     new_figure,
@@ -46,7 +47,7 @@ class SpectrumPicture:
         growth = growth[known]
         frequency = frequency[known]
         colours = np.where(growth > 0, UNSTABLE, STABLE)
-        self.source.data = {"growth": growth, "frequency": frequency, "colour": colours}
+        self.source.data = columns(growth=growth, frequency=frequency, colour=colours)
         figure = self.card.figure
         show_range(figure.x_range, *limits(np.append(growth, 0.0)))
         show_range(figure.y_range, *limits(frequency))
@@ -90,6 +91,6 @@ class ModePicture:
         if not np.isfinite(real).all():
             self.card.say(sentence_of(found))
             return
-        self.source.data = {"u": found["u"], "real": real, "imaginary": imaginary}
+        self.source.data = columns(u=found["u"], real=real, imaginary=imaginary)
         show_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
         self.card.reveal()

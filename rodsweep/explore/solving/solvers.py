@@ -3,18 +3,18 @@ kind."""
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import Pipe
 from multiprocessing.connection import Connection
+from multiprocessing.context import ForkServerProcess
 from typing import Any
 
 from tornado.ioloop import IOLoop
 
 from ..state import PageState
+from . import worker
+from .forks import FORKS, prepare
 from .questions import Question, Reply
 
 Key = tuple[str, str]
@@ -33,8 +33,10 @@ GROUPS = {
     "cycles": "diagram",
 }  # fmt: skip
 """Process group of each kind of question, so that fast questions never wait for slow questions."""
-NICENESS = {"spectrum": 0, "cycle": 3, "thresholds": 5, "branch": 10, "diagram": 10, "film": 10}
-"""Niceness of the process of each group: pictures that follow a slider have the highest priority."""
+NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
+"""Niceness of the process of each group. Only the spectrum has the priority of the page and of the browser.
+It is painted while the others solve.
+"""
 INTERRUPT_RETRY = 0.1
 """Seconds until a cancellation that came before the process was ready is repeated."""
 WARMED_UP = ("spectrum", "cycle", "thresholds")
@@ -68,9 +70,9 @@ class SolverProcess:
         self.starts = 0
         self.is_ready = False
         """Whether the process handles signals; before, SIGINT would end the process."""
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: ForkServerProcess | None = None
         self._connection: Connection[Any, Any] | None = None
-        self._life = -1
+        self._life: Connection[Any, Any] | None = None
 
     @property
     def pid(self) -> int | None:
@@ -112,17 +114,15 @@ class SolverProcess:
         """Starts the process, if none runs."""
         if self._process is not None:
             return
-        self._connection, theirs = Pipe()
-        watched, self._life = os.pipe()
-        words = [sys.executable, "-m", f"{__package__}.worker", str(theirs.fileno()), str(watched)]
-        words.append(str(self.niceness))
-        self._process = subprocess.Popen(
-            words, stdin=subprocess.DEVNULL, pass_fds=(theirs.fileno(), watched), start_new_session=True
-        )
+        prepare()
+        self._connection, theirs = FORKS.Pipe()
+        watched, self._life = FORKS.Pipe(duplex=False)
+        self._process = FORKS.Process(target=worker.run, args=(theirs, watched, self.niceness), daemon=True)
+        self._process.start()
         self.starts += 1
         self.is_ready = False
         theirs.close()
-        os.close(watched)
+        watched.close()
         IOLoop.current().add_handler(self._connection.fileno(), self._hear, IOLoop.READ)
 
     def _send_next(self) -> None:
@@ -169,7 +169,8 @@ class SolverProcess:
         if not self.is_ready:
             IOLoop.current().call_later(INTERRUPT_RETRY, lambda: self._interrupt(number))
             return
-        self._process.send_signal(signal.SIGINT)
+        if self._process.is_alive() and self._process.pid is not None:
+            os.kill(self._process.pid, signal.SIGINT)
         IOLoop.current().call_later(self.patience.kill, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
@@ -180,14 +181,16 @@ class SolverProcess:
         self._send_next()
 
     def _end(self) -> None:
-        if self._process is None or self._connection is None:
+        if self._process is None or self._connection is None or self._life is None:
             return
         IOLoop.current().remove_handler(self._connection.fileno())
         self._connection.close()
-        os.close(self._life)
-        self._process.kill()
-        self._process.wait()
-        self._process = self._connection = None
+        self._life.close()
+        if self._process.is_alive():
+            self._process.kill()
+        self._process.join()
+        self._process.close()
+        self._process = self._connection = self._life = None
 
 
 class Solvers:
@@ -202,7 +205,8 @@ class Solvers:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
     def ask(self, session: str, question: Question, done: Done, progress: Done = not_shown) -> None:
-        """Queues a question of a session; `done` receives the reply, `progress` that of a long solve."""
+        """Queues a question of a session; `done` receives the reply, `progress` the progress of a long
+        solve."""
         self.groups[GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
     def drop(self, session: str, kind: str) -> None:

@@ -6,13 +6,13 @@ only by the page's process, ends the solver process when the page's process ends
 
 import os
 import signal
-import sys
 import time
 import traceback
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from threading import Thread
 from types import FrameType
+from typing import Any
 
 from ...errors import Refusal
 from ...sweep.stop import NoClaims, RankListener, StopRequest
@@ -98,18 +98,17 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
     return Reply(outcome, content, time.perf_counter() - started)
 
 
-def end_with_parent(descriptor: int) -> None:
+def end_with_page(life: "Connection[Any, Any]") -> None:
     """Ends this process when the opposite end of a pipe closes; nothing is ever written to the pipe."""
-    os.read(descriptor, 1)
+    life.poll(None)
     os._exit(0)
 
 
-def main() -> None:
-    """Runs the worker. Arguments: descriptor of the question pipe, of the parent's pipe, and niceness."""
-    questions, life, niceness = (int(word) for word in sys.argv[1:4])
+def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]", niceness: int) -> None:
+    """Answers questions of a connection until it closes. life: pipe of the page's process."""
+    os.setpgid(0, 0)  # out of reach of Ctrl-C, which ends the page; a session of its own would undo niceness
     os.nice(niceness)
-    connection: Connection[Reply, Question] = Connection(questions)
-    Thread(target=end_with_parent, args=(life,), daemon=True).start()
+    Thread(target=end_with_page, args=(life,), daemon=True).start()
     cancellation = Cancellation()
     for number in (signal.SIGINT, signal.SIGALRM):
         signal.signal(number, cancellation)
@@ -120,7 +119,3 @@ def main() -> None:
         except EOFError:
             return
         connection.send(reply_to(question, cancellation, connection.send))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,8 @@
 // The arm: beating, bent by its tip, moving from there, and beating in the cycle that it reaches.
+// Each frame is drawn on a canvas of its own: Bokeh would paint the whole figure again, in more time than a frame.
+const view = Bokeh.index.find_one(figure)
+const canvas = document.createElement("canvas")
+canvas.className = "bk-layer"
 let beats = shapes.data, bends = bent.data, moves = motion.data
 let mode = "beats", since = 0
 const nodes_of = (data) => data.number[0]
@@ -10,7 +14,27 @@ function draw_at(data, before, after, part) {
     at.x[i] = (1 - part) * data.x[before * nodes + i] + part * data.x[after * nodes + i]
     at.y[i] = (1 - part) * data.y[before * nodes + i] + part * data.y[after * nodes + i]
   }
-  arm.change.emit()
+  paint(at)
+}
+function paint({x, y}) {
+  const {overlays} = view.canvas_view, {x_scale, y_scale, bbox} = view.frame
+  if (!canvas.isConnected) overlays.canvas.after(canvas)
+  if (canvas.width !== overlays.canvas.width) canvas.width = overlays.canvas.width
+  if (canvas.height !== overlays.canvas.height) canvas.height = overlays.canvas.height
+  const context = canvas.getContext("2d"), ratio = overlays.pixel_ratio
+  context.setTransform(ratio, 0, 0, ratio, 0, 0)
+  context.clearRect(0, 0, canvas.width, canvas.height)
+  context.save()
+  context.beginPath()
+  context.rect(bbox.x, bbox.y, bbox.width, bbox.height)
+  context.clip()
+  context.beginPath()
+  for (let i = 0; i < x.length; i++) context.lineTo(x_scale.compute(x[i]), y_scale.compute(y[i]))
+  context.strokeStyle = colour
+  context.lineWidth = 5
+  context.lineCap = context.lineJoin = "round"
+  context.stroke()
+  context.restore()
 }
 function loop(data, phase) {
   const count = count_of(data)

@@ -17,7 +17,7 @@ from ..parameters import PARAMETERS
 from ..units import Given, share_of_flutter
 from .drag import DRAGS, Drag
 from .quantities import LOADS, UNITS, number_in_si, quoted
-from .refusals import refuse_crushed, refuse_misfits, refuse_other_sets, refuse_words
+from .refusals import refuse_crushed, refuse_other_sets, refuse_out_of_range, refuse_words
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
 from .shape import Shape, Station, cone, in_segments
@@ -70,7 +70,7 @@ class SlenderArm:
         refuse_other_sets(self)
         self.si.length = self.shape.length
         self.si.young = self.shape.base.young
-        refuse_misfits(self)
+        refuse_out_of_range(self)
         refuse_crushed(self)
 
     def parameter(self, name: str) -> float:

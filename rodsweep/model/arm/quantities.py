@@ -37,13 +37,13 @@ QUANTITIES = {
     "force": Quantity("N", "follower force at the tip", "0.16 N", signed=True),
     "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
     "density_difference": Quantity(
-        "kg/m^3", "density of the arm less that of the fluid", "-160 kg/m^3", signed=True
+        "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", signed=True
     ),
     "poisson": Quantity("1", "Poisson's ratio of the arm"),
     "drag": Quantity("1", "which member of the range of drags"),
     **{
         f"{load}_over_flutter": Quantity(
-            "1", f"{load} over that of the first flutter, with the likeliest drag"
+            "1", f"{load} divided by the {load} at first flutter, with the likeliest drag"
         )
         for load in LOADS
     },
@@ -62,7 +62,7 @@ ARM_UNITS = {
 }
 """Units of time, force and pressure that an arm defines, by the property of `SlenderArm`."""
 SCALE_OF = {load: f"{load}_scale" for load in LOADS}
-"""Name of the load's unit, at which F = 1, by load."""
+"""By load, the name of the arm's quantity at which F = 1."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
 """All variables of an arm in a result file, apart from its parameters as a rod."""
 

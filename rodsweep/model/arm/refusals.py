@@ -126,7 +126,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
         raise InputError(f"{arm.quoted('length')} is not the sum of the segments, {summed}; leave it out")
 
 
-def refuse_misfits(arm: "SlenderArm") -> None:
+def refuse_out_of_range(arm: "SlenderArm") -> None:
     """Raises InputError for an arm without mass or with over- or underflow, NotSlender for a short arm."""
     if arm.si.density_difference <= -arm.si.fluid_density:
         given = arm.quoted("density_difference")

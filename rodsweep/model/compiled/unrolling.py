@@ -1,7 +1,7 @@
 """Functions of an algebra, whose loops over structure constants are unrolled before compilation.
 
 The nonlinear terms of the rod have the same formula on se(2) and se(3). Loops at run time would take two to
-three times as long as unrolled code: a loop over 4 terms costs more than the products. `OverAlgebra`
+three times as long as unrolled code: a loop over 4 terms costs more than the products. `UnrolledOverAlgebra`
 therefore unrolls the syntax tree of a function for each requested algebra:
 
 - a loop over a value that the algebra determines, `for a in g.components`, becomes a sequence of statements,
@@ -28,7 +28,7 @@ ALWAYS = {"range": range}
 """Names, apart from the algebra, whose values are known when a loop is unrolled."""
 
 
-class OverAlgebra(Generic[P, R]):
+class UnrolledOverAlgebra(Generic[P, R]):
     """Decorator for a function whose first argument is an algebra."""
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
@@ -46,7 +46,8 @@ class OverAlgebra(Generic[P, R]):
         return self._compiled[g]
 
     def written_out(self, g: Algebra) -> Callable[P, R]:
-        """The function unrolled for the algebra `g`, not compiled; its `OverAlgebra` callees are compiled."""
+        """The function unrolled for the algebra `g`, not compiled; unrolled functions that it calls are
+        compiled."""
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
@@ -59,7 +60,7 @@ class OverAlgebra(Generic[P, R]):
         others = set()
         for name in {part.id for part in ast.walk(definition) if isinstance(part, ast.Name)}:
             value = self.function.__globals__.get(name)
-            if isinstance(value, OverAlgebra):
+            if isinstance(value, UnrolledOverAlgebra):
                 others.add(name)
                 namespace[name] = value.of(g)
             elif name in self.function.__globals__:
@@ -73,8 +74,8 @@ class OverAlgebra(Generic[P, R]):
 class _Shared(NamedTuple):
     """State shared by all writers of one function.
 
-    lists: names of lists whose items became variables. others: names of called `OverAlgebra` functions.
-    names: cache of the names that a node reads. code: cache of compiled expressions.
+    lists: names of lists whose items became variables. others: names of called functions that are unrolled
+    too. names: cache of the names that a node reads. code: cache of compiled expressions.
     """
 
     lists: set[str]

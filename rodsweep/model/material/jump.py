@@ -20,7 +20,7 @@ from ..compiled.compilation import compiled
 from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
 
 COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
-"""Numbers of each side: those of `LocalSection`, the shares of this side in the mean of both, and c2."""
+"""Numbers of each side: the fields of `LocalSection`, the side's shares in the mean strain, and c2."""
 SHEAR = COLUMNS.index("c2")
 MOST_ITERATIONS = 40
 CONVERGED = 1e-9
@@ -106,7 +106,7 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
-    """Derivatives of the mean unknowns by the stresses, in the places of those of the stresses."""
+    """Derivatives of the mean unknowns q by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM)."""
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1

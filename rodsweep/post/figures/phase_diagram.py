@@ -36,6 +36,13 @@ STATE_COLOURS = {
     "crushed": CLASS_COLOURS["crushed"],
 }
 """Colours of the stable states; where both states are stable the colour lies between theirs."""
+LEGEND = {
+    "straight": "straight rod stable",
+    "cycle": "cycle stable",
+    "both": "both stable",
+    "neither_known": "no stable state known",
+}
+"""Legend entries of the stable states; unlisted words are entries as they stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,13 +71,6 @@ class Palette:
         ]
 
 
-LEGEND = {
-    "straight": "straight rod stable",
-    "cycle": "cycle stable",
-    "both": "both stable",
-    "neither_known": "no stable state known",
-}
-"""Legend entries of the stable states; unlisted words are entries as they stand."""
 CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
 """Palette of the behaviour of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
@@ -131,7 +131,8 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the plane is that of F and k1, with rods that are crushed at F = k1, as arms are not."""
+    """Whether the axes are F and k1, and F = k1 crushes the rods, as it does if they are uniform and
+    linear."""
     return (line, row) == CRUSHING and has_covering(view.config)
 
 

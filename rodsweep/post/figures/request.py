@@ -136,14 +136,13 @@ class FigureRequest:
             raise InputError(f"--output {self.output} is not a name for a figure; choose another")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
-        """Writes the figure, with SI scales if the rod is an arm; returns `shown`.
+        """Writes the figure, with SI scales if the rod is an arm; returns the sentence `shown`.
 
-        min_aspect: smallest height of its panels, in units of their width.
+        min_aspect: smallest height of a panel, in units of the panel's width.
         """
         add_si_scales(figure, self.views)
-        if not any(
-            view.over for view in self.views
-        ):  # figures over an arm's quantities show the validity themselves
+        # Figures over an arm's quantities show the validity themselves.
+        if not any(view.over for view in self.views):
             add_validity(figure, self.views)
         self.look.fit(figure, min_aspect)
         if self.keep is None:

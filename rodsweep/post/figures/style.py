@@ -194,9 +194,8 @@ def colour_cells(
     if ratios and high > DECADE * low > 0:
         norm: Normalize = LogNorm(low, high)
     else:
-        norm = Normalize(
-            low, high if high != low or low else 1.0
-        )  # equal zeros would give a scale below zero
+        # Equal zeros would give a scale below zero.
+        norm = Normalize(low, high if high != low or low else 1.0)
     mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, cmap=colours, rasterized=True)
     bar = axes.figure.colorbar(mesh, ax=axes, label=label)
     if isinstance(norm, LogNorm):

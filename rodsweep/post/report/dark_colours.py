@@ -3,7 +3,8 @@
 INK = 232
 """Brightness of black ink on the dark page, from 0 to 255."""
 PAPER = 27
-"""Brightness of white paper on the dark page: that of the page itself."""
+"""Brightness, on the dark page, of what is white on the light page: the brightness of the dark page
+itself."""
 MIN_CONTRAST = 4.5
 """Contrast of a line with the page that WCAG 2 asks of text; it asks 3 of graphics, without thin lines."""
 STEPS = 20

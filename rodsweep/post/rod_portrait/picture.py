@@ -14,11 +14,11 @@ from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ..figures import style
 from ..figures.branch import COLOURS, draw_curves, draw_straight_rod, stability_entries
-from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, clamp, force_arrow
+from ..figures.cycle.portrait import ARROW_LENGTH, LIGHTEST_ARM, draw_clamp, force_arrow
 from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .results import RodResults
-from .units import draw_in
+from .units import rescale_panel
 
 SIZE = (10.0, 10.4)
 """Width and height of the picture, in inches."""
@@ -73,7 +73,7 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
         if units.load and axes.axison:
-            draw_in(axes, units.force.factor, y)
+            rescale_panel(axes, units.force.factor, y)
     panels[0].set_xlim(0, units.force.factor * end)
 
 
@@ -170,7 +170,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             _say(axes, f"no cycle: {_outcome(view)}", PANEL_WIDTH)
             continue
         shades = matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(v["shape_x"])))
-        clamp(axes, length)
+        draw_clamp(axes, length)
         for x, y, theta, shade in zip(v["shape_x"], v["shape_y"], v["shape_theta"], shades, strict=True):
             axes.plot(length * x, length * y, color=shade, lw=1.3)
             force_arrow(axes, length * x, length * y, theta, shade, length)

@@ -71,8 +71,8 @@ class PortraitUnits:
         """Labels of the axes of the load, the largest y of the tip, and the period."""
         if not self.load:
             return style.LABELS["F"], "largest $y/L$ of the tip", r"period$/\tau_2$"
-        length, time = self.length.name, self.time.name
-        return f"{self.load} ({self.force.name})", f"largest $y$ of the tip ({length})", f"period ({time})"
+        y = f"largest $y$ of the tip ({self.length.name})"
+        return f"{self.load} ({self.force.name})", y, f"period ({self.time.name})"
 
     def mode_title(self, kind: str, F: float) -> str:
         """Title of the panel of the mode at the threshold of a kind."""
@@ -110,7 +110,7 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
     return PortraitUnits(force=units[0], length=units[1], time=units[2], frequency=hertz, load=load)
 
 
-def draw_in(axes: Axes, x: float, y: float) -> None:
+def rescale_panel(axes: Axes, x: float, y: float) -> None:
     """Multiplies all that a panel has drawn, curves, marks and upright areas, by factors of x and y."""
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))

@@ -18,6 +18,17 @@ SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Words for the criticality of a Hopf point."""
 NAMED_RODS = 8
 """Largest number of rods with subcritical Hopf points that are listed."""
+NUMBERS = {
+    "crossing_F": "F, k3/L^2",
+    "crossing_frequency": f"frequency, {ANGULAR}",
+    "landau_real": "Re c, 1/(tau2 L^2)",
+    "landau_imag": "Im c, 1/(tau2 L^2)",
+    "growth_slope_real": "Re dw/dF, L^2/(k3 tau2)",
+    "growth_slope_imag": "Im dw/dF, L^2/(k3 tau2)",
+    "amplitude_coefficient": "a, L",
+    "frequency_slope": "b, L^2/(k3 tau2)",
+}
+"""Words and unit of the numbers of a Hopf point, by variable."""
 
 
 def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -83,19 +94,6 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
         rows.append((words, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
     return TextTable(headings, tuple(rows)) if len(at) else None
-
-
-NUMBERS = {
-    "crossing_F": "F, k3/L^2",
-    "crossing_frequency": f"frequency, {ANGULAR}",
-    "landau_real": "Re c, 1/(tau2 L^2)",
-    "landau_imag": "Im c, 1/(tau2 L^2)",
-    "growth_slope_real": "Re dw/dF, L^2/(k3 tau2)",
-    "growth_slope_imag": "Im dw/dF, L^2/(k3 tau2)",
-    "amplitude_coefficient": "a, L",
-    "frequency_slope": "b, L^2/(k3 tau2)",
-}
-"""Words and unit of the numbers of a Hopf point, by variable."""
 
 
 def _words(v: Mapping[str, np.ndarray], i: int) -> str:

@@ -137,14 +137,15 @@ def _at(some: np.ndarray, done: np.ndarray) -> str:
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     """Lines about further properties of the cycles."""
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
+    times = span(ratio, ratio * v["period_error"][beats])
     tips = (
         f"{what} {span_of(v, f'tip_{name}', beats)} {unit}"
         for what, name, unit in (
             ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest theta", "theta_max", "rad"),
         )
     )  # fmt: skip
-    lines = [f"frequency {span_of(v, 'frequency', beats)} rad/tau2, "
-             f"over that of the leading mode {span(ratio, ratio * v['period_error'][beats])}"]  # fmt: skip
+    frequency = span_of(v, "frequency", beats)
+    lines = [f"frequency {frequency} rad/tau2, {times} times the frequency of the leading mode"]
     if "period_tau1" in v:
         lines.append(f"period: {span_of(v, 'period_tau1', beats)} tau1")
     return [

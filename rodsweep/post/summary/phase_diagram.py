@@ -54,7 +54,7 @@ def count_lines(found: np.ndarray) -> list[str]:
 
 
 def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """Line on the cost of the rows compared with a uniform grid, if it is counted.
+    """Line on the cost of the rows compared with a uniform grid; empty if the cost was not recorded.
 
     done: a mask of the rows' shape.
     """

@@ -29,7 +29,8 @@ FIRSTS = {"onset": "oscillates from", "hopf": "beats from", "restabilization": "
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
-        details, of_arm = cost_lines(view, done), crossings_of_arm(view)
+        details = cost_lines(view, done)
+        of_arm = crossings_of_arm(view)
         return SummaryLines(crossing_lines(view), trust_of_one(view), details, of_arm, crossing_table(view))
     answer = [event_line(view, done, event) for event in EVENTS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
@@ -176,9 +177,9 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the cost of the searches, if it is counted; done: a mask of the points' shape.
+    """Line on the cost of the searches; done: a mask of the points' shape.
 
-    Of a search by counts of unstable modes no number is counted.
+    Empty for searches by counts of unstable modes, which record no cost.
     """
     if not has_covering(view.config):
         return []

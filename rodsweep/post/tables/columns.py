@@ -77,7 +77,8 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
     """Column of a variable with values of shape (rows,); words: by value, if not those of the variable."""
     known = dict(variable.flags) if words is None else words
     meaning = variable.long_name.removesuffix(NOT_KNOWN)
-    absent, boolean = absent_in(variable, values), variable.is_boolean
+    absent = absent_in(variable, values)
+    boolean = variable.is_boolean
     return Column(variable.name, variable.units, meaning, values, absent, known, is_boolean=boolean)
 
 

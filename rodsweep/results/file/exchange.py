@@ -56,9 +56,8 @@ class Exchange:
     @contextmanager
     def replacing(self, source: Path | None) -> Iterator[Path]:
         """Yields the path of a copy of `source`, or of no file, which replaces the file at the end."""
-        self.journals.mkdir(
-            parents=True, exist_ok=True
-        )  # the directory may have been moved or deleted meanwhile
+        # The directory may have been moved or deleted meanwhile.
+        self.journals.mkdir(parents=True, exist_ok=True)
         self.copy.unlink(missing_ok=True)  # a link would redirect the writing
         if source:
             shutil.copyfile(source, self.copy)

@@ -28,7 +28,7 @@ SNAPSHOT = "snapshot"
 Found = TypeVar("Found")
 
 
-def unfolded(path: Path, read: Callable[[], Found]) -> Found:
+def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
     """Result of `read`, which reads a file and journals; repeated if a run folds journals in meanwhile.
 
     A fold replaces the file before the journals are deleted. No journal was deleted if the file is the same
@@ -83,7 +83,7 @@ def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
     with disk_refusals(output):
         exchange = Exchange(output)
     try:
-        return unfolded(path, lambda: _copied(path, exchange))
+        return read_unfolded(path, lambda: _copied(path, exchange))
     finally:
         exchange.close()
 

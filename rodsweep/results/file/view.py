@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED
 from .content import is_users
-from .recent import journalled_points, journalled_reasons, put_in, unfolded
+from .recent import journalled_points, journalled_reasons, put_in, read_unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
@@ -60,7 +60,7 @@ class View:
     attributes: dict[str, Any]
     variables: Mapping[str, np.ndarray]
     parameters: tuple[str, ...]
-    """Parameters of a point: dimensions of a grid, or columns along `point`."""
+    """Names of the parameters of a point, which are the dimensions of a grid or columns along `point`."""
     flags: dict[int, str]
     """Values of `status` and their words."""
     journalled: int
@@ -162,7 +162,7 @@ def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
 
 def read_view(path: Path) -> View:
     """View of a file, which stays open, with journalled points; InputError if the file is no result."""
-    return unfolded(path, lambda: _view(path))
+    return read_unfolded(path, lambda: _view(path))
 
 
 def _view(path: Path) -> View:

@@ -44,7 +44,8 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file besides the points, by resolved config. `extra` has all dimensions of each."""
+    """Variables of a file besides the points, by resolved config. `extra` has all dimensions of a
+    variable."""
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 

@@ -62,7 +62,7 @@ SI_UNITS = {
 }
 """SI units of the dimensionless units of time, length, energy and power."""
 FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS}
-"""SI unit of a follower force, by the kind of the arm's load; without a load that of a pressure."""
+"""SI unit of a follower force, by the kind of the arm's load; the unit of a pressure without a load."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Kind of load by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}

@@ -20,7 +20,7 @@ SIDES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
 """Stored numbers and words of the criticality: the sign of Re c; NaN if c is not known."""
 
 
-def side(name: str, decided_by: str) -> Variable:
+def criticality_variable(name: str, decided_by: str) -> Variable:
     """Variable for the criticality of Hopf points; decided_by: name of the number whose sign decides."""
     meaning = (
         "supercritical: cycles exist where the pair is unstable, and are stable unless other modes are "
@@ -53,7 +53,7 @@ NORMAL_FORM = along(
         "+ b (F - F_H)",
     ),
     real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope"),
-    side("criticality", "landau_real"),
+    criticality_variable("criticality", "landau_real"),
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
-from .criticality import LANDAU, SLOPE, side
+from .criticality import LANDAU, SLOPE, criticality_variable
 from .rods import confirmed
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
@@ -122,7 +122,7 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
         real("cycle_curve_error", force, error, at),
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", at),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", at),
-        *end_words("cycle_curve", CYCLE_CURVE_ENDS, at),
+        *end_variables("cycle_curve", CYCLE_CURVE_ENDS, at),
         real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
              f"curve, in units of the axis of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
@@ -130,7 +130,7 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     return {variable.name: variable for variable in variables}
 
 
-def end_words(curve: str, reasons: Iterable[str], along: str) -> tuple[Variable, Variable]:
+def end_variables(curve: str, reasons: Iterable[str], along: str) -> tuple[Variable, Variable]:
     """Variables with the reasons for both ends of a curve, along its points."""
     reasons = tuple(reasons)
     return (
@@ -151,7 +151,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in units),
         real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
-        *end_words("curve", CURVE_ENDS, "curve_point"),
+        *end_variables("curve", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
         word("fold_kind", kind, CURVE_KINDS, "fold"),
         word("fold_of", "parameter that has an extremum along the curve at the fold", units, "fold"),
@@ -174,7 +174,7 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     error = "estimate of the error of bautin_"
     variables = (
-        *along("curve_point", side("curve_criticality", "Re c")),
+        *along("curve_point", criticality_variable("curve_criticality", "Re c")),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
         *along(
             "bautin",
@@ -211,6 +211,6 @@ def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variabl
         *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
         real("bautin_along_frequency", ANGULAR, "angular frequency of the pair", at),
         real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c", at),
-        *end_words("bautin_along", BAUTIN_ENDS, at),
+        *end_variables("bautin_along", BAUTIN_ENDS, at),
     )
     return {variable.name: variable for variable in variables}

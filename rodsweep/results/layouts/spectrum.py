@@ -67,9 +67,9 @@ VECTORS = (
 
 
 def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
-    """Variables for the longitudinal rates, with an error where they are not in closed form.
+    """Variables for the longitudinal rates, with an error unless the rates are in closed form.
 
-    along: dimensions of the parameters on which they depend, or that of all points.
+    along: dimensions of the parameters on which the rates depend, or the dimension of all points.
     """
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
     rate = real("longitudinal_rate", "1/tau2", meaning, *along, "mode")

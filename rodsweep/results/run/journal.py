@@ -197,7 +197,8 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
 
 def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
     """The whole lines of text in records with their checksums, blocks of rows, (records, bytes)."""
-    lines, line = [], b""
+    lines = []
+    line = b""
     for rows in blocks:
         index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
         some = (index == TEXT_GOES_ON) | (index == TEXT_ENDS)

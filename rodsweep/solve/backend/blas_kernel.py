@@ -31,4 +31,5 @@ def blas() -> str:
 def _owner(path: str) -> str:
     """Owner of a library: NumPy's or SciPy's wheel, or else the system or PETSc."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
-    return "NumPy" if "numpy" in names else "SciPy" if "scipy" in names else "PETSc"
+    wheels = (owner for owner in ("NumPy", "SciPy") if owner.lower() in names)
+    return next(wheels, "PETSc")

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.accuracy.refined_cycle import RefinedCycle
+from ..cycle.accuracy.cycle_verdict import RefinedCycle
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
 from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace

@@ -91,7 +91,7 @@ class HopfBirth:
 
     @property
     def coefficient_error(self) -> float:
-        """Relative error of the amplitude coefficient: half of those of c, of the slope and of the place."""
+        """Relative error of the amplitude coefficient: half the sum of the errors of c, slope and place."""
         c = self.coefficients.landau
         slope = self.slope
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)

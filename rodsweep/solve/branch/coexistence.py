@@ -185,7 +185,11 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
     for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
         signs = {point.least_outside for point in curve.points[one.after + 1 : other.after + 1]} - {-1}
         # Stability can change at special points only; cycles that disagree between two of them leave it open.
-        stable = 1 if signs == {0} else 0 if signs and 0 not in signs else -1
+        stable = -1
+        if signs == {0}:
+            stable = 1
+        elif signs and 0 not in signs:
+            stable = 0
         low, high = sorted((one, other), key=lambda point: point.at)
         within = low.at + _closed(low) * low.error, high.at - _closed(high) * high.error
         about = low.at - low.error, high.at + high.error

@@ -198,8 +198,8 @@ def measured_errors(
 def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: Place) -> Array:
     """Differences of a cycle from the same cycle on a finer mesh, (6,).
 
-    The first five, as in `Calibration.space`, are at the rough mesh's value of the parameter; the last is
-    that of the parameter at an equal deflection.
+    The first five, as in `Calibration.space`, are differences at the rough mesh's value of the parameter; the
+    last is the difference of the parameter at an equal deflection.
     """
     orbit = rough.orbit
     scale = place.scale

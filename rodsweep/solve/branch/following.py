@@ -20,7 +20,7 @@ from .special.least_stretch import stretch_at
 from .special.locating import located
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
-from .symmetry import ENDINGS, Breaking, beginning_without_symmetry, mirrored, symmetric_end
+from .symmetry import ENDINGS, Breaking, beginning_without_symmetry, breaking_between, mirrored
 from .trail import Trail, end_at
 from .work import share_done
 
@@ -119,7 +119,9 @@ def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> Spe
 def _beyond(point: ArcPoint, limits: BranchLimits) -> int:
     """Index of the end of the range that a cycle lies beyond, -1 within the range."""
     low, high = limits.ends
-    return 0 if point.at < low else 1 if point.at > high else -1
+    if point.at < low:
+        return 0
+    return 1 if point.at > high else -1
 
 
 def _next(trail: Trail, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
@@ -220,7 +222,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The symmetry breaking between two cycles where the branch ends; else the first, for a shorter step."""
-    which = symmetric_end(start, end, limits.breakings, limits.accuracy)
+    which = breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_between(start, end) / 2)
     if which >= 0:

@@ -195,7 +195,9 @@ def _nearly_symmetric(start: ArcPoint) -> bool:
     return _relative_asymmetry(start) <= ENDINGS.small_asymmetry
 
 
-def symmetric_end(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int | None:
+def breaking_between(
+    start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float
+) -> int | None:
     """Index of the known symmetry breaking that lies between two cycles, -1 for none.
 
     None if the cycles are too far away to decide. Raises Unsolvable if no shorter step is allowed.

@@ -27,7 +27,8 @@ class TransitionSettings:
     """Merging of the changes along a path."""
 
     anchor_distance: float = 1e-4
-    """Distance from a crossing, in units of the path, of an additional anchor at which the pair must lead."""
+    """Distance, in units of the path, between the crossing of a pair that must lead and additional
+    anchors."""
     merge_distance: float = 1e-5
     """Relative distance below which open boxes are merged into one range."""
 
@@ -217,8 +218,8 @@ def _pairs_missed_as_leaders(
     list."""
     missed = []
     for crossing in crossings:
-        if crossing.kind.of_the_leader:
-            oscillates = crossing.kind.to_pair
+        if crossing.kind.changes_leader:
+            oscillates = crossing.kind.pair_leads_after
         else:
             if min(unstable, crossing.unstable_after) == 0 and not oscillates:
                 missed.append(path.variable(crossing.at))

@@ -105,6 +105,7 @@ def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
                 return 0.5, False
             continue
         smallest = min(abs(a[0]), abs(b[0]))
+        # By the trapezoidal rule smooth slopes explain the change between the anchors.
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
         lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])

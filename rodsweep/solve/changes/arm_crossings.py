@@ -98,6 +98,7 @@ class CrossingSearch:
         """Searches one interval: keeps its crossing, or divides the interval."""
         left = self.places.at(a)
         right = self.places.at(b)
+        # Equal counts leave room for a pair that crosses and returns.
         if left.unstable == right.unstable:
             share = next_count_place(left, right)
             if share == 0.0:

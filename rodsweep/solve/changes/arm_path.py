@@ -108,7 +108,7 @@ class ArmPath(PathProblem):
         return found
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p: followed, part of those of an earlier request, or solved."""
+        """The leading eigenvalues at p: followed, taken from an earlier request, or solved."""
         key = p, request
         if key not in self._spectra:
             followed = self.followed(p, request.modes)
@@ -118,9 +118,10 @@ class ArmPath(PathProblem):
         return self._spectra[key]
 
     def _solved(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p, out of an earlier solve at p if it has as many, else of a new one.
+        """The leading eigenvalues at p, of an earlier solve at p with enough modes, or of a new solve.
 
-        Who asks for many modes asks for one pair more next, beside a crossing: this pair is solved for, too.
+        Beside a crossing a request for many modes is followed by a request for one pair more, so that this
+        pair is solved at once.
         """
         earlier = self._solutions.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.

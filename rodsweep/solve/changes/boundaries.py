@@ -19,7 +19,7 @@ from .unstable_modes import Kind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChangeBoundarySettings:
-    """Changes of rows on curves of a plane."""
+    """Settings for the assignment of the changes on rows to curves."""
 
     same_coordinate: float = 1e-12
     """Two scaled coordinates with a smaller difference are equal."""
@@ -108,6 +108,7 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
     side = points[:, 1] - y
+    # A change on a point of the curve must not fall between two pieces by rounding.
     side[np.abs(side) < CHANGE_BOUNDARIES.same_coordinate] = 0.0
     if len(points) == 1:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_BOUNDARIES.change_distance else math.inf

@@ -72,6 +72,7 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
         back = follow(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
+    # Between coincident points, as on an edge, the chord has no direction.
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > CHANGE_CURVES.coincident_points
     return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
@@ -112,6 +113,7 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
         length = zero_along(component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy)
+        # The tangent turns by the difference of the ends over the chord, so its error moves the fold.
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None

@@ -81,6 +81,7 @@ class ChangeCurveProblem:
         """The point a step along the tangent; raises Unsolvable."""
         v, tangent = behind[-1]
         there = BoundaryPoint.on(self.near(v + length * tangent, tangent), tangent)
+        # The turn of the tangent alone controls the step length.
         return Stepped(there, 0.0, float(there.tangent @ tangent))
 
     def near(self, guess: Array, normal: Array) -> OnBoundary:
@@ -94,6 +95,7 @@ class ChangeCurveProblem:
         """Distances from the four edges of the plane, and 1 for a rod that is not crushed, else -1; (5,)."""
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
+        # Outside the plane the parameters may describe no rod.
         alive = 1.0 if not on_plane or self.boundary.plane.uncrushed(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 

@@ -126,6 +126,7 @@ class Tracer:
             smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
             if share == 0.0:
                 return []
+            # Two changes may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
                 self.proved = False
                 return []
@@ -158,6 +159,8 @@ class Tracer:
             # Counted halfway to the next eigenvalue: none but those that meet may lie right of it.
             behind = max(left.w[meeting].real, right.w[meeting].real)
             count = self.problem.count((found.growth_rate + behind) / 2, found.p)
+            # A different count means that other eigenvalues lead; an undecided one leaves the change
+            # unproved.
             if count.number in (meeting, None):
                 self.proved = self.proved and count.number == meeting
                 at, error = self.path.value(found.p, found.error)

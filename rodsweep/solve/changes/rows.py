@@ -93,6 +93,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
         return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
     start = float(values[alive][0])
     stop = float(values[alive][-1])
+    # Changes may lie between the last value that is not crushed and the crushing force.
     if name == "F" and not alive.all():
         stop = rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin)
     if name == "k1" and not alive.all():
@@ -125,8 +126,8 @@ def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArra
     blurred = np.zeros(len(values), dtype=bool)
     for crossing in found.crossings:
         beyond = values > crossing.at
-        if crossing.kind.of_the_leader:
-            oscillates[beyond] = crossing.kind.to_pair
+        if crossing.kind.changes_leader:
+            oscillates[beyond] = crossing.kind.pair_leads_after
         else:
             unstable[beyond] = crossing.unstable_after
         blurred |= np.abs(values - crossing.at) <= crossing.error
@@ -135,6 +136,7 @@ def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArra
     low, high = found.open_range
     if not math.isnan(low):
         blurred |= (values >= low) & (values <= high)
+        # Crossings in the open range change the number unseen; behind it the count at the end holds.
         unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
     motion = np.where(oscillates, Motion.oscillatory, Motion.monotone).astype(np.int8)
     motion[unstable > 0] = Motion.flutter

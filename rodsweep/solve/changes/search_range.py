@@ -47,6 +47,7 @@ class SearchedIntervals:
     def __iter__(self) -> Iterator[tuple[float, float]]:
         """Yields each interval once; raises Unsolvable if nothing beyond the first edge can be searched."""
         while True:
+            # The first part of an interval that cannot be searched to its end often can.
             if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE.last_halvings:
                 self._halvings += 1
                 middle = (self.reach.p + self._unsolvable) / 2

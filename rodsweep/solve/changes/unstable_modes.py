@@ -52,12 +52,12 @@ class Kind(IntEnum):
     pair_leads = 7
 
     @property
-    def of_the_leader(self) -> bool:
+    def changes_leader(self) -> bool:
         """Whether the leading eigenvalue changes its kind, as opposed to a pair that crosses the axis."""
         return self in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads)
 
     @property
-    def to_pair(self) -> bool:
+    def pair_leads_after(self) -> bool:
         """Whether a pair leads beyond the change."""
         return self in (Kind.onset, Kind.pair_leads)
 
@@ -139,6 +139,7 @@ class Counts:
         """The number just before b, carried from just after a and confirmed by a count between."""
         inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if inside:
+            # A gap may hide crossings, so the number is counted anew behind it.
             a = max(gap[1] for gap in inside)
         elif not self.certify:
             return unstable

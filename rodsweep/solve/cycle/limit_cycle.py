@@ -20,13 +20,13 @@ from ..motion.held_tip import held_by_tip
 from ..motion.integrator import forget_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, solved
-from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import Cycle, CycleRequest, MotionShapes, measured, padded
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import Neighbour, followed_cycle
 from .second_state import second_state
-from .small_motion import decay, small_cycle
+from .small_motion import reason_for_decay, small_cycle
 from .status import CycleStatus
 from .straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
 from .transient.motion_mesh import MOTION_MESH, motion_mesh
@@ -96,7 +96,7 @@ def _solve(
         cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
         return _with_chain_state(cycle, found, neighbour, along, request.accuracy, stability)
     by_mode = neighbour is None and request.tip is None
-    decays = decay(rod, w, request.amplitude) if by_mode else ""
+    decays = reason_for_decay(rod, w, request.amplitude) if by_mode else ""
     if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None

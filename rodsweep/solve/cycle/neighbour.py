@@ -24,7 +24,7 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NONE, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
-from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
 from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
 
@@ -127,9 +127,8 @@ def _next_mesh(
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
     """Largest cost of a replacing mesh in units of the present mesh's cost; 0 to keep the present mesh."""
     if before is None:
-        return (
-            NEIGHBOUR.new_mesh_cost
-        )  # an orbit's tails chose the first mesh of a chain, not measured errors
+        # An orbit's tails chose the first mesh of a chain, not measured errors.
+        return NEIGHBOUR.new_mesh_cost
     if not found.calibration.reach:
         return NEIGHBOUR.calibrated_mesh_cost
     step = relative_distance(before.branch.orbit.form, found.orbit.form, name)

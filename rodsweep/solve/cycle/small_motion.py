@@ -12,7 +12,7 @@ from ...model.rod import Rod
 from ..hopf.normal_form import accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable
-from .accuracy.refined_cycle import RefinedCycle
+from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit
@@ -47,7 +47,7 @@ def small_cycle(
     return found if settled and 1 - found.largest_multiplier >= TRANSIENT.neutral_distance else None
 
 
-def decay(rod: Rod, w: complex, amplitude: float) -> str:
+def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     """The reason why a small motion in the leading mode decays; empty if only an integration can decide."""
     if not (w.real < 0 < w.imag):
         return ""

@@ -97,6 +97,7 @@ class BautinSpace:
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
+        # Without points of the curve: the search needs only Hopf points near a guess.
         hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF.coarsest))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
@@ -117,6 +118,7 @@ class BautinSpace:
         tangent = np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
             chord = here - behind[-2].v
+            # Step lengths are shares of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
             there, on_edge = self._within(here, length * tangent)
@@ -134,6 +136,7 @@ class BautinSpace:
         ahead = (here + change)[:3]
         beyond = np.where(ahead > 1, 1.0, np.where(ahead < 0, 0.0, np.nan))
         shares = (beyond - here[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
+        # Held is the parameter that changes most: at a fold along another one this point is still unique.
         if np.isnan(shares).all():
             return self.solved(here + change, int(np.argmax(np.abs(change[:3])))), False
         which = int(np.nanargmin(shares))
@@ -160,6 +163,7 @@ class BautinSpace:
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The zero of Re c along a Hopf curve from a start, (3,), along `way`, (3,); raises Unsolvable."""
+        # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN.first_secant
         last = hopf.at(start, way, hopf.accuracy).share
@@ -187,6 +191,7 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     if first is BautinEnd.closed:
         return BautinCurve(tuple(place.point for place in back), (first, first))
     on, last = _followed(space, here)
+    # Both lists begin with the start, which is taken once.
     return BautinCurve(tuple(place.point for place in [*back[:0:-1], *on]), (first, last))
 
 

@@ -106,12 +106,14 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         rounding = _rounding(fine)
         if change <= max(accuracy, rounding):
             break
+    # The slope of the root of D has no error of a mesh.
     slope, bend = _slope(rod, w)
     if rod.standard:
         off = abs(fine.slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the mesh's slope
         slope = fine.slope
         off = abs(fine.slope - coarse.slope) / abs(slope)
+    # c was computed at the force found: an error of this force moves c.
     unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
     moved = COEFFICIENT.sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
@@ -130,6 +132,7 @@ def _with_errors(
     ratio = c.imag / c.real
     a = normal.amplitude
     b = normal.frequency_slope
+    # b = Im w' - ratio Re w': an error d of w' changes b by Im d - ratio Re d, at most |d| hypot(1, ratio).
     b_off = math.hypot(1, ratio) * (slope_off + abs(slope.real / c.real) * c_off)
     return HopfCoefficients(
         growth_slope=slope,
@@ -137,6 +140,7 @@ def _with_errors(
         landau=c,
         landau_error=landau_error,
         amplitude_coefficient=a,
+        # Half of the sum, because a is a square root.
         amplitude_coefficient_error=(slope_off / abs(slope.real) + c_off / abs(c.real) + force_error) / 2,
         frequency_slope=b,
         frequency_slope_error=b_off / abs(b) if b else math.inf,

@@ -91,6 +91,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
+        # Without gamma1 and the force, rods that differ in these alone share the search.
         path = Path(replace(rod.linear, F=0.0), "F")
         found = _hopf_points(path, end, request.certify, request.crossings)
         coefficients = tuple(
@@ -145,6 +146,7 @@ def _judged(
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(
         c.largest_error > request.accuracy for c in known
     )
+    # From the most to the least serious.
     verdicts = {
         CriticalityStatus.ended_early: found.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),

@@ -123,6 +123,7 @@ class HopfCurve:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
             rough = self.at(v, normal, GENERALISED_HOPF.first_sign_accuracy).coefficients.criticality
+            # An accurate c, which costs more, is needed only where the rough sign is undecided.
             return rough or self.at(v, normal, self.accuracy).coefficients.criticality
         except FAILURES:
             return math.nan
@@ -161,6 +162,7 @@ class HopfCurve:
         slope = (beyond.share - before.share) / (2 * GENERALISED_HOPF.slope_step)
         if abs(here.share) > GENERALISED_HOPF.vanishes or slope == 0:
             return None
+        # Points of undecided sign may lie between the two, before or behind the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
         along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF.tolerance
         return self.as_point(here, first + int(passed.sum()), chord * along)
@@ -170,6 +172,7 @@ class HopfCurve:
         there = here.there
         axes = self.boundary.plane.axes
         tangent = there.tangent
+        # An error along the chord is an error along the curve, longer by the angle between both.
         way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))
         values = [axis.value(float(x)) for axis, x in zip(axes, there.v[:2], strict=True)]
         errors = [

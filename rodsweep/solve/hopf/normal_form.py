@@ -129,6 +129,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     """
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _modes(transverse, guess)
+    # The mode is transverse, so its quadratic fields are longitudinal: the other block is not needed.
     h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
     h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))

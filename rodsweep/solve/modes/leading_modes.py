@@ -130,7 +130,9 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         mesh = mesh_for(rod, max(wave, LEADING_MODES.growth_wave_number), request.accuracy)
         grows = (spectrum.eigenvalues.real > LEADING_MODES.significant_errors * spectrum.error_estimate).any()
         known = spectrum.status != SpectrumStatus.undecided
-        stable = False if grows or spectrum.unstable_count > 0 else (True if known else None)
+        stable = True if known else None
+        if grows or spectrum.unstable_count > 0:
+            stable = False
         growth = growth_of(rod, mesh, request.accuracy, stable, rate)
         errors |= growth.errors(rate)
         result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))

@@ -42,7 +42,7 @@ class NormMaximumSettings:
 NORM_MAXIMUM = NormMaximumSettings()
 
 
-def highest(
+def largest_norm(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
     """((largest |exp(L t)|, its time), upper bound of |exp(L t)|) over the times span[0] to span[1].

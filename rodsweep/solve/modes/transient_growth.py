@@ -17,7 +17,7 @@ import numpy as np
 from ...discretization.straight.dense_form import AnyPencil, dense_form
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
-from .norm_maximum import NORM_MAXIMUM, highest
+from .norm_maximum import NORM_MAXIMUM, largest_norm
 from .numerical_abscissa import numerical_abscissa
 from .propagator import Propagator, shifted_inverse
 
@@ -146,7 +146,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         if not stop:
             stop, tail = _end(fine, first, patience)
         if stop > first and fine.norm(first)[0] >= 1:
-            peak, bound = highest(fine, (first, stop), abscissa, best[0], tolerance)
+            peak, bound = largest_norm(fine, (first, stop), abscissa, best[0], tolerance)
             best = max(best, peak)
             ceiling = max(ceiling, bound)
         stop = first

@@ -36,7 +36,8 @@ def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
 
 
 def normalised(orbit: Orbit) -> Array:
-    """Normalised values, (N + 1,): reversed values in units of the size, other values, the squared size."""
+    """Normalised values of an orbit, (N + 1,): reversed values in units of the size, other values, the
+    squared size."""
     values: Array = normalised_values(orbit.values, reflected(orbit))
     return values
 

@@ -23,11 +23,11 @@ from .following import (
     Corrected,
     crowding_of,
     distinct_roots,
-    keep,
     newton_step,
     settled_error,
+    store_root,
 )
-from .prediction import Track, guess_at, mates_of, place_two
+from .prediction import Track, guess_at, guess_two, mates_of
 
 Level = tuple[float, Array, Array]
 """(W, propagators, derivatives of the propagators by p), arrays of shape (elements, terms, 16)."""
@@ -86,8 +86,9 @@ def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, lev
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _settled(first, crowding_of(w, k), rank <= modes, level)
+            # Interpolation changes D as relative changes of w and p by `CONVERGED` would.
             error[k] += CONVERGED * (abs(last.w) + abs(p * last.slope))
-            if not keep(track, i, k, mate[k], last):
+            if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
     return distinct_roots(w, error) and np.abs(w).max() <= level[0]
@@ -138,7 +139,7 @@ def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: 
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    place_two(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
+                    guess_two(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, p[i], guess, modes, level):
             return i

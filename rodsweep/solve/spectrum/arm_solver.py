@@ -8,7 +8,7 @@ from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil
 from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool
-from .shift_invert import KRYLOV, Loaded, ShiftInvertSolver
+from .shift_invert import KRYLOV, ShiftInvertSolver, SolverContents
 
 
 class ArmSolver(ShiftInvertSolver):
@@ -23,7 +23,7 @@ class ArmSolver(ShiftInvertSolver):
         super().__init__(self.pencil, np.full(self.pencil.nodes, 1 / self.pencil.nodes))
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 
-    def load(self, rod: Rod, shift: float) -> Loaded:
+    def load(self, rod: Rod, shift: float) -> SolverContents:
         self.matrices = found = self.pencil.matrices(rod)
         if not np.isfinite(found.A.sum() + found.B.sum() + shift):
             raise FloatingPointError("matrix entries overflow with these parameters")
@@ -37,7 +37,7 @@ class ArmSolver(ShiftInvertSolver):
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return Loaded(finite_eigenvalues(rod, self.nodes), shift)
+        return SolverContents(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import POWERS, is_whole, none_is_missing, right_of_hull
+from ...determinant.arm.completeness import POWERS, has_conjugate, none_is_missing, right_of_hull
 from ...determinant.arm.count import count_right_of
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of, is_smooth
@@ -23,11 +23,11 @@ from ...determinant.roots import Roots
 from ..backend.kept import forget_all
 from ..point import FAILURES
 from .arm_following import follow_arms
-from .candidates import behind, lines
+from .candidates import line_of_proof, lines_of_count
 from .carried_count import judge_points, leading
-from .prediction import Track, part, track_from
+from .prediction import Track, part_of_track, track_from
 from .search import Search
-from .spectrum import Reached, SpectrumRequest
+from .spectrum import FollowedPoints, SpectrumRequest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,8 +62,7 @@ ARM_STRETCH = ArmStretchSettings()
 class Interval(NamedTuple):
     """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`.
 
-    arms: number of points inside the family; `p` are those followed. further: modes followed beyond those
-    wanted.
+    arms: number of points inside the family, of which `p` are followed. further: modes beyond those wanted.
     """
 
     p: Array
@@ -79,16 +78,16 @@ class Interval(NamedTuple):
         return int((self.known >= modes).sum())
 
 
-def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> Reached | None:
+def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
     """Spectra at the points p, (n,), up to the last one reached from the first; None if none is reached."""
     found = interval_of(path, p, request)
     if found is None:
         return None
     for i in np.flatnonzero(found.known < request.modes).tolist():
-        here = part(found.track, i, i + 1)
+        here = part_of_track(found.track, i, i + 1)
         found.known[i] = counted(path, found.hulls, float(found.p[i]), request.modes, here)
     good, unstable = judge_points(found.track, found.known, request.modes, request.accuracy)
-    return Reached(*leading(found.track, request.modes), unstable, good)
+    return FollowedPoints(*leading(found.track, request.modes), unstable, good)
 
 
 def interval_of(
@@ -135,7 +134,7 @@ def _proves_more(path: Path, found: Interval, request: SpectrumRequest, further:
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.at(p))
-    line = behind(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
+    line = line_of_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
         return none_is_missing(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
     except FloatingPointError:
@@ -174,12 +173,13 @@ def _followed(
     if reached == 0:
         return None
     arms = before.arms if before is not None and family is before.family else n
-    return Interval(p[:reached], part(track, 0, reached), known[:reached], family, hulls, arms, further)
+    return Interval(
+        p[:reached], part_of_track(track, 0, reached), known[:reached], family, hulls, arms, further
+    )
 
 
 def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, Hulls] | None:
-    """The family of the arms at points p, (n,), in order, and the hulls of the arms; None if no family
-    exists.
+    """The family of the arms at points p, (n,), in order, and their hulls; None if no family exists.
 
     first: eigenvalues at the first point, (m,), leading first.
     """
@@ -215,7 +215,7 @@ def _carried_on(before: Interval | None, p: float, request: SpectrumRequest, fur
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
     """Eigenvalues to follow from p on, (m,), pairs unsplit; None if the solve fails."""
     found = _roots(path, p, request, further)
-    return None if found is None else found.w[is_whole(found.w)]
+    return None if found is None else found.w[has_conjugate(found.w)]
 
 
 def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
@@ -232,8 +232,7 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
 
 
 def counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
-    unconfirmed.
+    """Number of eigenvalues at p that a count confirms to be all right of a line; 0 if unconfirmed.
 
     here: track of this point alone.
     """
@@ -242,7 +241,7 @@ def counted(path: Path, hulls: Hulls, p: float, modes: int, here: Track) -> int:
         return 0
     determinant = arm_determinant(path.at(p))
     hull = hull_at(hulls, p)
-    for line in lines(w[0].tolist(), modes):
+    for line in lines_of_count(w[0].tolist(), modes):
         number = count_right_of(line, determinant, hull, w[0], error[0]).number
         if number is not None:
             clear = (np.abs(w[0].real - line) > 2 * error[0]).all()

@@ -72,7 +72,7 @@ class Candidates:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class CountComparison:
     """Number of eigenvalues right of a line by the count, and number of found eigenvalues there."""
 
     count: Count
@@ -85,9 +85,11 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool) -> Candidates:
-    """Eigenvalues nearest the shift of the problem, at least `wanted` if enough converge, without spurious
-    ones.
+def candidates_on(
+    problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool
+) -> Candidates:
+    """Eigenvalues of a mesh nearest the problem's shift, without spurious ones; at least `wanted` if enough
+    converge.
 
     tight: whether the mesh is solved to its last digit before the refinement on D. After an error inside
     PETSc, SLEPc or LAPACK no eigenvalue is returned: on another mesh, with a different matrix, the solver may
@@ -108,24 +110,24 @@ def attempt(problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: boo
     return Candidates(mesh, kept_roots, kept, failure)
 
 
-def judge(problem: TransverseProblem, found: Roots, modes: int) -> Verdict:
+def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> CountComparison:
     """Counts the eigenvalues right of a line, and compares with those found. The line lies left of all wanted
     and all unstable eigenvalues."""
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
-    line = behind(w[modes - 1], errors[modes - 1])
+    line = line_of_proof(w[modes - 1], errors[modes - 1])
     complete, evaluations = problem.none_is_missing(line, found)
     if complete:
         here, clear = _right_of(line, w, errors)
-        return Verdict(Count(here, evaluations), here, clear)
-    for line in lines(w, modes):
+        return CountComparison(Count(here, evaluations), here, clear)
+    for line in lines_of_count(w, modes):
         count = problem.count(line, found)
         if count.number is not None:
             break
-    return Verdict(count, *_right_of(line, w, errors))
+    return CountComparison(count, *_right_of(line, w, errors))
 
 
-def behind(last: complex, error: float) -> float:
+def line_of_proof(last: complex, error: float) -> float:
     """The line <= 0 of a proof without a count, left of the last wanted eigenvalue and all unstable ones."""
     return min(last.real - BELOW * error - CLOSE_BELOW * abs(last), 0.0)
 
@@ -136,7 +138,7 @@ def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, 
     return sum(value.real > line for value in w), clear
 
 
-def lines(w: list[complex], modes: int) -> list[float]:
+def lines_of_count(w: list[complex], modes: int) -> list[float]:
     """Lines for the count, best first: in the gaps between real parts, the first wide gap foremost.
 
     The last line lies behind all eigenvalues found, where the count may include further eigenvalues.

@@ -86,7 +86,7 @@ def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> End:
 
 
 @compiled
-def carry(
+def carry_count(
     track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, known: NDArray
 ) -> int:
     """Index of the last point to which the count of the first point can be carried.
@@ -107,8 +107,10 @@ def carry(
             most = RECTANGLES + RECTANGLES_PER_POINT * (j - i)
             proved, _ = none_crosses(first, end, direction, most)
         if proved:
+            # The proof holds for the gap of the line, though more eigenvalues may have been known.
             known[i + 1 : j + 1] = gap
             i = j
+            # Where one proof succeeds, a proof over twice the way often does, too.
             ahead = 2 * ahead
         elif j == i + 1:
             return i

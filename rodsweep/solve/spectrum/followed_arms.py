@@ -11,7 +11,7 @@ from ...determinant.parameter_path import Path
 from .arm_following import follow_arms
 from .arm_stretch import ARM_STRETCH, Interval, counted, interval_of
 from .carried_count import judge_points, leading
-from .prediction import KnownRoots, Track, part, track_from
+from .prediction import KnownRoots, Track, part_of_track, track_from
 from .spectrum import Spectrum, SpectrumRequest
 from .status import SpectrumStatus
 
@@ -26,7 +26,8 @@ class FollowedArms:
 
     def __init__(self, path: Path, p: Array, modes: int):
         """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
-        self.path, self.request = path, SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
+        self.path = path
+        self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
         self.intervals: list[Interval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
         self._p = p
@@ -79,7 +80,7 @@ class FollowedArms:
     def _judge(self, p: float, modes: int) -> Iterator["JudgedPlace"]:
         """Yields the eigenvalues at p of every interval that contains p, up to the first that are complete.
 
-        Two modes more than grow are judged at once, because they are asked for next.
+        All growing modes and two more are judged at once, because the next requests need them.
         """
         for one in self.intervals:
             followed = one.track.w.shape[1]
@@ -89,6 +90,7 @@ class FollowedArms:
             known = 0
             wanted = 0
             growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
+            # More modes may grow at p than at the nearest point.
             while wanted < (needed := min(max(modes, growing + ARM_STRETCH.modes_beyond_growing), followed)):
                 wanted = needed
                 here, known = self._from_nearest(one, p, wanted)
@@ -110,14 +112,14 @@ class FollowedArms:
         i = int(np.argmin(np.abs(one.p - p)))
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
-            return part(one.track, i, i + 1), int(one.known[i])
+            return part_of_track(one.track, i, i + 1), int(one.known[i])
         for steps in ARM_STRETCH.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = track_from(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)
             track.order[0] = one.track.order[i]
             if follow_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-                return part(track, len(grid) - 1, len(grid)), int(known[-1])
+                return part_of_track(track, len(grid) - 1, len(grid)), int(known[-1])
         return None, 0
 
 

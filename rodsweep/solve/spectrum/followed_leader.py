@@ -11,16 +11,16 @@ import numpy as np
 
 from ...arrays import Complex
 from ...determinant.arm import roots as arm_roots
-from ...determinant.arm.completeness import last_point, none_is_missing
+from ...determinant.arm.completeness import largest_w_of_proof, none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
-from ...determinant.arm.count import size_of_count
+from ...determinant.arm.count import largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
 from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.newton import refined
 from ...determinant.roots import root_error
 from ...model.rod import Rod
-from .candidates import CANDIDATES, behind
+from .candidates import CANDIDATES, line_of_proof
 from .following import distinct_roots
 from .prediction import KnownRoots
 
@@ -72,9 +72,9 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
         return None
     determinant = arm_determinant(rod)
     first = complex(near[0])
-    size = last_point(behind(first, 0.0), hull, near)
+    size = largest_w_of_proof(line_of_proof(first, 0.0), hull, near)
     if not isfinite(size):
-        size = size_of_count(next(_lines(first)), determinant, hull)
+        size = largest_w_of_count(next(_lines(first)), determinant, hull)
     determinant.level(size)  # elements for the proof, which serve the eigenvalues too
     w = np.array([arm_roots.refined(value, determinant) for value in near.tolist()])
     error = np.array([arm_roots.root_error(value, determinant) for value in w.tolist()])
@@ -86,7 +86,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
         return None
     pairs = w.imag != 0
     known = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
-    complete, _ = none_is_missing(behind(leader, float(error[0])), *known, determinant, hull)
+    complete, _ = none_is_missing(line_of_proof(leader, float(error[0])), *known, determinant, hull)
     leads = complete or any(
         count_of_arm(line, determinant, hull, *known).number == (known.w.real > line).sum()
         for line in _lines(leader)
@@ -100,5 +100,5 @@ def _is_of_its_kind(w: complex, error: float, near: complex, accuracy: float) ->
 
 
 def _lines(w: complex) -> Iterator[float]:
-    """Lines behind a leading eigenvalue for its count, the cheapest first."""
+    """Lines left of a leading eigenvalue for its count, the cheapest first."""
     return (w.real - far * abs(w) for far in (CANDIDATES.far_behind, CANDIDATES.behind))

@@ -16,7 +16,7 @@ from ...determinant.roots import SAME_ROOT, sort_descending, two_roots
 from ...determinant.value import ROUND_OFF, TYPICAL_NOISE
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from .prediction import Track, guess_at, mates_of, place_two
+from .prediction import Track, guess_at, guess_two, mates_of
 
 MAX_EIGENVALUE_CORRECTIONS = 8
 """Maximum number of Newton steps for one eigenvalue."""
@@ -80,7 +80,7 @@ def settled_error(here: Corrected, crowding: float, exact: bool) -> float:
 
 
 @compiled
-def keep(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool:
+def store_root(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool:
     """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
 
     False for a pair that has become real. The error of eigenvalue k is in the track already.
@@ -138,6 +138,7 @@ def _correct_all(
     m = len(w)
     mate = np.empty(m, np.int64)
     mates_of(guess, mate)
+    # One step for all before further steps for any: the crowding of a root needs its neighbours.
     first = [Corrected(0j, 0j, math.inf, math.inf) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
@@ -152,7 +153,7 @@ def _correct_all(
         k = order[rank]
         if guess[k].imag >= 0:
             last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
-            if not keep(track, i, k, mate[k], last):
+            if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
     return distinct_roots(w, error)
@@ -175,7 +176,7 @@ def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients,
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    place_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
+                    guess_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
             track.order[i] = track.order[i - 1]
         if not _correct_all(track, i, guess, modes, rod, direction):
             return i

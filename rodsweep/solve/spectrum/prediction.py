@@ -51,7 +51,7 @@ def track_from(first: Complex, points: int) -> Track:
     return track
 
 
-def part(track: Track, start: int, stop: int) -> Track:
+def part_of_track(track: Track, start: int, stop: int) -> Track:
     """The track from point start up to point stop."""
     here = slice(start, stop)
     return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
@@ -142,7 +142,7 @@ def _two_ahead(
 
 
 @compiled
-def place_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
+def guess_two(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
     """Sets the guesses for two of the eigenvalues w, both (m,), in their order: real part, then frequency."""
     k, j = two
     one, other = roots
@@ -177,6 +177,6 @@ def guess_at(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -
             guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
         elif j > k:
             one, other, undecided = _two_ahead(track, i, (k, j), steps)
-            place_two(w, (k, j), (one, other), guess)
+            guess_two(w, (k, j), (one, other), guess)
             if undecided:
                 decided[k] = j

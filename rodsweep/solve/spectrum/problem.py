@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import last_point, none_is_missing
+from ...determinant.arm.completeness import largest_w_of_proof, none_is_missing
 from ...determinant.arm.count import count_right_of as count_of_arm
-from ...determinant.arm.count import is_countable, size_of_count
+from ...determinant.arm.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
@@ -142,8 +142,8 @@ class ArmProblem(TransverseProblem):
         if not self._to_prove or not self.bounded or len(raw) < self._to_prove:
             return 0.0
         line = min(float(np.sort(raw.real)[-self._to_prove]), 0.0)
-        size = last_point(line, self._hull, raw)
-        return size if isfinite(size) else size_of_count(line, self._determinant, self._hull)
+        size = largest_w_of_proof(line, self._hull, raw)
+        return size if isfinite(size) else largest_w_of_count(line, self._determinant, self._hull)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> Count:
         known = () if found is None else (found.w, found.error)

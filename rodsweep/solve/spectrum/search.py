@@ -13,7 +13,7 @@ from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
 from ...model.rod import Rod
 from ..backend.kept import forget_all
 from ..point import solved
-from .candidates import Candidates, Verdict, attempt, judge
+from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
 from .problem import TransverseProblem, problem_of
 from .spectrum import Spectrum, SpectrumRequest, no_spectrum, stated_errors, vectors_on_nodes
 from .status import SpectrumStatus
@@ -62,7 +62,7 @@ class JudgedCandidates:
     """Candidates with a count, if requested, and the largest error in units of its limit."""
 
     found: Candidates
-    verdict: Verdict | None
+    verdict: CountComparison | None
     short: float
     """Largest error in units of its limit."""
 
@@ -113,7 +113,7 @@ class Search:
         self.request_more(request.modes if wanted is None else wanted)
         self.best: JudgedCandidates | None = None
         self.stalled = self.failures = 0
-        self.lost: Verdict | None = None
+        self.lost: CountComparison | None = None
         """The last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether neither a mesh nor a count could decide which eigenvalue leads."""
@@ -125,7 +125,7 @@ class Search:
             if self.mesh.unknowns > RESOLUTION.most_unknowns or self.failures > SEARCH.max_failures:
                 break
             tight = self.with_vectors or turn > 0
-            found = attempt(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
+            found = candidates_on(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
             judged = self.judged(found)
             if judged is None:
                 continue
@@ -146,21 +146,21 @@ class Search:
                 self.wanted += self.modes
             self.mesh = self.problem.finer(self.mesh)
             return None
-        if self.wants_the_axis(found):
-            self.reach_the_axis(len(found.roots.w))
+        if self.needs_beyond_axis(found):
+            self.request_beyond_axis(len(found.roots.w))
             return None
-        verdict = judge(self.problem, found.roots, self.modes) if self.request.certify else None
+        verdict = compare_with_count(self.problem, found.roots, self.modes) if self.request.certify else None
         if verdict is not None and verdict.count.number is None and found.roots.ahead:
             self.unresolved = True
             self.mesh = self.problem.finer(self.mesh)
             return None
         if verdict is not None and verdict.count.number is not None and not verdict.agrees:
             self.lost = verdict
-            self.search_more(verdict.count.number, verdict.here)
+            self.request_missing(verdict.count.number, verdict.here)
             return None
         return JudgedCandidates(found, verdict, self.shortfall(found, verdict))
 
-    def shortfall(self, found: Candidates, verdict: Verdict | None) -> float:
+    def shortfall(self, found: Candidates, verdict: CountComparison | None) -> float:
         """`JudgedCandidates.short`. The mesh need not resolve roots of D that the count proves complete.
 
         The mesh must resolve vectors, and eigenvalues without a proof.
@@ -172,7 +172,7 @@ class Search:
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
-    def search_more(self, number: int, here: int) -> None:
+    def request_missing(self, number: int, here: int) -> None:
         """Requests more eigenvalues or a finer mesh: the winding number counts `number`, and `here` are
         found.
         """
@@ -185,13 +185,13 @@ class Search:
             self.mesh = self.problem.finer(self.mesh)
         self.request_more(more)
 
-    def wants_the_axis(self, found: Candidates) -> bool:
+    def needs_beyond_axis(self, found: Candidates) -> bool:
         """Whether eigenvalues beyond the axis are needed for a count, or for a list that nothing proves."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH.enough_unproved or self.problem.countable
 
-    def reach_the_axis(self, number: int) -> None:
+    def request_beyond_axis(self, number: int) -> None:
         """Requests more eigenvalues than the `number` found, which all grow: a count needs those beyond."""
         self.unresolved = True
         if number < self.wanted:

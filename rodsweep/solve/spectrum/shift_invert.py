@@ -93,7 +93,7 @@ class Pattern(Protocol):
         """Number of unknowns."""
 
 
-class Loaded(NamedTuple):
+class SolverContents(NamedTuple):
     """Contents of a filled solver.
 
     finite: number of finite eigenvalues. shift: in units of the pencil. pace: eigenvalues of the pencil are
@@ -136,7 +136,7 @@ class ShiftInvertSolver(ABC):
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
-        self.loaded = Loaded(0, 0.0)
+        self.loaded = SolverContents(0, 0.0)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
@@ -144,6 +144,7 @@ class ShiftInvertSolver(ABC):
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
+        # `load` has already shifted the matrix.
         eps.setTarget(0.0)
         transform = eps.getST()
         transform.setType(SLEPc.ST.Type.SINVERT)
@@ -156,7 +157,7 @@ class ShiftInvertSolver(ABC):
         return eps
 
     @abstractmethod
-    def load(self, rod: Rod, shift: float) -> Loaded:
+    def load(self, rod: Rod, shift: float) -> SolverContents:
         """Fills A - shift B and B for a rod."""
 
     @abstractmethod

@@ -20,12 +20,12 @@ from ...model.rod import Rod, coefficients_of
 from ..backend.kept import forget_all
 from ..point import FAILURES
 from .arm_stretch import followed_arms
-from .carried_count import best_gap, carry, judge_points, leading, line_in
+from .carried_count import best_gap, carry_count, judge_points, leading, line_in
 from .following import follow
-from .prediction import Track, part, track_from
+from .prediction import Track, part_of_track, track_from
 from .search import Search, SpectrumRequest, solve_spectrum
 from .search import warm_up as warm_up_search
-from .spectrum import Reached, Spectrum, stated_errors
+from .spectrum import FollowedPoints, Spectrum, stated_errors
 from .status import SpectrumStatus
 
 
@@ -112,7 +112,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
     }
 
 
-def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
+def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
     """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
@@ -130,11 +130,11 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
     n = follow(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
     if n == 0:
         return None
-    track = part(track, 0, n)
+    track = part_of_track(track, 0, n)
     known = _known_along(rest, track, modes, complete)
-    reached = part(track, 0, len(known))
+    reached = part_of_track(track, 0, len(known))
     good, unstable = judge_points(reached, known, modes, request.accuracy)
-    return Reached(*leading(reached, modes), unstable, good)
+    return FollowedPoints(*leading(reached, modes), unstable, good)
 
 
 def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
@@ -149,8 +149,8 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
     known[0] = complete
     at = 0
     while True:
-        rest = part(track, at, n)
-        at += carry(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
+        rest = part_of_track(track, at, n)
+        at += carry_count(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
         if at == n - 1:
             break
         gap = best_gap(track, at + 1, modes)

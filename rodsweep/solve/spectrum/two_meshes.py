@@ -77,9 +77,8 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             here = _spectrum(problem, request, mesh, found, _errors(found.w, before.w, _scale(problem)))
             if here.status == SpectrumStatus.ok:
                 return here
-            best = (
-                here if best is None else min(best, here, key=_worst)
-            )  # the finest mesh may have the largest rounding error
+            # The finest mesh may have the largest rounding error.
+            best = here if best is None else min(best, here, key=_worst)
         before = found
     if best is None:
         raise Unsolvable("no mesh within the limit gives the requested number of eigenvalues")
@@ -107,6 +106,8 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
     """
     solver = problem.solver(mesh)
     wanted = modes + TWO_MESHES.first_spare
+    # The solver finds the eigenvalues nearest the shift, which need not lead: ask for more until the leading
+    # ones stay.
     before = np.empty(0, complex)
     while True:
         raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)

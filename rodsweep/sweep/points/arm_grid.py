@@ -89,7 +89,8 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 def _forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """F of a load of 1 on each arm; tapers: those of the replaced parameters, None for the arms' own."""
+    """F of a load of 1 on each arm. tapers: values that replace the arms' own taper, None for no
+    replacement."""
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
@@ -110,7 +111,8 @@ def _force_of(
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:
-    """Codes of points with those of a load relative to flutter; flutter: its F, the same for all loads."""
+    """Codes of points, with the codes for a load relative to flutter. flutter: F at flutter, equal for all
+    loads."""
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     codes: Array = np.where(coverage == SLENDER, found, coverage)
     return codes

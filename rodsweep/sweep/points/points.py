@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import SLENDER, moved_by
+from ...config.arm.axes import SLENDER, parameter_of_axis
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
@@ -41,8 +41,8 @@ class Points:
     build: Build = STANDARD
     """Law and profile of all rods."""
     builds: tuple[Build, ...] = ()
-    """Law and profile of each arm of a grid over quantities, in the order of the points, if arms differ by
-    them; each is that of equally many points. Empty if `build` is that of all."""
+    """Law and profile of each arm of a grid over quantities, in the order of the points; each serves equally
+    many points. Empty if `build` serves all."""
     coverage: NDArray[np.int8] | None = None
     """Whether the rod model covers each point of an arm, (points,): SLENDER, or the reason why not, from
     `rodsweep.config.arm.axes`."""
@@ -62,7 +62,7 @@ class Points:
     @property
     def moved(self) -> tuple[str, ...]:
         """The parameter that varies along each axis; empty for several parameters or no parameter."""
-        return self.names if self.is_grid else tuple(map(moved_by, self.over))
+        return self.names if self.is_grid else tuple(map(parameter_of_axis, self.over))
 
     @property
     def identity(self) -> list[Array]:
@@ -113,7 +113,7 @@ class Points:
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """(different builds, number of the one of each rod of `of_rods`, (rods,)), of a list of rods."""
+        """(distinct builds, index of the build of each rod of `of_rods`, (rods,))."""
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]

@@ -52,7 +52,8 @@ class DiagramCurves:
     """Special points with cycles, by number of row, for rows solved in this process."""
 
     def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """Returns the row unchanged, and keeps its special points, at most those of MAX_KEPT_ROWS rows."""
+        """Returns the row unchanged, and keeps its special points unless MAX_KEPT_ROWS rows are kept
+        already."""
         if len(self.special) < MAX_KEPT_ROWS:
             self.special[number] = row.special
         return row

@@ -113,9 +113,9 @@ def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list
 
 
 def _reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
-    """At each point of a curve the reason for the curve's end before and after the point, 0 for none.
+    """Reasons why a curve ends before and behind each of its points, 0 where the curve goes on.
 
-    ends: reasons for the ends at the first and the last point, which a curve of one point has both.
+    ends: reasons for the ends at the first and the last point, which may be the same point.
     """
     reasons = [{"start": 0, "end": 0} for _ in range(count)]
     reasons[0]["start"], reasons[-1]["end"] = ends

@@ -146,13 +146,13 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     soft = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
     step = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
     rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=step))
-    wanted, whole = [], search.attempt
+    wanted, whole = [], search.candidates_on
 
     def attempt(problem, mesh, number, vectors, tight):
         wanted.append(number)
         return whole(problem, mesh, number, vectors, tight)
 
-    monkeypatch.setattr(search, "attempt", attempt)
+    monkeypatch.setattr(search, "candidates_on", attempt)
     monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, enough_unproved=2))
     if not countable:
         monkeypatch.setattr(hull, "HULL", replace(hull.HULL, least_remainder=1.0))

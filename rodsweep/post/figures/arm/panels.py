@@ -9,6 +9,9 @@ from ....arrays import Array
 from ....results.file.view import View
 from .quantities import in_typed
 
+EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
+"""Words for the kinds of thresholds."""
+
 
 @dataclass(frozen=True, slots=True)
 class Panel:
@@ -29,8 +32,8 @@ class Panel:
 
 
 def _of_thresholds(view: View) -> list[Panel]:
-    # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     """Load and frequency at flutter, with the loads at the onset of oscillations and at restabilization."""
+    # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
@@ -40,10 +43,6 @@ def _of_thresholds(view: View) -> list[Panel]:
         Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),
     ]
-
-
-EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
-"""Words for the kinds of thresholds."""
 
 
 def _of_modes(view: View) -> list[Panel]:

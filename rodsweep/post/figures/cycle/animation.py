@@ -14,7 +14,7 @@ from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import View
 from ..layout.fitting import fit
 from ..style import FIRST, SECOND
-from .portrait import clamp, force_arrow, frame, tip_path
+from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
 from .selection import SHAPES, Selection, StoredCycle, chosen_cycles
 
 FILMS = (".gif", ".mp4")
@@ -60,7 +60,7 @@ def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
     figure.suptitle(selection.title)
     panels[0].set_ylabel(cycles[0].units.along("y"))
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
-    frame(panels, cycles)
+    set_frame(panels, cycles)
     low, high = panels[0].get_ylim()  # shared by all panels
     panels[0].set_ylim(low - TIME_HEIGHT * (high - low), high)
     for arm in arms:
@@ -88,8 +88,8 @@ class MovingArm:
         self.axes = axes
         self.cycle = cycle
         self.frames = len(cycle.values["shape_x"])
-        tip_path(axes, cycle)
-        clamp(axes, cycle.units.length)
+        draw_tip_path(axes, cycle)
+        draw_clamp(axes, cycle.units.length)
         fading = np.linspace(0.85, 0.45, GHOSTS)
         self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
         (self.rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ....arrays import Array
 from ....watch import SolvePosition, report
 from ..style import FIRST
-from .portrait import MARGIN, WALL_DEPTH, clamp
+from .portrait import MARGIN, WALL_DEPTH, draw_clamp
 
 SIZE = (3.6, 4.0)
 """Width and height of a frame, in inches."""
@@ -58,7 +58,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
 
 def _frame(axes: Axes, motion: FilmedMotion) -> None:
     """The clamp, and axes of equal scales around all shapes."""
-    clamp(axes, motion.length)
+    draw_clamp(axes, motion.length)
     margin = MARGIN * motion.length
     left = min(float(motion.x.min()), -WALL_DEPTH * motion.length)
     reach = float(abs(motion.y).max()) + margin

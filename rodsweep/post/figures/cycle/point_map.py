@@ -74,7 +74,7 @@ def _varying(names: list[str]) -> str:
         return "no parameter varies"
     if names[1:]:
         return f"{', '.join(names)} vary; --at {names[-1]}=VALUE selects the points with one value"
-    return f"only {names[0]} varies; leave out --what maps for its lines"
+    return f"only {names[0]} varies; without --what maps, lines over {names[0]} are drawn"
 
 
 def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:

@@ -66,8 +66,8 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     # Light to dark, so that colour-blind readers see the order.
     colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST_ARM, 1, len(drawn))))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
-        tip_path(axes, cycle)
-        clamp(axes, cycle.units.length)
+        draw_tip_path(axes, cycle)
+        draw_clamp(axes, cycle.units.length)
         for k, place in enumerate(drawn):
             x, y, theta = (cycle.values[name][place] for name in SHAPES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
@@ -78,7 +78,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
             draw_emergence(upper, lower, cycle)
         else:
             _tip(upper, lower, cycle, end)
-    frame(shapes, cycles)
+    set_frame(shapes, cycles)
     shapes[0].set_ylabel(cycles[0].units.along("y"))
     label_tip(*tips[0], cycles[0].units)
     _phase_bar(figure, shapes, colours, step, narrow)
@@ -138,7 +138,7 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
     bar.ax.minorticks_off()
 
 
-def tip_path(axes: Axes, cycle: StoredCycle) -> None:
+def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """Draws the closed path of the tip."""
     from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
 
@@ -156,7 +156,7 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
     )  # fmt: skip
 
 
-def clamp(axes: Axes, length: float) -> None:
+def draw_clamp(axes: Axes, length: float) -> None:
     """Draws the wall that clamps the rod at u = 0; length: L in the units of the axes."""
     depth = WALL_DEPTH * length
     half = WALL_HALF * length
@@ -165,7 +165,7 @@ def clamp(axes: Axes, length: float) -> None:
     axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
 
 
-def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
+def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """Shows the same region in all panels, with equal scales for x and y."""
     along_x, along_y = region(cycles)
     for axes in panels:

@@ -179,7 +179,8 @@ def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[st
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(common parameters, or an arm's quantities, of points from 1, those that distinguish each), as text."""
+    """(parameters, or quantities of an arm, that all points share; those in which each point differs), as
+    text."""
     if all(name in view.quantities for name in REQUIRED):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns

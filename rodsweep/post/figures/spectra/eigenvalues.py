@@ -29,7 +29,7 @@ def draw_eigenvalues(view: View) -> Figure:
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     handles = _mark(axes, growth, frequency, growth > 0)
-    spread(axes, growth, frequency)
+    scale_if_spread(axes, growth, frequency)
     for place in range(min(modes, MAX_NUMBERED)):
         if np.isfinite(growth[place]):
             at = growth[place], frequency[place]
@@ -52,7 +52,7 @@ def draw_list_of_spectra(view: View) -> Figure:
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
     for axes, values, part in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
         handles = _mark(axes, number, values, growth > 0)
-        spread(axes, None, values)
+        scale_if_spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
     number_points(panels[1], view, len(growth))
@@ -71,7 +71,7 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
     return handles
 
 
-def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
+def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes an axis symmetric logarithmic if its numbers, of any shape, differ much in size."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)

@@ -14,7 +14,7 @@ from ....sweep.points.points import lines_over
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
-from .eigenvalues import spread
+from .eigenvalues import scale_if_spread
 
 FOLLOWED_ROOTS = {
     "rightmost": "the two rightmost roots",
@@ -53,7 +53,7 @@ def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.nd
     return w[:, :2]
 
 
-def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def with_gaps(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(x, w) with a gap of NaN where the followed roots are exchanged for other roots between two points."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
@@ -76,7 +76,7 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
     def breaks(roots: str) -> int:
         lines = (_followed(view, roots) for view in views)
-        return sum(len(broken(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
+        return sum(len(with_gaps(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
     return min(("smallest", "rightmost"), key=breaks)
 
@@ -90,7 +90,7 @@ def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
     """Draws all roots, (n, modes), in the complex plane, coloured by the parameter, (n,)."""
     across = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=across.ravel(), cmap="viridis_r")
-    spread(axes, w.real, w.imag)
+    scale_if_spread(axes, w.real, w.imag)
     axes.figure.colorbar(dots, ax=axes, label=label)
 
 
@@ -118,10 +118,9 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     x = view.axes[name]
     w = _followed(view, roots)
     if roots != "all":
-        x_broken, w = broken(x, w)
-        for i, (colour, width) in enumerate(
-            ((FIRST, 3.0), (SECOND, 1.2))
-        ):  # thin on thick, so that both show where they coincide
+        x_broken, w = with_gaps(x, w)
+        # Thin on thick, so that both show where they coincide.
+        for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
             axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
@@ -182,17 +181,14 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
+    # The unstable range begins behind a bracketed loss of stability, and ends before a bracketed return.
     starts, ends = (
         [
-            change.position
-            if isinstance(change, LocatedChange)
-            else change.high
-            if kind == "hopf"
-            else change.low
+            change.position if isinstance(change, LocatedChange) else getattr(change, inner)
             for change in found
             if change.kind == kind
         ]
-        for kind in ("hopf", "restabilization")
+        for kind, inner in (("hopf", "high"), ("restabilization", "low"))
     )
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))

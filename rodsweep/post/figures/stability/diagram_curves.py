@@ -31,7 +31,8 @@ CYCLE_MARKS = {
 }
 """Legend entry and marker, by kind, of special points of cycles on rows that lie on no curve."""
 ON_CURVE = 1e-3
-"""Largest distance of a point of a row from its curve, in units of the axis, as chords of the curve have."""
+"""Distance, in units of the axis, up to which a point of a row lies on its curve; chords deviate by as
+much."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
 """Legend entry and colour of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6

@@ -202,7 +202,10 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
-    """Line about thresholds, each with the points of its line, (points,), in an arm's units, or empty."""
+    """Sentence on an arm's thresholds in SI units, as a list; empty without an arm or a threshold.
+
+    found: thresholds of a kind, each with the indices of its points, (points,).
+    """
     if not view.quantities or not found:
         return []
     points = np.concatenate([points for _, points in found])
@@ -221,5 +224,5 @@ def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
 
 
 def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Quantity at points of a file; a quantity of shape () is that of all points."""
+    """Quantity at points of a file; a quantity of shape () holds at all points."""
     return values[points] if values.ndim else values

@@ -32,9 +32,8 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     digest = sha256(json.dumps(meant, sort_keys=True).encode())
     for column in columns:
         digest.update(len(column).to_bytes(8, "little"))
-        digest.update(
-            np.ascontiguousarray(column + 0.0).tobytes()
-        )  # -0.0 becomes 0.0, so that equal values have equal bytes
+        # -0.0 becomes 0.0, so that equal values have equal bytes.
+        digest.update(np.ascontiguousarray(column + 0.0).tobytes())
     return digest.hexdigest()
 
 

@@ -86,7 +86,8 @@ class BorderedMatrix:
         return changed
 
     def back_substitute(self, starts: Array, columns: Array) -> Array:
-        """Changes of states, (m, N + 1), from those of the start, (m, n), and reduced sides, (K, s, m, n)."""
+        """Changes of orbits, (m, N + 1), from changes of their starts, (m, n), and reduced right sides, (K,
+        s, m, n)."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
@@ -125,7 +126,7 @@ class BorderedMatrix:
         return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
 
     def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
-        """Change, (N + 1,), for right sides of the ends, (n + 2,), and a share of those of the stages, (K, s,
+        """Change, (N + 1,), for right sides of the ends, (n + 2,), and a share of the stages' sides, (K, s,
         n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
@@ -135,7 +136,8 @@ class BorderedMatrix:
         return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
 
     def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
-        """Change of all, (N + 1,), from that of the ends, (n + 2,), and a share of right sides, (K, s, n)."""
+        """Change of all values, (N + 1,), from the change of the ends, (n + 2,), and a share of sides, (K, s,
+        n)."""
         n = len(self.orbit.start)
         stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
         stages = np.ascontiguousarray(stages[:, :, None])

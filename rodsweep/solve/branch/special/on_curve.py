@@ -15,11 +15,12 @@ from ..bordered.scale import Scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CrossingSettings:
+class AcrossCurveSettings:
     """Settings of the corrections across a curve of special points, and of the errors of its points."""
 
     accuracy: float = 1e-7
-    """Relative accuracy of the line's parameter on a curve; special points of rows have 1e-9."""
+    """Relative accuracy of the line's parameter at the points of a curve. Special points on rows are solved
+    to 1e-9."""
     max_unmeasured: int = 3
     """The error is measured at least at every third point."""
     small_fold_cycle: float = 0.05
@@ -56,7 +57,7 @@ class CrossingSettings:
     """Maximum number of finer meshes for one point."""
 
 
-ACROSS_CURVE = CrossingSettings()
+ACROSS_CURVE = AcrossCurveSettings()
 
 
 @dataclass(frozen=True, eq=False)

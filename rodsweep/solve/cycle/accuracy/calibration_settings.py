@@ -55,7 +55,7 @@ class CalibrationSettings:
     """Smallest error of a repeated calibration, in units of the previous error scaled with the tails. Near a
     change of sign an error is small at one cycle, and has the old size three cycles later."""
     min_tail: float = 1e-15
-    """Smallest tail, for rounding errors."""
+    """Smallest tail of coefficients by which errors are scaled: smaller tails are rounding errors."""
 
 
 CALIBRATION = CalibrationSettings()

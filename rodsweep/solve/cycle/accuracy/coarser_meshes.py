@@ -28,9 +28,9 @@ class CoarserMeshSettings:
     """Settings for the coarser meshes that predict a cycle on a fine mesh."""
 
     fewer_orders: int = 2
-    """Orders of the fine mesh minus those of the coarse mesh made to predict it, at least."""
+    """Least difference of the orders of a fine mesh and of the coarse mesh that is made to predict it."""
     most_fewer_orders: int = 4
-    """Largest such difference."""
+    """Largest difference of the orders of these two meshes."""
     fall_between: float = 1.5
     """Smallest expected fall of the errors in space from the coarse mesh to the fine mesh, natural logarithm,
     which determines the difference of the orders. Where coefficients decay slowly, errors oscillate with the
@@ -38,7 +38,7 @@ class CoarserMeshSettings:
     slender cones were beyond their estimates, up to 2.2 times; none was with this fall, the largest 0.4 times
     its estimate."""
     more_intervals: float = 0.4
-    """Additional intervals of the fine mesh, in units of those of the coarse mesh made to predict it."""
+    """Additional intervals of the fine mesh, as a fraction of the intervals of the coarse mesh."""
     more_predicted_orders: int = 2
     """Largest difference in orders of a predicted mesh and the fine mesh for which the coarse mesh was
     made."""
@@ -100,7 +100,7 @@ class CoarserMeshes:
         return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
-        """Errors of a finer mesh, (4,), `factor` times smaller than those of the coarse mesh."""
+        """Errors of a finer mesh, (4,), `factor` times smaller than the errors of the coarse mesh."""
         errors: Array = path_differences(self._coarse.path, finer.path) / (factor - 1)
         return errors
 
@@ -116,6 +116,6 @@ def _fall(orbit: Orbit) -> float:
 
 
 def _fewer_orders(near: Orbit) -> int:
-    """Orders of a fine mesh minus those of the coarse mesh that predicts it, for a cycle near an orbit."""
+    """Difference of the orders of a fine and its coarse mesh, for a cycle near an orbit."""
     needed = ceil(COARSER_MESHES.fall_between / _fall(near))
     return min(max(needed, COARSER_MESHES.fewer_orders), COARSER_MESHES.most_fewer_orders)

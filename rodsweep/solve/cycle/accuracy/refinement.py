@@ -19,9 +19,9 @@ from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
+from .cycle_verdict import RefinedCycle
 from .finer_meshes import calibrated
 from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
-from .refined_cycle import RefinedCycle
 from .refinement_settings import REFINEMENT
 
 
@@ -74,9 +74,8 @@ def refine(
             found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
-            if (
-                aim <= REFINEMENT.finest_accuracy or not orbit.symmetric
-            ):  # only symmetric cycles are born at Hopf points
+            # Only symmetric cycles are born at Hopf points.
+            if aim <= REFINEMENT.finest_accuracy or not orbit.symmetric:
                 raise
             aim = max(REFINEMENT.aim_factor * aim, REFINEMENT.finest_accuracy)
             mesh = wanted_mesh(orbit, aim, orbit.stages)

@@ -16,7 +16,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...point import Unsolvable
-from ..accuracy.refined_cycle import RefinedCycle
+from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus
@@ -122,7 +122,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     size = float(np.linalg.norm(later - later.mean(axis=0)))
     if size == 0 or largest_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.inverse_gap:
         return None
-    basis = fourier(best * numbers, TORUS_TEST.harmonics)
+    basis = fourier_basis(best * numbers, TORUS_TEST.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], fitted, rcond=None)[0]
     return Modulation(best, float(np.linalg.norm(later - basis[half:] @ series)) / size)
@@ -135,7 +135,7 @@ def fitted_angle(returns: Array, angle: float) -> float:
     numbers = np.arange(len(returns))
 
     def residual(at: float, harmonics: int) -> float:
-        basis = fourier(at * numbers, harmonics)
+        basis = fourier_basis(at * numbers, harmonics)
         return float(np.linalg.norm(returns - basis @ np.linalg.lstsq(basis, returns, rcond=None)[0]))
 
     # The minimum for one harmonic is 2 pi/k wide, that for m harmonics m times narrower.
@@ -159,7 +159,7 @@ def fitted_angle(returns: Array, angle: float) -> float:
     return best
 
 
-def fourier(phases: Array, harmonics: int) -> Array:
+def fourier_basis(phases: Array, harmonics: int) -> Array:
     """1, cosines and sines of the multiples of phases (k,), shape (k, 2 harmonics + 1)."""
     multiples = np.outer(phases, np.arange(1, harmonics + 1))
     return np.hstack([np.ones((len(phases), 1)), np.cos(multiples), np.sin(multiples)])

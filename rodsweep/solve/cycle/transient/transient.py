@@ -21,7 +21,7 @@ from ...motion.integrator import INTEGRATOR, Ending, Trajectory, integrator, rel
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import Unsolvable
-from ..accuracy.refined_cycle import RefinedCycle
+from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle import CycleRequest
 from ..status import CycleStatus
@@ -163,7 +163,8 @@ class Transient:
         return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
-        """Linear growth rate of the beam, 1/tau2, from its spectrum. rate: that of the rod of `form`.
+        """Linear growth rate of the beam, 1/tau2, from its spectrum. rate: linear growth rate of the rod of
+        `form`.
 
         The mesh of the beam has this rate to 1e-10 per period, but the computed eigenvalues of the beam's
         matrix have rounding errors of 1e-4 for stiff rods.

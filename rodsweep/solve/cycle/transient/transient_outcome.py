@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..accuracy.refined_cycle import RefinedCycle
+from ..accuracy.cycle_verdict import RefinedCycle
 from ..status import CycleStatus
 
 

@@ -55,11 +55,11 @@ def compressed(A: Array, negligible: float) -> Array:
     n = len(A)
     columns = A.T.copy()
     norms = np.empty(n)
-    # as rows q and r of A = sum q r^T
-    Q = np.empty((n, n))
-    R = np.zeros((n, n))
     for j in range(n):
         norms[j] = np.sqrt((columns[j] ** 2).sum())
+    # The rows q and r of A = sum q r^T: rows are contiguous.
+    Q = np.empty((n, n))
+    R = np.zeros((n, n))
     least = negligible * norms.max()
     rank = 0
     while rank < n:

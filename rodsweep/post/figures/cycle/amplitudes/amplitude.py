@@ -27,7 +27,7 @@ BRANCH_LOOKS = tuple(
 MIN_ARROW_POINTS = 4
 """Least number of points of a line that gets an arrow."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Open markers, over those of the branch, for unstable cycles."""
+"""Open markers for unstable cycles, drawn over the markers of the branch."""
 
 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
@@ -78,9 +78,8 @@ def _draw_branches(
     lost = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
-        if (
-            branch.view is not branches[0].view
-        ):  # open, larger markers leave the markers of the first file visible
+        # Open, larger markers leave the markers of the first file visible.
+        if branch.view is not branches[0].view:
             look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         word, upward = words[branch.view.path]
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
@@ -126,7 +125,8 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
             continue
         ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
         start, end = ends if upward else ends[::-1]
-        tip, tail = (branch.x[end], values[end]), (branch.x[start], values[start])
+        tip = branch.x[end], values[end]
+        tail = branch.x[start], values[start]
         axes.annotate("", tip, tail, arrowprops=arrow, zorder=4)
 
 

@@ -1,0 +1,11 @@
+"""Solver processes are copies of a process that has imported everything, and has not started MPI or PETSc."""
+
+from multiprocessing import forkserver, get_context
+
+FORKS = get_context("forkserver")
+
+
+def prepare() -> None:
+    """Begins to import in that process, while the page imports its own modules."""
+    FORKS.set_forkserver_preload([f"{__package__}.worker"])
+    forkserver.ensure_running()

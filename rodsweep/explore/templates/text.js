@@ -1,0 +1,6 @@
+const element = document.querySelector(`[data-root-id="${text.id}"]`)
+element.innerHTML = text.text
+if ("is_stoppable" in text) {
+  element.parentElement.classList.toggle("solving", text.text !== "")
+  element.parentElement.classList.toggle("stoppable", text.is_stoppable)
+}
