@@ -16,11 +16,11 @@ from .dominant_wave import ArmSamples, slope_of_wave
 from .phase_node import LEVELS_ABOVE, Level
 from .value import chain_value
 
-LOWEST = 0.01
+LOWEST_BESIDE = 0.01
 """Height of the first point, in 1/tau2: crossings of the arms of the surveys lie above 1."""
-RATIO = 1.25
+RATIO_BESIDE = 1.25
 """Ratio of the heights of two points."""
-CLOSE = 0.5
+CLOSE_BESIDE = 0.5
 """Largest first step, and largest distance of a zero from its point, in units of the height."""
 MAX_STEPS_BESIDE = 12
 """Maximum number of Newton steps from one point."""
@@ -36,14 +36,14 @@ def modes_beside_axis(determinant: ArmDeterminant, top: float, known: Complex) -
     Raises FloatingPointError if no elements resolve the arm there.
     """
     found = known[:MOST_BESIDE]
-    height = LOWEST
+    height = LOWEST_BESIDE
     while height < top:
-        W, propagators = determinant.level((1 + CLOSE) * height, LEVELS_ABOVE)
+        W, propagators = determinant.level((1 + CLOSE_BESIDE) * height, LEVELS_ABOVE)
         heights = [height]
-        while heights[-1] * RATIO < min(top, W / (1 + CLOSE)):
-            heights.append(heights[-1] * RATIO)
+        while heights[-1] * RATIO_BESIDE < min(top, W / (1 + CLOSE_BESIDE)):
+            heights.append(heights[-1] * RATIO_BESIDE)
         found = _modes_from(np.array(heights), found, (W, propagators), determinant.gauss_samples)
-        height = heights[-1] * RATIO
+        height = heights[-1] * RATIO_BESIDE
     return found
 
 
@@ -74,11 +74,11 @@ def _mode_near(start: complex, known: Complex, level: Level, samples: ArmSamples
         slope = value.D_w / value.D - slope_of_wave(w, samples)
         for k in range(len(known)):
             slope -= 1 / (w - known[k]) if w != known[k] else 0j
-        if not abs(slope) * CLOSE * start.imag > 1:
+        if not abs(slope) * CLOSE_BESIDE * start.imag > 1:
             break
         step = 1 / slope
         w -= step
-        if not (w.imag > 0 and abs(w - start) < CLOSE * start.imag):
+        if not (w.imag > 0 and abs(w - start) < CLOSE_BESIDE * start.imag):
             break
         if abs(step) <= CONVERGED_BESIDE * abs(w):
             return w
