@@ -97,7 +97,8 @@ class Sharing:
     def give_film(self, gif: bytes) -> None:
         """Lets the browser save a film."""
         self.film.tags = [b64encode(gif).decode()]
-        self.film.tags = [""]  # a film of half a megabyte need not stay in the page
+        # Half a megabyte need not stay in the page; taken away in the same message, nothing would be saved.
+        self.film.document.add_next_tick_callback(lambda: self.film.update(tags=[""]))
 
     def _choose_task(self, attribute: str, old: str, new: str) -> None:
         self.lines.config = self._config()
