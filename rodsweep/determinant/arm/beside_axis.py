@@ -42,7 +42,7 @@ def modes_beside_axis(determinant: ArmDeterminant, top: float, known: Complex) -
         heights = [height]
         while heights[-1] * RATIO_BESIDE < min(top, W / (1 + CLOSE_BESIDE)):
             heights.append(heights[-1] * RATIO_BESIDE)
-        found = _modes_from(np.array(heights), found, (W, propagators), determinant.samples)
+        found = _modes_from(np.array(heights), found, (W, propagators), determinant.gauss_samples)
         height = heights[-1] * RATIO_BESIDE
     return found
 

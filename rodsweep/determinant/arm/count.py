@@ -5,13 +5,8 @@ by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase betwee
 tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
 the tangents meet.
 
-Outside the hull of the spectrum this condition is proved (`rodsweep.determinant.arm.phase_node`); inside the
-hull it is estimated, and so is the count. The rounding errors of D and the errors of its elements are
-estimates everywhere.
-
-Known eigenvalues are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are far from the line.
-The nodes are then few even between many unstable modes, and the known eigenvalues right of the line are added
-to the count.
+Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
+far from the line. Those of them right of the line are added to the count.
 """
 
 import cmath
@@ -25,19 +20,22 @@ from ...model.compiled.compilation import compiled
 from ..certificate.winding_number import COUNT, Count
 from .completeness import has_conjugate
 from .determinant import ARM_ELEMENTS, ArmDeterminant, ArmSamples, Level, scales_at
-from .phase_node import FIRST_RADIUS, LARGEST_RADIUS, PhaseNode, phase_node
+from .phase_node import FIRST_RADIUS, LARGEST_RADIUS, OF_HEIGHT, PhaseNode, phase_node, tangent
 from .region import Hull
 
 SHARP = 1e-3
 """Largest error of an eigenvalue that is divided out, in units of its distance from the line."""
+CLOSE_TO_LINE = 1.0
+"""Largest distance from the line of eigenvalues that are divided out, in units of their height above the real
+axis, or of |line|: without farther ones D would follow its dominant wave no more."""
 NONE_KNOWN: Complex = np.empty(0, complex)
 SMALLEST_ARM_REACH = 1e-12
 """Reach in units of |w| below which the line counts as running through a zero of D."""
 HIGHEST = 16.0
 """Largest W of elements that serve a node, in units of the |w| they are needed for: the many evaluations of a
 count are worth elements of their own."""
-SMALLEST_LEVEL = ARM_ELEMENTS.headroom * ARM_ELEMENTS.smallest_level
-"""W that serves every smaller |w|."""
+SMALLEST_LEVEL = ARM_ELEMENTS.smallest_level
+"""|w| as which smaller ones count, as in `ArmDeterminant.level`: otherwise a walk would never end."""
 MAX_NODES = 5000
 """Maximum nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
 OVERLAP = 0.95
@@ -89,6 +87,8 @@ def count_right_of(
         return Count(0, 0)
     known = known[error < SHARP * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
+    height = np.maximum(np.abs(known.imag), abs(line))
+    known = known[np.abs(known.real - line) < CLOSE_TO_LINE * height]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
@@ -132,11 +132,15 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # Elements for the largest |w| first: they serve most others.
-    level = determinant.level(largest_w_of_count(line, determinant, hull), HIGHEST)
-    first = phase_node(corners[0], known, (determinant.length(corners[0]), FIRST_RADIUS), hull, level)
+    largest = largest_w_of_count(line, determinant, hull)
+    level = determinant.level(largest, HIGHEST)
+    samples = determinant.samples, determinant.gauss_samples
+    unit = determinant.length(corners[0])
+    trial = unit, min(FIRST_RADIUS * unit, level[0] - abs(corners[0]))
+    first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = Walk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
-        walk = _advance(walk, corners, known, hull, determinant.samples, level)
+        walk = _advance(walk, (corners, largest), known, hull, samples, level)
         if walk.needed == 0:
             break
         if walk.needed == math.inf:
@@ -147,9 +151,19 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
 
 @compiled
 def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
-    walk: Walk, corners: Complex, known: Complex, hull: Hull, samples: ArmSamples, level: Level
+    walk: Walk,
+    box: tuple[Complex, float],
+    known: Complex,
+    hull: Hull,
+    samples: tuple[ArmSamples, ArmSamples],
+    level: Level,
 ) -> Walk:
-    """The walk as far as the level serves its nodes."""
+    """The walk as far as the level serves its nodes.
+
+    box: (corners, largest |w| for which elements are known to exist). samples: those of the lengths over
+    which D changes, and those of the dominant wave.
+    """
+    corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
     while side < len(corners) - 1:
         end = corners[side + 1]
@@ -162,16 +176,18 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
-        radius = min(2 * here.radius, LARGEST_RADIUS) if here.radius > 0 else FIRST_RADIUS
-        unit = scales_at(w, samples)[1]
-        needed = abs(w) + min(radius, FIRST_RADIUS) * unit
-        if not needed <= level[0] <= max(HIGHEST * needed, SMALLEST_LEVEL):
+        unit = scales_at(w, samples[0])[1]
+        radius = min(2 * here.radius, LARGEST_RADIUS * unit) if here.radius > 0 else FIRST_RADIUS * unit
+        radius = max(radius, OF_HEIGHT * w.imag)
+        enough = max(FIRST_RADIUS * unit, min(OF_HEIGHT * w.imag, largest - abs(w)))
+        needed = abs(w) + min(radius, enough)
+        if not needed <= level[0] <= HIGHEST * max(needed, SMALLEST_LEVEL):
             return Walk(side, t, total, nodes, here, growth, ahead, needed)
-        there = phase_node(w, known, (unit, min(radius, (level[0] - abs(w)) / unit)), hull, level)
+        there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
         growth = (there.reach - here.reach) / ahead
         if abs(there.w - here.w) < here.reach + there.reach:
-            total += _turn(here, there)
+            total += _turn(here, there, samples[1])
             t = length if there.w == end else t + ahead
             here = there
             ahead = 0.0
@@ -194,12 +210,12 @@ def _nearer(reach: float, growth: float, ahead: float) -> float:
 
 
 @compiled
-def _turn(here: PhaseNode, there: PhaseNode) -> float:
+def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
     """The change of arg D between two nodes whose reaches overlap."""
-    step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
+    between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
     # the reaches overlap.
-    expected = (here.L * step * share + there.L * step * (1 - share)).imag
+    expected = tangent(here, between, samples).imag - tangent(there, between, samples).imag
     rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
     return expected + cmath.phase(rest)
