@@ -137,7 +137,7 @@ class CrossingSearch:
             behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
             beside = None
             if self.places.are_many(before):
-                beside = self.problem.beside_axis(p, highest, np.array([1j * crossing.frequency]))
+                beside = self.places.modes_beside(p, highest, np.array([1j * crossing.frequency]))
             change = self.places.at(behind, beside).unstable - self.places.at(before, beside).unstable
             if change != (2 if right.unstable > left.unstable else -2):
                 return None

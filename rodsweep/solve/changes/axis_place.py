@@ -80,12 +80,16 @@ class AxisPlaces:
             self.known[p] = found or self._place_of_leaders(p, growing)
         return self.known[p]
 
-    def _place_beside(self, p: float, beside: Complex | None) -> AxisPlace | None:
-        """The place at p by a count and the modes beside the axis; None if the count is undecided."""
+    def modes_beside(self, p: float, highest: float, known: Complex) -> Complex:
+        """As `ArmPath.beside_axis`; raises Unsolvable if no elements resolve the arm."""
         try:
-            guesses = self.problem.beside_axis(p, math.inf, NONE_BESIDE) if beside is None else beside
+            return self.problem.beside_axis(p, highest, known)
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.at(p)}: {unresolved}") from None
+
+    def _place_beside(self, p: float, beside: Complex | None) -> AxisPlace | None:
+        """The place at p by a count and the modes beside the axis; None if the count is undecided."""
+        guesses = self.modes_beside(p, math.inf, NONE_BESIDE) if beside is None else beside
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
         w = np.array([one[0] for one in refined], complex)
         number = self.problem.counted(p, w, np.array([one[2] for one in refined]))
