@@ -81,7 +81,10 @@ class AxisPlaces:
         return self.known[p]
 
     def modes_beside(self, p: float, highest: float, known: Complex) -> Complex:
-        """As `ArmPath.beside_axis`; raises Unsolvable if no elements resolve the arm."""
+        """Eigenvalues beside the axis at p, (n,), as `ArmPath.beside_axis`; known: some of them, (k,).
+
+        Raises Unsolvable if no elements resolve the arm.
+        """
         try:
             return self.problem.beside_axis(p, highest, known)
         except FloatingPointError as unresolved:
