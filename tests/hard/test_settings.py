@@ -271,6 +271,12 @@ def thresholds_of_a_cone(accuracy: float) -> Answer:
     return changes_of(solve_thresholds(rod, ThresholdsRequest(40.0, accuracy, True, 20)))
 
 
+def thresholds_of_a_slender_cone(accuracy: float) -> Answer:
+    """With so many growing modes that a place knows those beside the axis alone."""
+    rod = Rod(F=0.0, k1=1e5, k2=1e2, gamma3=1e-3, taper=0.117)
+    return changes_of(solve_thresholds(rod, ThresholdsRequest(50.0, accuracy, True, 6)))
+
+
 def curves_of_changes(accuracy: float) -> Answer:
     """Curves through the changes of two rows of a plane, and their folds."""
     rod = Rod(F=60.0, k1=155.0, k2=1e4, gamma3=1e-4)
@@ -449,12 +455,11 @@ BESIDE_HOPF = Case(cycle_beside_the_hopf_point, 1e-6, 1e-9)
 INTEGRATED = Case(cycle_by_integration, 1e-4, 1e-5)
 TORUS = Case(torus, 1e-6, 1e-7)
 UNSTABLE = Case(branch_of_legs, 1e-4, 1e-6)
-SLOW = (LOPSIDED, TORUS, UNSTABLE)
-"""Cases that take seconds."""
 SPECTRA = Case(spectra, 1e-8, 1e-10)
 FOLLOWED = Case(followed, 1e-8, 1e-10)
 THRESHOLDS = Case(thresholds, 1e-8, 1e-10)
 CONE = Case(thresholds_of_a_cone, 1e-6, 1e-8)
+SLENDER_CONE = Case(thresholds_of_a_slender_cone, 1e-6, 1e-8)
 CHANGES = Case(curves_of_changes, 1e-8, 1e-10)
 CONE_MODES = Case(modes_of_a_cone, 1e-6, 1e-8)
 MESH = Case(on_mesh, 1.0, 1.0)
@@ -463,6 +468,8 @@ LONGITUDINAL = Case(longitudinal, 1.0, 1.0)
 HELD = Case(held_tip, 1.0, 1.0)
 SEGMENTS = Case(segments, 1e-8, 1e-10)
 BETWEEN = Case(changes_between, 1.0, 1.0)
+SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
+"""Cases that take seconds."""
 CASES = {
     "SETTLING": BRANCH,
     "BRANCH_ERRORS": BRANCH,
@@ -544,6 +551,8 @@ CASES = {
     "SEARCH_RANGE": CONE,
     "HELD_TIP": HELD,
     "ARM_PATH": CONE,
+    "AXIS_PLACES": SLENDER_CONE,
+    "BESIDE_AXIS": SLENDER_CONE,
     "ARM_STRETCH": CONE,
     "ARM_FAMILY": CONE,
     "ARM_DOUBLES": CONE,

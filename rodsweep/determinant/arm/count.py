@@ -5,13 +5,8 @@ by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase betwee
 tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
 the tangents meet.
 
-Outside the hull of the spectrum this condition is proved (`rodsweep.determinant.arm.phase_node`); inside the
-hull it is estimated, and so is the count. The rounding errors of D and the errors of its elements are
-estimates everywhere.
-
-Known eigenvalues are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are far from the line.
-The nodes are then few even between many unstable modes, and the known eigenvalues right of the line are added
-to the count.
+Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
+far from the line. Those of them right of the line are added to the count.
 """
 
 import cmath
@@ -27,7 +22,7 @@ from .completeness import has_conjugate
 from .count_settings import ARM_COUNT
 from .determinant import ArmDeterminant, ArmSamples, Level, scales_at
 from .element_settings import ARM_ELEMENTS
-from .phase_node import PhaseNode, phase_node
+from .phase_node import PhaseNode, phase_node, tangent
 from .region import Hull
 
 NONE_KNOWN: Complex = np.empty(0, complex)
@@ -76,6 +71,8 @@ def count_right_of(
         return Count(0, 0)
     known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
+    height = np.maximum(np.abs(known.imag), abs(line))
+    known = known[np.abs(known.real - line) < ARM_COUNT.close_to_line * height]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
@@ -119,13 +116,15 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # Elements for the largest |w| first: they serve most others.
-    level = determinant.level(largest_w_of_count(line, determinant, hull), ARM_COUNT.highest)
-    first = phase_node(
-        corners[0], known, (determinant.length(corners[0]), ARM_COUNT.first_radius), hull, level
-    )
+    largest = largest_w_of_count(line, determinant, hull)
+    level = determinant.level(largest, ARM_COUNT.highest)
+    samples = determinant.samples, determinant.gauss_samples
+    unit = determinant.length(corners[0])
+    trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
+    first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = Walk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
-        walk = _advance(walk, corners, known, hull, determinant.samples, level)
+        walk = _advance(walk, (corners, largest), known, hull, samples, level)
         if walk.needed == 0:
             break
         if walk.needed == math.inf:
@@ -136,9 +135,19 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
 
 @compiled
 def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
-    walk: Walk, corners: Complex, known: Complex, hull: Hull, samples: ArmSamples, level: Level
+    walk: Walk,
+    box: tuple[Complex, float],
+    known: Complex,
+    hull: Hull,
+    samples: tuple[ArmSamples, ArmSamples],
+    level: Level,
 ) -> Walk:
-    """The walk as far as the level serves its nodes."""
+    """The walk as far as the level serves its nodes.
+
+    box: (corners, largest |w| for which elements are known to exist). samples: those of the lengths over
+    which D changes, and those of the dominant wave.
+    """
+    corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
     while side < len(corners) - 1:
         end = corners[side + 1]
@@ -151,16 +160,19 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
-        radius = min(2 * here.radius, ARM_COUNT.largest_radius) if here.radius > 0 else ARM_COUNT.first_radius
-        unit = scales_at(w, samples)[1]
-        needed = abs(w) + min(radius, ARM_COUNT.first_radius) * unit
-        if not needed <= level[0] <= max(ARM_COUNT.highest * needed, ARM_ELEMENTS.least_made):
+        unit = scales_at(w, samples[0])[1]
+        first = ARM_COUNT.first_radius * unit
+        radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
+        radius = max(radius, ARM_COUNT.of_height * w.imag)
+        enough = max(first, min(ARM_COUNT.of_height * w.imag, largest - abs(w)))
+        needed = abs(w) + min(radius, enough)
+        if not needed <= level[0] <= ARM_COUNT.highest * max(needed, ARM_ELEMENTS.smallest_level):
             return Walk(side, t, total, nodes, here, growth, ahead, needed)
-        there = phase_node(w, known, (unit, min(radius, (level[0] - abs(w)) / unit)), hull, level)
+        there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
         growth = (there.reach - here.reach) / ahead
         if abs(there.w - here.w) < here.reach + there.reach:
-            total += _turn(here, there)
+            total += _turn(here, there, samples[1])
             t = length if there.w == end else t + ahead
             here = there
             ahead = 0.0
@@ -184,12 +196,12 @@ def _nearer(reach: float, growth: float, ahead: float) -> float:
 
 
 @compiled
-def _turn(here: PhaseNode, there: PhaseNode) -> float:
+def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
     """The change of arg D between two nodes whose reaches overlap."""
-    step = there.w - here.w
     share = here.reach / (here.reach + there.reach)
+    between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
     # the reaches overlap.
-    expected = (here.L * step * share + there.L * step * (1 - share)).imag
+    expected = tangent(here, between, samples).imag - tangent(there, between, samples).imag
     rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
     return expected + cmath.phase(rest)

@@ -29,6 +29,9 @@ class ArmCountSettings(CompiledSettings):
     """Largest |L| times the unit of the radii, so that circles shrink with the distance to a zero of D."""
     sharp: float = 1e-3
     """Largest error of an eigenvalue that is divided out, in units of its distance from the line."""
+    close_to_line: float = 1.0
+    """Largest distance from the line of eigenvalues that are divided out, in units of their height above the
+    real axis, or of |line|: without farther ones D would follow its dominant wave no more."""
     smallest_reach: float = 1e-12
     """Reach in units of |w| below which the line counts as running through a zero of D."""
     highest: float = 16.0
@@ -44,11 +47,14 @@ class ArmCountSettings(CompiledSettings):
     """A circle is given up for the next smaller one once its reach is below this fraction of its radius: the
     smaller one may reach 0.27 of the radius."""
     first_radius: float = 12.0
-    """Radius of the first circle at the first node of a side, in units of the length over which D changes."""
+    """Radius of the first circle at the first node of a side without the dominant wave, in units of the
+    length over which D changes."""
     smallest_radius: float = 0.75
     """Radius of the smallest circle at any node, in the same unit. Every trial halves the radius."""
     largest_radius: float = 48.0
     """Radius of the largest circle at any node, in the same unit."""
+    of_height: float = 0.8
+    """Largest radius with the dominant wave, in units of Im w: beyond Im w it has branch points."""
     closer: float = 0.9
     """Largest ratio of a shortened step to the step whose reaches left a gap."""
     within_reach: float = 0.99
@@ -56,6 +62,7 @@ class ArmCountSettings(CompiledSettings):
     ranges: ClassVar = {
         "largest_turn": (0.0, math.pi / 2),
         "clearance": (0.0, 1.0),
+        "of_height": (0.0, 1.0),
         "overlap": (0.0, 1.0),
         "largest_growth": (0.0, 1.0),
         "closer": (0.0, 1.0),

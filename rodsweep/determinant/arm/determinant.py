@@ -8,7 +8,7 @@ an end of an element.
 
 import cmath
 import math
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -77,6 +77,14 @@ class ArmDeterminant:
     def scales(self, w: complex) -> tuple[float, float]:
         """(wave number, length) at w."""
         return scales_at(w, self.samples)
+
+    @cached_property
+    def gauss_samples(self) -> ArmSamples:
+        """The arm at the Gauss points of each smooth piece."""
+        points, _, weights = gauss_method(ARM_ELEMENTS.stages)
+        lengths = np.diff(self.rod.build.breaks)[:, None]
+        local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
+        return ArmSamples(float(self.rod.F), np.array(local), (lengths * weights).ravel())
 
     def level(self, size: float, highest: float | None = None) -> Level:
         """(W >= size, propagators for |w| <= W, (elements, terms, 25)) with the smallest W that exists.

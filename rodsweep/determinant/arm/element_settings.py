@@ -54,11 +54,6 @@ class ArmElementSettings(CompiledSettings):
         """Number of initial values of all lanes: the length of the last axis of arrays over elements."""
         return MINORS * self.lanes
 
-    @property
-    def least_made(self) -> float:
-        """Smallest W of elements that are made: they serve every smaller |w|."""
-        return self.headroom * self.smallest_level
-
     def __post_init__(self) -> None:
         CompiledSettings.__post_init__(self)
         if self.stages % 4:

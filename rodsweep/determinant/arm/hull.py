@@ -52,7 +52,8 @@ def hulls_along(rods: Sequence[Rod], places: Array) -> Hulls:
 
 
 def _hull(arms: "Arms") -> Hull:
-    a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev())
+    largest = 1 - HULL.least_remainder
+    a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
     return Hull((1 + HULL.margin) * a, c) if isfinite(a) else UNKNOWN
 
 
@@ -120,9 +121,12 @@ def _chebyshev() -> Chebyshev:
 
 @compiled
 def _smallest(
-    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: Chebyshev
+    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: Chebyshev, largest: float
 ) -> tuple[float, float]:
-    """(a, c) of the smallest region of all arms, without the margin of a; inf without a bound."""
+    """(a, c) of the smallest region of all arms, without the margin of a; inf without a bound.
+
+    largest: bound of c.
+    """
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0
     for arm in range(len(F)):
@@ -136,23 +140,23 @@ def _smallest(
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
         for square in squares_following(F, lengths, local, chebyshev.derivative):
-            best = _smaller(best, (sqrt(square), 0.0))
+            best = _smaller(best, (sqrt(square), 0.0), largest)
     for trial in range(averaged.shape[1]):
         c = (1 + HULL.margin) * averaged[:, trial, 1].max()
-        best = _smaller(best, (averaged[:, trial, 0].max(), c))
+        best = _smaller(best, (averaged[:, trial, 0].max(), c), largest)
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = largest_integrals(alphas, F, lengths, local, chebyshev.integral)
     for k in range(len(alphas)):
         c = (1 + HULL.margin) * sqrt(integrals[k]) / 2
-        best = _smaller(best, (sqrt(alphas[k] * push), c))
+        best = _smaller(best, (sqrt(alphas[k] * push), c), largest)
     return best
 
 
 @compiled
-def _smaller(best: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+def _smaller(best: tuple[float, float], other: tuple[float, float], largest: float) -> tuple[float, float]:
     """The smaller of two regions (a, c), by a measure; a region with c close to 1 is of no use."""
-    if not other[1] < 1 - HULL.least_remainder:
+    if not other[1] < largest:
         return best
     here = best[0] ** 2 * (1 + (best[1] / HULL.wide) ** 4)
     there = other[0] ** 2 * (1 + (other[1] / HULL.wide) ** 4)

@@ -1,14 +1,22 @@
-"""Nodes of a count: the direction of D at a point, and how far its tangent is valid.
+"""Points of a count with a tangent of log D each, and the distance within which the tangent holds.
 
-The tangent of log D at w is log D(w) + L (v - w), L = D'/D. Outside the hull of the spectrum its validity is
-proved from D'/D alone. D is entire of order 1/2, so that D = prod (1 - w/w_n), and with the distance d of w
-from the hull and the unit normal n towards w
+The phase of D between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, at both, if each is
+wrong by less than pi/2 where they meet.
+
+Outside the hull of the spectrum this condition is proved from D'/D alone. D is entire of order 1/2, so that
+D = prod (1 - w/w_n), and with the distance d of w from the hull and the unit normal n towards w
 
     Re(n L) = sum <n, w - w_n>/|w - w_n|^2 >= d S,   S = sum 1/|w - w_n|^2,
     |log D(v) - log D(w) - L (v - w)| <= S r^2/2/(1 - r/d)^2,   r = |v - w|.
 
-Inside the hull, f(v) = D(v) exp(-L (v - w)) has f'(w) = 0, and Cauchy's estimate with the maximum of |f| on a
-circle bounds the change of f. The maximum is estimated from some points and a safety factor.
+Inside the hull, f(v) = D(v) exp(-h(v)) has f'(w) = 0 with
+
+    h(v) = L (v - w)   or   h(v) = Phi(v) - Phi(w) + (L - Phi'(w)) (v - w),
+
+Phi the dominant wave (`rodsweep.determinant.arm.dominant_wave`). Cauchy's estimate with the maximum of |f| on
+a circle bounds the change of f. The maximum is estimated from `ARM_COUNT.circle` points and a safety factor.
+Inside the hull the count is therefore an estimate; the rounding errors of D and the errors of its elements
+are estimates everywhere.
 """
 
 import math
@@ -19,36 +27,47 @@ from ...model.compiled.compilation import compiled
 from ..exponents import EXPONENTS
 from ..value import Value
 from .count_settings import ARM_COUNT
-from .determinant import Level
+from .determinant import ArmSamples, Level
+from .dominant_wave import dominant_wave, slope_of_wave
 from .region import Hull, clearance
 from .value import chain_size, chain_value
 
 
 class PhaseNode(NamedTuple):
-    """A point w with the direction of D, L = D'/D, both without known eigenvalues, and the validity of the
-    tangent.
+    """A point w with the direction of D, L = D'/D, both without known eigenvalues, and where h is valid.
 
-    reach: distance within which the tangent is valid. radius: radius of the best circle, in units of the
-    length over which D changes, or 0.
+    wave: (Phi, dPhi/dw) in h, 0 without. reach: distance within which h is valid. radius: that of the best
+    circle, or 0.
     """
 
     w: complex
     direction: complex
     L: complex
+    wave: tuple[complex, complex]
     reach: float
     radius: float
 
 
 @compiled
-def phase_node(w: complex, known: Complex, trial: tuple[float, float], hull: Hull, level: Level) -> PhaseNode:
+def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
+    """h(v) of a node."""
+    Phi, slope = node.wave
+    ahead = (node.L - slope) * (v - node.w)
+    return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
+
+
+@compiled
+def phase_node(
+    w: complex, known: Complex, trial: tuple[float, float], hull: Hull, arm: tuple[ArmSamples, Level]
+) -> PhaseNode:
     """The node about w.
 
-    trial: (length over which D changes, largest radius in units of it). level: (W, propagators) for |v| <= W,
-    which hold the largest circle about w.
+    trial: (length over which D changes, largest radius). arm: samples, and the level of propagators for
+    |v| <= W, which hold the largest circle about w.
     """
-    value = chain_value(w, level[0], level[1])
+    value = chain_value(w, arm[1][0], arm[1][1])
     if not abs(value.D) > ARM_COUNT.rounding * value.noise:
-        return PhaseNode(w, value.D, 0j, 0.0, 0.0)
+        return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
     for n in range(len(known)):
@@ -57,60 +76,56 @@ def phase_node(w: complex, known: Complex, trial: tuple[float, float], hull: Hul
         L -= 1 / away
     distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
     reach = 0.0
-    radius = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
         reach = 1 / (1 / distance + math.sqrt(S / (2 * ARM_COUNT.largest_turn)))
-    if not reach > trial[0]:
-        inside, radius = _reach_inside(value, (w, L), known, trial, level)
-        reach = max(reach, inside)
-    return PhaseNode(w, direction, L, reach, radius)
+    node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
+    return node if reach > trial[0] else _node_inside(node, value, known, trial, arm)
 
 
 @compiled
-def _reach_inside(
-    value: Value,
-    tangent: tuple[complex, complex],
-    known: Complex,
-    trial: tuple[float, float],
-    level: Level,
-) -> tuple[float, float]:
-    """(reach of a node inside the hull, best radius), from the largest |f| on circles.
+def _node_inside(
+    node: PhaseNode, value: Value, known: Complex, trial: tuple[float, float], arm: tuple[ArmSamples, Level]
+) -> PhaseNode:
+    """The node with the largest reach by |f| on circles.
 
-    tangent: (w, L). For the other arguments see `phase_node`.
+    value: D at the node. For the other arguments see `phase_node`.
     """
-    w, L = tangent
-    unit = min(trial[0], ARM_COUNT.steepest / max(abs(L), EXPONENTS.least_divisor))
+    w = node.w
+    samples, (W, propagators) = arm
+    unit = min(trial[0], ARM_COUNT.steepest / max(abs(node.L), EXPONENTS.least_divisor))
+    smallest = ARM_COUNT.smallest_radius * unit
     room = ARM_COUNT.clearance - ARM_COUNT.rounding * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
-    best = 0.0
-    best_radius = 0.0
-    radius = max(trial[1], ARM_COUNT.smallest_radius)
-    while radius >= ARM_COUNT.smallest_radius:
-        rho = radius * unit
+    best = node
+    rho = max(trial[1], smallest)
+    while rho >= smallest:
+        wave = (0j, 0j)
+        if rho <= ARM_COUNT.of_height * w.imag:
+            wave = (dominant_wave(w, samples), slope_of_wave(w, samples))
+        tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # No smaller circle reaches farther than half of this one could.
-        enough = max(best, _reach_of_circle(rho / 2, ARM_COUNT.between_points, room))
-        last = radius / 2 < ARM_COUNT.smallest_radius
+        enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT.between_points, room))
+        last = rho / 2 < smallest
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in ARM_COUNT.directions:
             v = w + rho * direction
-            log = chain_size(v, level[0], level[1]) - _log_of_known(v, known)
-            size = max(size, log - (L * (v - w)).real)
+            log = chain_size(v, W, propagators) - _log_of_known(v, known)
+            size = max(size, log - tangent(tried, v, samples).real)
             M = ARM_COUNT.between_points * math.exp(min(size - here, EXPONENTS.largest_exponent))
             reach = _reach_of_circle(rho, M, room)
-            if reach <= best or (reach < ARM_COUNT.given_up * rho and not last):
+            if reach <= best.reach or (reach < ARM_COUNT.given_up * rho and not last):
                 reach = 0.0
                 break
-        if reach > best:
-            best = reach
-            best_radius = radius
-        elif best > 0:
+        if reach > best.reach:
+            best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
+        elif best.radius > 0:
             break
-        if best >= enough:
+        if best.radius > 0 and best.reach >= enough:
             break
-        radius /= 2
-    return best, best_radius
+        rho /= 2
+    return best
 
 
 @compiled

@@ -15,8 +15,9 @@ from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable
 from .arm_crossings import CrossingSearch
+from .arm_path import ArmPath, path_problem
 from .leading_eigenvalue import Tracer
-from .path_problem import PathProblem, UniformPath, path_problem
+from .path_problem import PathProblem
 from .search_range import Reach
 from .unstable_modes import Counts, Crossing, Kind
 
@@ -186,7 +187,7 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
     """Crossings of a path: by the covering, or between counts for nonuniform arms, there up to `most`."""
-    if isinstance(problem, UniformPath):
+    if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
     found, reach = search.crossings(problem.edges(*ends), most)

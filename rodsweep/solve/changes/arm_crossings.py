@@ -8,11 +8,11 @@ the axis must exclude two crossings; otherwise a place is added between.
 import math
 from dataclasses import dataclass
 
-from ...arrays import Complex
+import numpy as np
+
 from ..point import Unsolvable
-from ..spectrum.search import Spectrum, SpectrumRequest
-from .anchors import ANCHORS, minimum_of_cubic
-from .path_problem import PathProblem
+from .arm_path import ArmPath
+from .axis_place import AxisPlace, AxisPlaces, next_count_place
 from .search_range import Reach, SearchedIntervals
 from .unstable_modes import Crossing, Kind
 
@@ -21,8 +21,19 @@ from .unstable_modes import Crossing, Kind
 class ArmCrossingSettings:
     """Settings for the crossings along a path of arms."""
 
-    max_known_modes: int = 200
-    """Largest number of leading eigenvalues known at a place."""
+    beyond_the_list: float = 2.0
+    smallest_first: float = 1e-3
+    """Intervals are halved before a search if more modes than the list holds, times the first factor, are
+    expected to grow at their right ends, down to this length in units of the path."""
+    most_at_once: int = 6
+    """Largest number of pairs by which the counts of two places may differ for a search of all crossings
+    between."""
+    higher: float = 4.0
+    """Height up to which modes beside the axis are searched at a crossing, in units of the heights known."""
+    same_errors: float = 10.0
+    same_frequency: float = 1e-6
+    """Two crossings are equal if they differ by less: in p in units of their errors, in frequency
+    relative."""
     smallest_interval: float = 1e-6
     """Length of an interval, in units of the path, that is not divided further: two crossings inside stay
     undecided."""
@@ -41,62 +52,17 @@ class ArmCrossingSettings:
 ARM_CROSSINGS = ArmCrossingSettings()
 
 
-@dataclass(frozen=True)
-class AxisPlace:
-    """A place p: leading eigenvalues w and their slopes, (modes,) each, and the number of unstable modes."""
-
-    p: float
-    w: Complex
-    slopes: Complex
-    unstable: int
-
-    def nearest(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the axis, its slope by p) of the pair nearest to the axis on one side; None without
-        a pair."""
-        pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
-        if not pairs:
-            return None
-        i = min(pairs, key=lambda i: abs(self.w[i].real))
-        sign = 1.0 if growing else -1.0
-        return float(sign * self.w[i].real), float(sign * self.slopes[i].real)
-
-
 class CrossingSearch:
     """The search for crossings along a path.
 
     found: crossings by their p. gaps: intervals of p that may contain two undecided crossings.
     """
 
-    def __init__(self, problem: PathProblem, certify: bool):
+    def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
-        self.certify = certify
-        self.places: dict[float, AxisPlace] = {}
+        self.places = AxisPlaces(problem, certify)
         self.found: dict[float, Crossing] = {}
         self.gaps: list[tuple[float, float]] = []
-
-    def place(self, p: float) -> AxisPlace:
-        """The place at p; raises Unsolvable if eigenvalues or count cannot be computed."""
-        if p not in self.places:
-            # The neighbour's count tells how many modes are needed: all unstable ones and a pair beyond.
-            near = min(self.places.values(), key=lambda place: abs(place.p - p), default=None)
-            modes = (
-                ANCHORS.min_known_modes if near is None else max(ANCHORS.min_known_modes, 2 + near.unstable)
-            )
-            found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
-            while modes < _needed(found) <= ARM_CROSSINGS.max_known_modes:
-                if self.certify and found.unstable_count < 0:
-                    break  # a count that fails does not succeed with more modes
-                modes = _needed(found)
-                found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
-            if found.unstable_count < 0:
-                raise Unsolvable(f"{self.problem.path.at(p)}: {found.status.name} {found.message}".rstrip())
-            if _needed(found) > max(modes, ARM_CROSSINGS.max_known_modes):
-                raise Unsolvable(f"{self.problem.path.at(p)}: {found.unstable_count} modes grow")
-            slopes = found.eigenvalues.copy()
-            for i, w in enumerate(found.eigenvalues.tolist()):
-                slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
-            self.places[p] = AxisPlace(p, found.eigenvalues, slopes, found.unstable_count)
-        return self.places[p]
 
     def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], Reach]:
         """All crossings from the first of `edges` up to the reach of the search, in increasing order of p.
@@ -105,10 +71,13 @@ class CrossingSearch:
         costs more than all before. Raises Unsolvable if the search does not reach beyond the first edge.
         """
         intervals = SearchedIntervals(edges)
-        self.place(edges[0])
+        self.places.at(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.found) > most:
                 intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
+                continue
+            if self._is_too_long(a, b, most, intervals.length):
+                intervals.divide((a, (a + b) / 2), ((a + b) / 2, b))
                 continue
             try:
                 self._search(a, b, intervals)
@@ -117,10 +86,17 @@ class CrossingSearch:
                 self.found = {p: crossing for p, crossing in self.found.items() if p <= a}
         return [self.found[p] for p in sorted(self.found)], intervals.reach
 
+    def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
+        """Whether the list is likely to be full before b, where a count is expensive."""
+        if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
+            return False
+        expected = self.problem.expected_growing(b)
+        return self.places.are_many(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
+
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches one interval: keeps its crossing, or divides the interval."""
-        left = self.place(a)
-        right = self.place(b)
+        left = self.places.at(a)
+        right = self.places.at(b)
         # Equal counts leave room for a pair that crosses and returns.
         if left.unstable == right.unstable:
             share = next_count_place(left, right)
@@ -131,41 +107,67 @@ class CrossingSearch:
                 return
         else:
             share = 0.5
-            # A change by more than a pair has several crossings, which a bisection must part first.
-            crossing = self._between(left, right) if abs(left.unstable - right.unstable) == 2 else None
-            beside = self._confirmed(crossing, left, right, intervals.length) if crossing else None
-            if crossing is not None and beside is not None:
-                self.found[self.problem.path.variable(crossing.at)] = crossing
-                intervals.divide((a, beside[0]), (beside[1], b))
+            crossings = self._between(left, right)
+            parts = self._parted(crossings, left, right, intervals.length) if crossings else None
+            if parts is not None:
+                self.found.update(
+                    (self.problem.path.variable(crossing.at), crossing) for crossing in crossings
+                )
+                intervals.divide(*parts)
                 return
             if b - a <= ARM_CROSSINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
 
-    def _confirmed(
-        self, crossing: Crossing, left: AxisPlace, right: AxisPlace, length: float
-    ) -> tuple[float, float] | None:
-        """(p just before, p just behind) a crossing; None if the counts at these two places do not confirm
-        the crossing."""
-        p = self.problem.path.variable(crossing.at)
-        before = max(left.p, p - ARM_CROSSINGS.count_distance * length)
-        behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
-        change = self.place(behind).unstable - self.place(before).unstable
-        return (before, behind) if change == right.unstable - left.unstable else None
+    def _parted(
+        self, crossings: list[Crossing], left: AxisPlace, right: AxisPlace, length: float
+    ) -> list[tuple[float, float]] | None:
+        """The intervals between crossings, in increasing order of p; None if the counts just before and just
+        behind a crossing do not confirm it.
 
-    def _between(self, left: AxisPlace, right: AxisPlace) -> Crossing | None:
-        """The crossing between two places with counts that differ by a pair; None if not found."""
-        grows = right.unstable > left.unstable
-        # The pair that crosses is stable on one side and unstable on the other; the nearest to the axis is
+        The modes beside the axis at a crossing serve both places where many modes grow.
+        """
+        parts: list[tuple[float, float]] = []
+        start = left.p
+        highest = ARM_CROSSINGS.higher * max(left.highest, right.highest)
+        for crossing in crossings:
+            p = self.problem.path.variable(crossing.at)
+            before = max(start, p - ARM_CROSSINGS.count_distance * length)
+            behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
+            beside = None
+            if self.places.are_many(before):
+                beside = self.places.modes_beside(p, highest, np.array([1j * crossing.frequency]))
+            change = self.places.at(behind, beside).unstable - self.places.at(before, beside).unstable
+            if change != (2 if right.unstable > left.unstable else -2):
+                return None
+            parts.append((start, before))
+            start = behind
+        return [*parts, (start, right.p)]
+
+    def _between(self, left: AxisPlace, right: AxisPlace) -> list[Crossing]:
+        """Crossings between two places, in increasing order of p, that explain the change of the number of
+        unstable modes; empty if not found."""
+        change = (right.unstable - left.unstable) // 2
+        many = self.places.are_many(right.p)
+        # Where modes are followed a bisection parts several crossings first.
+        if abs(change) > (ARM_CROSSINGS.most_at_once if many else 1):
+            return []
+        if many:
+            self.problem.make_family(left.p, right.p, max(left.highest, right.highest))
+        grows = change > 0
+        found: dict[float, Crossing] = {}
+        # The pairs that cross are stable on one side and unstable on the other; the nearest to the axis are
         # tried first.
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
                 crossing = self._newton(start, i, (left.p, right.p), grows)
-                if crossing is not None:
-                    return crossing
-        return None
+                if crossing is not None and not any(_same(crossing, other) for other in found.values()):
+                    found[self.problem.path.variable(crossing.at)] = crossing
+                if len(found) == abs(change):
+                    return [found[p] for p in sorted(found)]
+        return []
 
     def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
         """Newton's method for the p at which eigenvalue i of a place lies on the axis; None without
@@ -184,7 +186,11 @@ class CrossingSearch:
             w, slope, error = self.problem.eigenvalue(guess, p)
             blur = error / abs(slope.real) + ARM_CROSSINGS.rounding * abs(p)
             if abs(w.real / slope.real) <= ARM_CROSSINGS.converged * blur:
-                return self._crossing(p, w, slope, blur, grows)
+                # Where nothing is resolved there is no root of D.
+                unresolved = self.places.are_many(p) and not blur <= ARM_CROSSINGS.count_distance * (
+                    ends[1] - ends[0]
+                )
+                return None if unresolved else self._crossing(p, w, slope, blur, grows)
         return None
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
@@ -199,29 +205,7 @@ class CrossingSearch:
         return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
-def _needed(found: Spectrum) -> int:
-    """Two more modes than are unstable; without a count the growing modes found are taken."""
-    growing = int((found.eigenvalues.real > 0).sum())
-    return 2 + max(found.unstable_count, growing)
-
-
-def next_count_place(left: AxisPlace, right: AxisPlace) -> float:
-    """Fraction of the interval at which to count next, because a pair may touch the axis; 0 if no pair
-    can."""
-    h = right.p - left.p
-    for growing in (False, True):
-        a = left.nearest(growing)
-        b = right.nearest(growing)
-        if a is None and b is None:
-            continue
-        if a is None or b is None:
-            value, slope = a or b or (0.0, 0.0)
-            # Of a pair that is known at one end only, its own slope must tell whether it came from the axis.
-            towards = slope > 0 if a is None else slope < 0
-            if towards and value < abs(slope) * h:
-                return 0.5
-            continue
-        lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
-        if lowest < ANCHORS.explained * min(a[0], b[0]):
-            return share
-    return 0.0
+def _same(one: Crossing, other: Crossing) -> bool:
+    """Whether two crossings are equal within their errors, of F and of the frequency."""
+    apart = abs(one.at - other.at) <= ARM_CROSSINGS.same_errors * (one.error + other.error)
+    return apart and abs(one.frequency - other.frequency) <= ARM_CROSSINGS.same_frequency * one.frequency

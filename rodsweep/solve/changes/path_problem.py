@@ -1,39 +1,12 @@
-"""The transverse eigenvalue problem along a path of one parameter, for uniform rods and nonuniform arms."""
+"""The transverse eigenvalue problem along a path of one parameter, for uniform rods."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
 
-import numpy as np
-
-from ...determinant.arm.along_path import ArmAlongPath
 from ...determinant.certificate.first_boxes import slabs
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.newton import Zero, double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at
-from ..spectrum.followed_arms import FollowedArms
-from ..spectrum.problem import ArmProblem
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
-from ..spectrum.status import SpectrumStatus
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArmPathSettings:
-    """Intervals of a path of arms."""
-
-    edges: int = 12
-    """Number of equal intervals into which a path of arms is first divided."""
-    points_between: int = 4
-    """Steps in which eigenvalues are followed through each of these intervals."""
-    followed_modes: int = 4
-    """Leading eigenvalues that are proved complete at each step; all unstable ones are, too."""
-    spare_pair: int = 2
-    """Number of modes solved for beyond those requested, of an arm with many unstable modes."""
-    amid: float = 0.25
-    """Largest distance of a counted place from the middle of an interval, in units of the interval's length,
-    at which the count stands for a count in the middle."""
-
-
-ARM_PATH = ArmPathSettings()
 
 
 class PathProblem(ABC):
@@ -100,92 +73,3 @@ class UniformPath(PathProblem):
         # Along a path the eigenvalues may grow without bound; in units of such a time they stay moderate.
         time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
         return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3
-
-
-class ArmPath(PathProblem):
-    """Path of arms that vary along the length or have a nonlinear law, with D from propagators.
-
-    The leading eigenvalues are followed along the path once, and from the nearest step to every requested p.
-    """
-
-    def __init__(self, path: Path):
-        super().__init__(path)
-        self._followed: FollowedArms | None = None
-        self._solutions: dict[float, Spectrum] = {}
-        """Spectra that are solved, not followed, by p; each with as many modes as were requested last."""
-        self._counts: dict[float, int] = {}
-        """Numbers of unstable modes that are proved, by p."""
-        self._along = ArmAlongPath(path, lambda p: self._followed.family(p) if self._followed else None)
-
-    def edges(self, low: float, high: float) -> list[float]:
-        edges = np.linspace(low, high, ARM_PATH.edges + 1)
-        if self._followed is None and low < high:
-            points = np.linspace(low, high, ARM_PATH.edges * ARM_PATH.points_between + 1)
-            points[:: ARM_PATH.points_between] = edges
-            self._followed = FollowedArms(self.path, points, ARM_PATH.followed_modes)
-        return edges.tolist()
-
-    def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p: followed, taken from an earlier request, or solved."""
-        key = p, request
-        if key not in self._spectra:
-            followed = self._followed.spectrum(p, request.modes) if self._followed is not None else None
-            found = self._spectra[key] = followed if followed is not None else self._solved(p, request)
-            if found.certified:
-                self._counts[p] = found.unstable_count
-        return self._spectra[key]
-
-    def _solved(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The leading eigenvalues at p, of an earlier solve at p with enough modes, or of a new solve.
-
-        Beside a crossing a request for many modes is followed by a request for one pair more, so that this
-        pair is solved at once.
-        """
-        earlier = self._solutions.get(p)
-        # A few modes more at first save a second solve where the next request needs one pair more.
-        if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
-            spare = ARM_PATH.spare_pair if request.modes > ARM_PATH.followed_modes else 0
-            earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
-            # The modes beyond those requested may be harder: they must not spoil the answer.
-            if spare and earlier.status != SpectrumStatus.ok:
-                earlier = super().spectrum(p, request)
-            self._solutions[p] = earlier
-        return replace(
-            earlier,
-            eigenvalues=earlier.eigenvalues[: request.modes],
-            error_estimate=earlier.error_estimate[: request.modes],
-        )
-
-    def counted_amid(self, low: float, high: float) -> int | None:
-        places = [p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.amid * (high - low)]
-        nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
-        return None if nearest is None else self._counts[nearest]
-
-    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        known = self._followed.slope(guess, p) if self._followed is not None else None
-        return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
-
-    def double(self, x: float, p: float, reach: float) -> Zero:
-        return self._along.double(x, p, reach)
-
-    def count(self, line: float, p: float) -> Count:
-        found = self._followed.spectrum(p, ARM_PATH.followed_modes) if self._followed is not None else None
-        if found is not None:
-            w = found.eigenvalues
-            error = found.error_estimate
-            clear = (np.abs(w.real - line) > 2 * error).all()
-            # The followed modes are complete down to the last of them, so counting them is a proof.
-            if clear and w[-1].real < line <= 0:
-                return Count(int((w.real > line).sum()), 0)
-            if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
-                return Count(found.unstable_count, 0)
-        known = self._followed.roots(p) if self._followed is not None else None
-        return ArmProblem(self.path.at(p)).count(line, known)
-
-    def relaxation(self, p: float) -> tuple[float, float]:
-        return 1.0, 0.0
-
-
-def path_problem(path: Path) -> PathProblem:
-    """The problem of a path: of uniform rods, or of arms."""
-    return UniformPath(path) if path.rod.standard else ArmPath(path)
