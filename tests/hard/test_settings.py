@@ -274,7 +274,7 @@ def thresholds_of_a_cone(accuracy: float) -> Answer:
 def thresholds_of_a_slender_cone(accuracy: float) -> Answer:
     """With so many growing modes that a place knows those beside the axis alone."""
     rod = Rod(F=0.0, k1=1e5, k2=1e2, gamma3=1e-3, taper=0.117)
-    return changes_of(solve_thresholds(rod, ThresholdsRequest(50.0, accuracy, True, 6)))
+    return changes_of(solve_thresholds(rod, ThresholdsRequest(15.0, accuracy, True, 20)))
 
 
 def curves_of_changes(accuracy: float) -> Answer:
