@@ -31,7 +31,7 @@ class Stopped(BaseException):
     """Raised by a listener to end a running solve. Solvers do not catch it with their own errors."""
 
 
-class _Part(NamedTuple):
+class _SolvePart(NamedTuple):
     """Named part of a solve; shares: fractions of the whole work at its start and its end, None if
     unknown.
     """
@@ -50,7 +50,7 @@ class _Part(NamedTuple):
 
 _listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
 """Listeners, outer ones first, each with the number of parts that its `with` block lies in."""
-_parts: ContextVar[tuple[_Part, ...]] = ContextVar("parts", default=())
+_parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
 
 
 @contextmanager
@@ -73,7 +73,7 @@ def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]
 
     shares: fractions of the whole work done at the beginning and at the end of the part, None if unknown.
     """
-    token = _parts.set((*_parts.get(), _Part(name, shares)))
+    token = _parts.set((*_parts.get(), _SolvePart(name, shares)))
     try:
         yield
     finally:

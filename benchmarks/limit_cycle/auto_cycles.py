@@ -15,7 +15,7 @@ from rodsweep.arrays import Array, Complex
 from rodsweep.bench.limit_cycle.tracking import height_near, on_cycle
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.solve.motion.integrator import Ending, Trajectory
+from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 from rodsweep.solve.orbit.orbit import Orbit
 
 from ..auto import AUTO, run_auto, table_lines
@@ -121,4 +121,4 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
     beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
     y = beam.tip(twice[1])[1]
-    return height_near(beam, Trajectory(Ending.reached, *twice), 1 + int(np.argmax(y[1:-1])))
+    return height_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))

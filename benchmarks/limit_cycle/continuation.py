@@ -22,7 +22,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     asked,
     orbit_of,
 )
-from rodsweep.bench.study import Measurement, Timed, failsafe, race, table
+from rodsweep.bench.study import Measurement, TimedRuns, failsafe, race, table
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -107,7 +107,7 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     return {order: newton(orbit, EXACT, NewtonWorkspace()).orbit for order, orbit in moved.items()}
 
 
-def each(few: Timed, many: Timed) -> float:
+def each(few: TimedRuns, many: TimedRuns) -> float:
     """Seconds of one cycle."""
     return (many.median - few.median) / (MANY - FEW)
 

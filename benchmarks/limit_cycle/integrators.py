@@ -8,9 +8,9 @@ import numpy as np
 import scipy.integrate
 
 from rodsweep.arrays import Array
-from rodsweep.bench.limit_cycle.integrators import CAREFUL, IntegratorFamily, Leg, by_petsc
+from rodsweep.bench.limit_cycle.integrators import CAREFUL, IntegrationTask, IntegratorFamily, by_petsc
 from rodsweep.discretization.stress.rates import rate, rate_jacobian
-from rodsweep.solve.motion.integrator import Ending, Trajectory
+from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 
 from ..installed import installed
 
@@ -24,7 +24,7 @@ CVODE_SKIPPED = f"{CVODE} is skipped: scikit-sundae is not installed (extra `cvo
 MOST_CVODE_STEPS = 200_000
 
 
-def by_scipy(method: str, tolerance: float, leg: Leg) -> Trajectory:
+def by_scipy(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """SciPy's solve_ivp.
 
     Its Newton test is sqrt(rtol) of the tolerance, so rtol is the tolerance too.
@@ -44,10 +44,10 @@ def by_scipy(method: str, tolerance: float, leg: Leg) -> Trajectory:
         )
     if not found.success:
         raise ArithmeticError(f"SciPy {method} at {tolerance:g}: {found.message}")
-    return Trajectory(Ending.reached, found.t, found.y.T)
+    return Trajectory(RunEnding.reached, found.t, found.y.T)
 
 
-def by_cvode(cvode: Any, tolerance: float, leg: Leg) -> Trajectory:
+def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """CVODE's BDF with its dense solver, through scikit-sundae."""
     beam, z, duration = leg
     arguments = beam.roots, beam.nodal, beam.mesh.matrices
@@ -73,7 +73,7 @@ def by_cvode(cvode: Any, tolerance: float, leg: Leg) -> Trajectory:
     found = solver.solve(np.array([0.0, duration]), z)
     if not found.success:
         raise ArithmeticError(f"CVODE at {tolerance:g}: {found.message}")
-    return Trajectory(Ending.reached, found.t, found.y)
+    return Trajectory(RunEnding.reached, found.t, found.y)
 
 
 RADAU = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)

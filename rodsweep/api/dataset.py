@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL, attribute_digests, variable_digest
 from ..results.file.recent import journalled_points, journalled_reasons, put_in, read_unfolded
-from ..results.file.validation import Header, cleaned, open_whole, reading, reason_of
+from ..results.file.validation import ResultHeader, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
 from ..results.layouts.variables import DIMENSIONS, TYPED, Layout
@@ -81,7 +81,7 @@ def ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Data
     return xr.Dataset(variables, coords, data.attrs)
 
 
-def _loaded(path: Path, header: Header) -> xr.Dataset:
+def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
     """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
     digests = json.loads(header.attributes[SEAL])["variables"]
     with reading(path):

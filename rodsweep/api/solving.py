@@ -16,7 +16,7 @@ from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
-from ..sweep.progress import ProgressReporter, Silent, in_notebook
+from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import NoClaims, RankListener, StopRequest
 from ..tasks.protocol import AllPoints, Arrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
@@ -26,7 +26,7 @@ from ..tasks.running.unforeseen import Note, guarded
 from ..watch import part, reporting_to
 from .solved import SolvedPoints
 
-Display = ProgressReporter | Silent
+Display = ProgressReporter | SilentProgress
 _warm: set[str] = set()
 """Tasks warmed up in this process: compilation happens once."""
 
@@ -169,7 +169,7 @@ def display(progress: bool | None, total: int | None, title: str) -> Display:
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
     shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
-    return ProgressReporter(total, title, live=True) if shown else Silent()
+    return ProgressReporter(total, title, live=True) if shown else SilentProgress()
 
 
 def listener(shown: Display, name: str) -> RankListener:

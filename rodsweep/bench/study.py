@@ -91,7 +91,7 @@ def columns_of(measurements: Sequence[Measurement]) -> Table:
     return columns
 
 
-class Timed(NamedTuple, Generic[Outcome]):
+class TimedRuns(NamedTuple, Generic[Outcome]):
     """Result of the first run, and processor seconds of every timed run."""
 
     outcome: Outcome
@@ -102,7 +102,7 @@ class Timed(NamedTuple, Generic[Outcome]):
         return median(self.seconds)
 
 
-def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[Timed[Outcome]]:
+def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
     """Times all runs in turn; rounds: number of timed rounds of each run.
 
     The first run loads and compiles, and counts only for runs without rounds. A short run is made twice in a
@@ -114,7 +114,7 @@ def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[T
         if first[i].median < SHORT:
             runs[i]()
         seconds[i] += _timed(runs[i]).seconds
-    return [Timed(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]
+    return [TimedRuns(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]
 
 
 def in_turn(rounds: Sequence[int]) -> Iterator[int]:
@@ -123,10 +123,10 @@ def in_turn(rounds: Sequence[int]) -> Iterator[int]:
         yield from (i for i, most in enumerate(rounds) if turn < most)
 
 
-def _timed(run: Callable[[], Outcome]) -> Timed[Outcome]:
+def _timed(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
     began = processor_seconds()
     outcome = run()
-    return Timed(outcome, (processor_seconds() - began,))
+    return TimedRuns(outcome, (processor_seconds() - began,))
 
 
 def processor_seconds() -> float:
@@ -203,7 +203,7 @@ def middle(values: Iterable[float]) -> float:
     return float(median(numbers)) if numbers else nan
 
 
-class Shown(float):
+class PrintedNumber(float):
     """A number that is printed as "" if it is nan."""
 
     def __format__(self, form: str) -> str:
@@ -214,7 +214,9 @@ def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
     """Table in Markdown from its head and the format of a row, such as "{method} | {seconds:.2f}"."""
     lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
     for row in rows:
-        cells = {k: Shown(value) if isinstance(value, int | float) else value for k, value in row.items()}
+        cells = {
+            k: PrintedNumber(value) if isinstance(value, int | float) else value for k, value in row.items()
+        }
         lines.append(f"| {line.format_map(cells)} |")
     return "\n".join(lines)
 

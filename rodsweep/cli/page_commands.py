@@ -69,7 +69,7 @@ def plot(
 ) -> None:
     """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
     from ..post.figures import draw
-    from ..post.figures.request import Look
+    from ..post.figures.request import FigureLook
     from ..post.figures.sections import section
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
@@ -77,7 +77,9 @@ def plot(
     output = output or with_ending(files[0], ".gif" if what == "animation" else ".png")
     values = _values(at)
     views = [section(read_view(link_target(file)), values) for file in files]
-    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
+    drawn = draw(
+        views, output, look=FigureLook(**look), shapes=with_shapes, roots=roots, what=what, points=points
+    )
     click.echo(drawn)
 
 
@@ -103,13 +105,13 @@ def export(
     file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
 ) -> None:
     """Write a table of the result FILE as CSV: one row per point, or per item of a list."""
-    from ..post.export import Request
+    from ..post.export import ExportRequest
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
     output = link_target(output or with_ending(file, ".csv"))
     names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
-    request = Request(table=table, columns=names, units=units, replace=replace)
+    request = ExportRequest(table=table, columns=names, units=units, replace=replace)
     click.echo(f"wrote {output}: {export_view(read_view(link_target(file)), output, request)}")
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, create_model, model_validator
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from .arm.axes import MOST_POINTS, names_over, parameter_of_axis
 from .arm.section import ArmSection
-from .values import Axis, Number, Strict, Text, Values
+from .values import Axis, Number, StrictSection, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
@@ -17,13 +17,13 @@ REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.
 DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
 
 
-def _section(base: type[Strict], names: tuple[str, ...], kind: Any) -> Any:
+def _section(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
     """Subclass of `base` with an additional optional key for each name."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section(Strict, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), Values)
+LinearAxes: Any = _section(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), Values)
 
 
 class Axes(LinearAxes):

@@ -15,13 +15,13 @@ from ..model.parameters import (
 )
 from .axes import DEFAULTS, NonlinearParameters
 from .schema import Config
-from .values import Number, Strict
+from .values import Number, StrictSection
 
 FOLLOWED = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which branches can be followed: those on which Hopf points depend, so not gamma1."""
 
 
-class BranchOptions(Strict):
+class BranchOptions(StrictSection):
     """Parameter and range of the branches, and the number of cycles and special points that are stored."""
 
     along: Literal[FOLLOWED] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time

@@ -9,10 +9,10 @@ from pydantic import Field, model_validator
 from ..model.parameters import NONLINEAR_PARAMETERS, all_but
 from .axes import NonlinearParameters
 from .schema import Config, Crossings
-from .values import Number, Strict
+from .values import Number, StrictSection
 
 
-class CriticalityOptions(Strict):
+class CriticalityOptions(StrictSection):
     """Range of the search, and the number of Hopf points that are stored."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0

@@ -22,7 +22,7 @@ from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .arm.axes import LOAD_AXES, SECTION
 from .document.refusals import model_of
 from .tasks import CONFIGS
-from .values import Axis, Strict
+from .values import Axis, StrictSection
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
@@ -70,7 +70,7 @@ def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
     """Models of the sections of a config, including nested sections."""
     for field in config.model_fields.values():
         kind = model_of(field)
-        if isinstance(kind, type) and issubclass(kind, Strict) and not issubclass(kind, Axis):
+        if isinstance(kind, type) and issubclass(kind, StrictSection) and not issubclass(kind, Axis):
             yield kind
             yield from sections_of(kind)
 

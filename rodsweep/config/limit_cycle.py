@@ -8,13 +8,13 @@ from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.axes import AXIS_OF
 from .axes import NonlinearParameters, words
 from .schema import Config, Nodes
-from .values import Number, Strict
+from .values import Number, StrictSection
 
 LONGEST = "longest"
-Along = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
-class LimitCycleOptions(Strict):
+class LimitCycleOptions(StrictSection):
     """Start of each point, limits of the computation, and stored data of the cycle."""
 
     method: Literal["collocation", "integration"] = "collocation"
@@ -23,7 +23,7 @@ class LimitCycleOptions(Strict):
     """Tip deflection of the leading mode at the start of a point, in L."""
     start: Literal["mode", "neighbour", "hopf"] = "mode"
     """Start of each point: the leading mode, a neighbour's cycle, or the Hopf point."""
-    along: Along = LONGEST
+    along: ChainParameter = LONGEST
     """Parameter along which each point starts from the previous point's cycle, or a quantity of the arm that
     changes only this parameter; `longest`: the parameter with most values."""
     direction: Literal["up", "down"] = "up"

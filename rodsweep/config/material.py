@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from ..errors import InputError
 from ..model.material.build import Build
 from ..model.material.profile import FACTORS, Profile
-from .values import Number, Strict, cell_number, short
+from .values import Number, StrictSection, cell_number, short
 
 MOST_ROWS = 1000
 """Largest number of rows of a profile."""
@@ -23,7 +23,7 @@ Column = Annotated[
 ]
 
 
-class ProfileTable(Strict):
+class ProfileTable(StrictSection):
     """Factors along the arm: columns of equal length. An omitted column is 1 along the whole arm."""
 
     u: Annotated[list[Number], Field(max_length=MOST_ROWS, description="a list of numbers from 0 to 1")]
@@ -62,7 +62,7 @@ def _or_file(schema: dict[str, Any]) -> None:
     schema["anyOf"] = [{"type": "string"}, *schema["anyOf"]]
 
 
-class MaterialSection(Strict):
+class MaterialSection(StrictSection):
     """Constitutive law of the arm, and its variation along the length."""
 
     law: LawName = "linear"

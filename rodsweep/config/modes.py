@@ -5,10 +5,10 @@ from typing import Literal
 from pydantic import model_validator
 
 from .schema import LinearConfig, Modes, Nodes
-from .values import Strict
+from .values import StrictSection
 
 
-class ModesOptions(Strict):
+class ModesOptions(StrictSection):
     """Number of modes at each point, their nodes, and whether transient growth is computed."""
 
     modes: Modes = 2

@@ -11,7 +11,7 @@ from ..model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETER
 from .arm.axes import AXIS_OF, FLUID
 from .axes import DEFAULTS, DiagramParameters, LinearAxes, words
 from .schema import Crossings, LinearConfig
-from .values import Axis, Number, Strict
+from .values import Axis, Number, StrictSection
 
 THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 
@@ -20,7 +20,7 @@ class BautinAlong(LinearAxes):
     """A parameter with values, over which generalised Hopf points are followed."""
 
 
-class PhaseDiagramOptions(Strict):
+class PhaseDiagramOptions(StrictSection):
     """Options for the rows of a phase diagram and for the curves between them."""
 
     crossings: Crossings = 16

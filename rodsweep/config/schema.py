@@ -13,14 +13,14 @@ from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL
 from .arm.shape import OF_MATERIAL, SHAPES, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
 from .material import MaterialSection
-from .values import Number, Strict, Text
+from .values import Number, StrictSection, Text
 
 Modes = Annotated[int, Field(ge=1, le=100)]
 Nodes = Annotated[int, Field(ge=3, le=513)]
 Crossings = Annotated[int, Field(ge=1, le=1000)]
 
 
-class Config(Strict):
+class Config(StrictSection):
     """Keys and properties of the config of every task."""
 
     title: Annotated[Text, Field(max_length=200)] = ""

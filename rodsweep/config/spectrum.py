@@ -7,10 +7,10 @@ from pydantic import model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS
 from .schema import LinearConfig, Modes, Nodes
-from .values import Strict
+from .values import StrictSection
 
 
-class SpectrumOptions(Strict):
+class SpectrumOptions(StrictSection):
     """Number of eigenvalues at each point, the method, and stored data of their modes."""
 
     modes: Modes = 4

@@ -8,10 +8,10 @@ from pydantic import Field, model_validator
 
 from ..model.parameters import all_but
 from .schema import Crossings, LinearConfig
-from .values import Number, Strict
+from .values import Number, StrictSection
 
 
-class ThresholdsOptions(Strict):
+class ThresholdsOptions(StrictSection):
     """Range of the search, and the number of crossings that are stored."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0

@@ -12,7 +12,7 @@ MOST_VALUES = 1_000_000_000
 """Maximum number of values on one axis."""
 
 
-class Strict(BaseModel):
+class StrictSection(BaseModel):
     """Section of the config: unknown keys are refused, types are not converted, values are frozen."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
@@ -110,7 +110,7 @@ DIGITS_OF_QUANTITY = 15
 """Significant digits of a quantity in SI units; unit conversion changes the 16th digit."""
 
 
-class Axis(Strict):
+class Axis(StrictSection):
     """Values of a parameter: a number, a list, or `num` values from start to stop."""
 
     @classmethod

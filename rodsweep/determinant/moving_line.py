@@ -45,7 +45,7 @@ class MovingLineSettings(CompiledSettings):
 MOVING_LINE = MovingLineSettings()
 
 
-class End(NamedTuple):
+class IntervalEnd(NamedTuple):
     """One end of an interval of a path: p, the coefficients of the rod, and the line's real part."""
 
     p: float
@@ -66,7 +66,7 @@ class Strip(NamedTuple):
 
 
 @compiled
-def end_between(share: float, first: End, last: End) -> End:
+def end_between(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
     """Linear interpolation between two ends, without cancellation; share: from 0 (first) to 1 (last)."""
     a = 1 - share
     b = share
@@ -75,12 +75,12 @@ def end_between(share: float, first: End, last: End) -> End:
     between = Coefficients(
         a * F + b * F_last, a * nu + b * nu_last, a * c2 + b * c2_last, a * gamma3 + b * gamma3_last
     )
-    return End(a * first.p + b * last.p, between, a * first.line + b * last.line)
+    return IntervalEnd(a * first.p + b * last.p, between, a * first.line + b * last.line)
 
 
 @compiled
 def free_of_zeros(
-    at: End, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
+    at: IntervalEnd, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
 ) -> tuple[bool, float, float]:
     """(whether D is proved to have no zero on the rectangle about l(p) + i y, cost in y, cost in p).
 
@@ -109,7 +109,9 @@ def free_of_zeros(
 
 
 @compiled
-def none_crosses(first: End, last: End, direction: Coefficients, most: int) -> tuple[bool, int]:
+def none_crosses(
+    first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
+) -> tuple[bool, int]:
     """(whether it is proved that no eigenvalue crosses the line between two ends, rectangles examined).
 
     direction: d(F, nu, c2, gamma3)/dp. most: maximum number of rectangles. The order of the ends is

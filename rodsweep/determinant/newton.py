@@ -41,7 +41,7 @@ class RootNewtonSettings(CompiledSettings):
 ROOT_NEWTON = RootNewtonSettings()
 
 
-class Zero(NamedTuple):
+class LocatedZero(NamedTuple):
     """A crossing (w = i eta) or a double eigenvalue (w = x) with error estimates; nan after a failure."""
 
     eta_or_x: float
@@ -50,13 +50,13 @@ class Zero(NamedTuple):
     error_of_p: float
 
 
-FAILED = Zero(math.nan, math.nan, math.nan, math.nan)
+FAILED = LocatedZero(math.nan, math.nan, math.nan, math.nan)
 
 
 @compiled
 def crossing_newton(
     eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
-) -> Zero:
+) -> LocatedZero:
     """The zero of D(i eta; p) near (eta, p), with error estimates from rounding and the last step.
 
     scale: expected sizes of eta and p. FAILED for a step beyond `ROOT_NEWTON.largest_step` or without
@@ -87,13 +87,15 @@ def crossing_newton(
         if (abs(in_eta) <= ROOT_NEWTON.last_step * e_eta and abs(in_p) <= ROOT_NEWTON.last_step * e_p) or (
             step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)
         ):
-            return Zero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
+            return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
     return FAILED
 
 
 @compiled
-def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float) -> Zero:
+def double_newton(
+    x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float
+) -> LocatedZero:
     """The double real eigenvalue D = D_w = 0 near (x, p).
 
     FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
@@ -127,7 +129,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         if abs(in_p) <= ROOT_NEWTON.last_step * e_p and (
             abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2
         ):
-            return Zero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
+            return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
     return FAILED
 

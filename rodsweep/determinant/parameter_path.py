@@ -14,7 +14,7 @@ from .even_parts import even_parts
 from .value import Branches, from_parts
 
 
-class Changes(NamedTuple):
+class CoefficientDerivatives(NamedTuple):
     """Derivatives with respect to p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3.
 
     T1 is the first derivative of T, N1 and N2 are the first and second of N, and so on. D depends only on w
@@ -93,14 +93,14 @@ def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> 
 
 
 @compiled
-def changes(coefficients: Coefficients, direction: Coefficients) -> Changes:
+def changes(coefficients: Coefficients, direction: Coefficients) -> CoefficientDerivatives:
     """Derivatives of T, N, G, X along the path at a rod; F and c2 must not both vary."""
     F, nu, c2, gamma3 = coefficients
     F1, nu1, c21, gamma31 = direction
     g = nu + F * c2
     # Product rule; the second derivatives below are constants, because the coefficients are linear in p.
     g1 = nu1 + F1 * c2 + F * c21
-    return Changes(
+    return CoefficientDerivatives(
         c21 + gamma31,
         F1 * g + F * g1,
         2 * F1 * g1,
@@ -112,7 +112,7 @@ def changes(coefficients: Coefficients, direction: Coefficients) -> Changes:
 
 
 @compiled
-def root_changes(w: complex, at: Branches, change: Changes) -> tuple[complex, complex]:
+def root_changes(w: complex, at: Branches, change: CoefficientDerivatives) -> tuple[complex, complex]:
     """(dz+/dp, dz-/dp) at w, for the branches `at` of w."""
     P_p = 0j
     if at.P != 0:

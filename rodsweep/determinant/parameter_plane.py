@@ -10,7 +10,7 @@ from ..model.rod import Rod
 from .arm.determinant import arm_determinant
 from .exponents import ROUND_OFF
 from .parameter_path import ValueAlong, determinant_along
-from .value import Value, scaled_determinant
+from .value import DeterminantValue, scaled_determinant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,7 +106,7 @@ class Plane:
         blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
-    def value(self, w: complex, x: float, y: float) -> Value:
+    def value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w and scaled coordinates."""
         rod = self.at(x, y)
         return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)

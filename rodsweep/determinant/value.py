@@ -46,7 +46,7 @@ class DeterminantSettings(CompiledSettings):
 DETERMINANT = DeterminantSettings()
 
 
-class Value(NamedTuple):
+class DeterminantValue(NamedTuple):
     """D and D' = dD/dw times exp(-S); noise: magnitude of the rounding error of D exp(-S)."""
 
     D: complex
@@ -79,7 +79,7 @@ def branches(w: complex, coefficients: Coefficients) -> Branches:
 
 
 @compiled
-def scaled_determinant(w: complex, coefficients: Coefficients) -> Value:
+def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
     """D and D' at w; w = 0 is replaced by `DETERMINANT.in_place_of_0`, where D is 1 too."""
     if w == 0:
         w = complex(DETERMINANT.in_place_of_0, 0.0)
@@ -87,7 +87,7 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> Value:
 
 
 @compiled
-def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
+def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
     """D and D' from the even parts at w."""
     even, total, noise = parts
     F, nu, c2, gamma3 = coefficients
@@ -96,11 +96,11 @@ def from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> Value:
     # d(P^2)/dw.
     N = (nu + F * c2) * nu + 2 * X * w
     slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P
-    return Value(math.exp(-even.S) + w / 2 * total, (total + w * slope) / 2, even.S, noise)
+    return DeterminantValue(math.exp(-even.S) + w / 2 * total, (total + w * slope) / 2, even.S, noise)
 
 
 @compiled
-def second_difference(after: Value, before: Value, S: float, h: float) -> complex:
+def second_difference(after: DeterminantValue, before: DeterminantValue, S: float, h: float) -> complex:
     """D'' exp(-S) by the central difference of D' a step h beyond and before a point."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
     return (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)

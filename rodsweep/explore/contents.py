@@ -20,7 +20,7 @@ from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
 from .solving.diagrams import has_cycle_curves
 from .state import PageState
-from .texts import Sign, show_texts
+from .texts import SolvingSign, show_texts
 
 
 class PageContents:
@@ -40,7 +40,7 @@ class PageContents:
         self.branches = BranchPicture()
         self.diagram = DiagramPicture()
         self.numbers = NumbersTable()
-        self.sign = Sign(name="working")
+        self.sign = SolvingSign(name="working")
         self.sharing = Sharing(self.cards, self.beating.line, loaded)
         self.buttons = {
             kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])

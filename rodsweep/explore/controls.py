@@ -16,7 +16,7 @@ STEPS = 400
 Changed = Callable[..., None]
 
 
-class Field:
+class SliderField:
     """A text field with a slider. A change of either calls `changed(name, text)`."""
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
@@ -70,7 +70,7 @@ class Controls:
         self._is_shown = False
         sheets: list[StyleSheet] = [sheet]
         self.fields = {
-            tab: {name: Field(scale, self._field_changed, sheets) for name, scale in scales.items()}
+            tab: {name: SliderField(scale, self._field_changed, sheets) for name, scale in scales.items()}
             for tab, scales in SCALES.items()
         }
         panels = [

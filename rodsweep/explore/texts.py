@@ -19,7 +19,7 @@ class PageText(DataModel):
     text = String(default="")
 
 
-class Sign(PageText):
+class SolvingSign(PageText):
     """The sign "solving ..."; `is_stoppable`: whether the button "Stop" is shown beside it."""
 
     is_stoppable = Bool(default=False)

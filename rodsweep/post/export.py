@@ -19,7 +19,7 @@ ROWS_AT_ONCE = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class ExportRequest:
     """Request for the export of a table.
 
     table: by default the table that has the columns, or the first table of the task. columns: by default all.
@@ -32,7 +32,7 @@ class Request:
     replace: bool = False
 
 
-def export(view: View, output: Path, request: Request) -> str:
+def export(view: View, output: Path, request: ExportRequest) -> str:
     """Writes a table of a result; returns a sentence about it. Raises InputError for a bad name."""
     if output.is_dir() or output.suffix not in SEPARATORS:
         endings = "; ".join((".csv separates columns by commas", ".tsv by tabs"))

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable
 
 from ..watch import SolvePosition
-from .handout import OVER, Handout, Report
+from .handout import OVER, Handout, RankReport
 from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
@@ -61,7 +61,7 @@ class FirstRankClaims:
             self.thread = threading.Thread(target=self._serve_until_over, name="handout", daemon=True)
             self.thread.start()
 
-    def claim(self, report: Report) -> IndexRange:
+    def claim(self, report: RankReport) -> IndexRange:
         """The next chunk; waits until a chunk is available or the work is over."""
         with self.serving:
             self._heed_stop()
@@ -136,7 +136,7 @@ class FirstRankClaims:
             rank = self.status.Get_source()
             self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
 
-    def _hear(self, rank: int, report: Report) -> None:
+    def _hear(self, rank: int, report: RankReport) -> None:
         """Handles a report of a rank: answers a request ahead at once, and queues any other request.
 
         After an answer in advance the rank has the next chunk already, and is not queued.
@@ -173,7 +173,7 @@ class OtherRankClaims:
         self.stop = stop
         self.stop_exchanged = False
 
-    def claim(self, report: Report) -> IndexRange:
+    def claim(self, report: RankReport) -> IndexRange:
         """The next chunk; waits for the answer of the first rank, and requests the following chunk."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
@@ -184,7 +184,7 @@ class OtherRankClaims:
             pause = min(ASK_GROWTH * pause, LONGEST_ASK_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != OVER:
-            self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
+            self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
     def report_place(self, place: SolvePosition) -> None:

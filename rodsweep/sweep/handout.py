@@ -34,7 +34,7 @@ def chunk_seconds(ranks: int) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class RankReport:
     """Report of a rank with a request for the next chunk.
 
     done: units finished since the last report, in `seconds`. given_back: units of the chunk left undone.
@@ -68,7 +68,7 @@ class Handout:
         self.stopped = False
         self.change = threading.Condition()
 
-    def settle(self, rank: int, report: Report) -> None:
+    def settle(self, rank: int, report: RankReport) -> None:
         """Takes a report into account: finished units, and units given back."""
         with self.change:
             if self.held[rank]:
@@ -145,7 +145,7 @@ class Pool(Handout):
         in_hand = {first for first, _ in self.taken.values()}
         return [unit for unit in self._wanted if unit not in in_hand]
 
-    def settle(self, rank: int, report: Report) -> None:
+    def settle(self, rank: int, report: RankReport) -> None:
         """Takes the results of a rank into account; a unit without a result can be chosen again."""
         with self.change:
             self.points += report.points

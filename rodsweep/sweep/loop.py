@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..watch import Stopped, reporting_to
 from .claims import FirstRankClaims, OtherRankClaims
-from .handout import GIVE_BACK_AFTER, OVER, Handout, Report, chunk_seconds
+from .handout import GIVE_BACK_AFTER, OVER, Handout, RankReport, chunk_seconds
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
 from .team import Team
@@ -21,7 +21,7 @@ Indices = int | NDArray[np.int64]
 """Index of a single point, or indices of points stored together, shape (n,)."""
 
 
-class Solve(Protocol):
+class UnitSolver(Protocol):
     """Function from a unit to its points; yields (index, result) for each point, or for a whole stretch.
 
     A unit is a point, a chain of points yielded individually, or a stretch of points yielded at once.
@@ -41,7 +41,7 @@ class ProgressSink(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class RankWork:
     """Work of a rank: number of points, and seconds spent on solving (busy) and on waiting (idle).
 
     ended: a stop request ended an unfinished solve; a later run solves the unit again.
@@ -62,14 +62,14 @@ class Loop:
     later units depend on results. name: describes a unit in words.
     """
 
-    solve: Solve
+    solve: UnitSolver
     keep: Callable[[Indices, Any], None]
     prepare: Callable[[], object] = lambda: None
     results: Callable[[], dict[int, Any]] = dict
     name: Callable[[int], str] = lambda unit: ""
 
 
-def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> Share:
+def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:
     """Solves every unit of `todo`, known to the first rank only; returns when all ranks have finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
@@ -79,10 +79,10 @@ def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: Stop
     with suppress(Stopped), reporting_to(RankListener(claims, stop)):
         loop.prepare()
     shown(0)
-    return _Rank(team, claims, loop, shown, stop).share()
+    return _RankLoop(team, claims, loop, shown, stop).share()
 
 
-class _Rank:
+class _RankLoop:
     """The loop on one rank."""
 
     def __init__(
@@ -101,18 +101,18 @@ class _Rank:
         self.points = 0
         self.ended = False
 
-    def share(self) -> Share:
+    def share(self) -> RankWork:
         """Solves chunk after chunk; returns the work of the rank once all ranks have finished."""
         started = time.monotonic()
         busy = 0.0
-        chunk = self.claims.claim(Report())
+        chunk = self.claims.claim(RankReport())
         while chunk != OVER:
             began = time.monotonic()
             before = self.points
             at = self._solved_up_to(chunk)
             spent = time.monotonic() - began
             busy += spent
-            report = Report(
+            report = RankReport(
                 done=at - chunk[0],
                 seconds=spent,
                 given_back=(at, chunk[1]),
@@ -124,7 +124,7 @@ class _Rank:
         if isinstance(self.claims, FirstRankClaims):
             self.claims.close()
         self.team.wait_for_all()
-        return Share(self.points, busy, time.monotonic() - started - busy, self.ended)
+        return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solved_up_to(self, chunk: IndexRange) -> int:
         """Solves units of a chunk; returns the first unit not solved.

@@ -34,7 +34,7 @@ def in_notebook() -> bool:
     return Console().is_jupyter
 
 
-class Silent:
+class SilentProgress:
     """Progress display that shows nothing."""
 
     def __call__(self, done: int) -> None: ...

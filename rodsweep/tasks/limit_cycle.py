@@ -191,7 +191,9 @@ class LimitCycleTask(Task):
         """A Cycle as variables of the file: fields, measures and errors."""
         options = self.config.limit_cycle
         found = cycle.multipliers
-        stored = _Stored(np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found)
+        stored = _StoredMultipliers(
+            np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found
+        )
         values = recorded(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIERS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
@@ -204,7 +206,7 @@ class LimitCycleTask(Task):
         return values
 
 
-class _Stored(NamedTuple):
+class _StoredMultipliers(NamedTuple):
     """The Floquet multipliers of a cycle as stored, complex, (STORED_MULTIPLIERS,)."""
 
     multipliers: Complex

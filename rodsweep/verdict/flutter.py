@@ -6,7 +6,7 @@ from math import inf, pi
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
-from ..solve.changes.unstable_modes import Crossing, Kind
+from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
 from .relative import ENDS_OF_VARIED, FARTHEST, rod_with
 
@@ -24,16 +24,16 @@ class FlutterForces:
     """Time scale, in s."""
     thresholds: Thresholds
 
-    def first(self, kind: Kind) -> Crossing | None:
+    def first(self, kind: ChangeKind) -> Crossing | None:
         """The first change of a kind along the force."""
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 
-    def frequency(self, kind: Kind) -> float | None:
+    def frequency(self, kind: ChangeKind) -> float | None:
         """Frequency at the first change of a kind, in Hz."""
         found = self.first(kind)
         return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
 
-    def force(self, kind: Kind) -> float | None:
+    def force(self, kind: ChangeKind) -> float | None:
         """Force at the first change of a kind, in k3/L^2."""
         found = self.first(kind)
         return None if found is None else found.at
@@ -78,11 +78,11 @@ class FlutterRange:
         """Largest force of the search, in k3/L^2."""
         return self.forces[0].thresholds.end
 
-    def force(self, kind: Kind) -> Span | None:
+    def force(self, kind: ChangeKind) -> Span | None:
         """Range of the force of the first change of a kind, in k3/L^2."""
         return span_of([f.force(kind) for f in self.forces])
 
-    def frequency(self, kind: Kind) -> Span | None:
+    def frequency(self, kind: ChangeKind) -> Span | None:
         """Range of the frequency at the first change of a kind, in Hz."""
         return span_of([f.frequency(kind) for f in self.forces])
 
@@ -121,7 +121,7 @@ def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in ENDS_OF_VARIED if arm.shape.varies else (FARTHEST,):
         found = flutter_forces(arm, drag, end)
-        flutter = found.force(Kind.hopf)
+        flutter = found.force(ChangeKind.hopf)
         reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
         if BEYOND_FLUTTER * reached <= end or found.thresholds.end < end:
             break

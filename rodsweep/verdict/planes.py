@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import compact
-from ..solve.changes.unstable_modes import Kind
+from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, flutter_range
 from .relative import turned
 
@@ -28,7 +28,7 @@ class PlaneOfMotion:
     @property
     def flutter_loads(self) -> list[float]:
         """Force of the first flutter for each drag, in N; inf without flutter."""
-        forces = [each.force(Kind.hopf) for each in self.found.forces]
+        forces = [each.force(ChangeKind.hopf) for each in self.found.forces]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
@@ -70,7 +70,7 @@ def with_load(planes: Planes) -> Planes:
     load = first.arm.load
     if share is None or load is None:
         return planes
-    force = first.found.forces[0].force(Kind.hopf)
+    force = first.found.forces[0].force(ChangeKind.hopf)
     scale = first.arm.load_scale
     if force is None:
         end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"

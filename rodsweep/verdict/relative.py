@@ -13,14 +13,14 @@ import numpy as np
 
 from ..determinant.certificate.covering import cover
 from ..determinant.certificate.first_boxes import first_boxes
-from ..determinant.newton import Zero
+from ..determinant.newton import LocatedZero
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import Kind, end_below_crushing
+from ..solve.changes.unstable_modes import ChangeKind, end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 FARTHEST = 1000.0
@@ -128,13 +128,15 @@ def _first_of_varied(path: Path, end: float) -> float:
         raise FlutterUnknown(
             f"the search for the flutter threshold of a relative load fails: {cause_of(error)}"
         ) from error
-    first = min((crossing.at for crossing in found.crossings if crossing.kind == Kind.hopf), default=inf)
+    first = min(
+        (crossing.at for crossing in found.crossings if crossing.kind == ChangeKind.hopf), default=inf
+    )
     if not found.proved or (found.ended_early and first == inf):
         raise FlutterUnknown("the flutter threshold of a relative load is not decided")
     return first
 
 
-def _grows(path: Path, zero: Zero) -> bool:
+def _grows(path: Path, zero: LocatedZero) -> bool:
     """Whether the growth rate of the pair on the imaginary axis increases with F."""
     there = determinant_along(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction

@@ -5,7 +5,7 @@ are conditional on the absence of the neglected effects.
 """
 
 from ..model.arm.neglected import Validity
-from ..solve.changes.unstable_modes import Kind
+from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, Span
 from .load import Load, rounded, rounded_percent
 from .planes import PlaneOfMotion, Planes
@@ -24,7 +24,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     headline = not_applicable_sentences(plane.arm, assessment)
     if assessment.of_thresholds == Validity.does_not_apply:
         return [*headline, *_without(plane, effect_kinds_in_words(beyond)), *_other_plane(planes, "would be")]
-    flutter = plane.found.force(Kind.hopf)
+    flutter = plane.found.force(ChangeKind.hopf)
     known = "No flutter was found" if flutter is None else f"Flutter, at {_where(plane, flutter)},"
     return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]
 
@@ -34,14 +34,14 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
-    flutter = found.force(Kind.hopf)
-    back = found.force(Kind.restabilization)
+    flutter = found.force(ChangeKind.hopf)
+    back = found.force(ChangeKind.restabilization)
     if flutter is None:
         stays = f": it stays straight at {load.given}" if load.given else ""
         if found.end < arm.F:
             stays = f": whether it beats at {load.given} is not known"
         return [f"The arm does not flutter {_until(plane, load)}{stays}."]
-    rate = found.frequency(Kind.hopf)
+    rate = found.frequency(ChangeKind.hopf)
     beats = "" if rate is None else f" begins to beat at {rounded(rate.low, rate.high)} Hz"
     if arm.load is None:
         says = [f"The arm flutters at {_where(plane, flutter)}: above, it gives way and{beats}."]
@@ -96,8 +96,8 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     arm = plane.arm
     found = plane.found
     load = Load(plane.arm)
-    flutter = found.force(Kind.hopf)
-    rate = found.frequency(Kind.hopf)
+    flutter = found.force(ChangeKind.hopf)
+    rate = found.frequency(ChangeKind.hopf)
     if flutter is None:
         return [f"Without {neglected} it would not flutter {_until(plane, load)}."]
     beats = "" if rate is None else f", where it would begin to beat at {rounded(rate.low, rate.high)} Hz"
@@ -120,7 +120,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
         return []
     if second.found.failures:
         return [f"The threshold in {second.name} could not be found."]
-    flutter = second.found.force(Kind.hopf)
+    flutter = second.found.force(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second.name} there {verb} no flutter {_until(second, Load(second.arm))}."]
     decides = "" if planes.always else "; with part of the range of drag this plane goes first"
@@ -137,5 +137,5 @@ def _until(plane: PlaneOfMotion, load: Load) -> str:
 
 def _swinging(found: FlutterRange, load: Load) -> list[str]:
     """Sentence on the onset of oscillation of decaying disturbances; empty without an onset."""
-    onset = found.force(Kind.onset)
+    onset = found.force(ChangeKind.onset)
     return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]

@@ -16,7 +16,7 @@ from ..model.arm.neglected import (
     worst_validity,
 )
 from ..model.arm.quantities import LOADS, SECTION_SIDES
-from ..solve.changes.unstable_modes import Crossing, Kind
+from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces
 
@@ -77,7 +77,7 @@ class Assessment:
 
 def first_flutter_of(found: FlutterRange) -> Crossing | None:
     """The first flutter with the likeliest of all drags that have flutter; None if no drag has flutter."""
-    return next((each for c in found.forces if (each := c.first(Kind.hopf))), None)
+    return next((each for c in found.forces if (each := c.first(ChangeKind.hopf))), None)
 
 
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:

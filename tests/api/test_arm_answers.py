@@ -11,7 +11,7 @@ from hard.page import as_stated, page_of
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
 
@@ -19,7 +19,7 @@ THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "
 def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
     arm = rs.Arm(**THICK)
     answer = arm.thresholds()
-    flutter = arm.flutter.forces[0].first(Kind.hopf)
+    flutter = arm.flutter.forces[0].first(ChangeKind.hopf)
     assert answer.F_hopf == pytest.approx(flutter.at, rel=1e-6)
     assert answer.data["F_hopf"].size == 1
     loaded = rs.Arm(**THICK, pressure="1 kPa").thresholds()

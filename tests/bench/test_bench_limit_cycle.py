@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rodsweep.bench.limit_cycle.integrators import DEFAULT, Leg
+from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
 from rodsweep.bench.limit_cycle.study import (
     FOLLOWING,
     WAITING,
-    Wait,
+    SettlingMethod,
     limit_cycle_study,
     settling_table,
     target_table,
@@ -37,7 +37,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     returns_of,
 )
 from rodsweep.bench.peers import NO_PEERS, Peers
-from rodsweep.bench.study import Contender, Measurement, Timed
+from rodsweep.bench.study import Contender, Measurement, TimedRuns
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.motion.integrator import integrator
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -60,7 +60,7 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
 
 def test_returns_lie_on_the_section():
     at = cycle()
-    steps = DEFAULT.integrate(1e-5, Leg(at.beam, at.state, FOLLOWED_PERIODS * at.period))
+    steps = DEFAULT.integrate(1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period))
     found = returns_of(at.beam, steps)
     angle = at.beam.tip(found.states)[2]
     assert len(found.times) >= 6
@@ -91,8 +91,8 @@ def test_table_at_equal_error_states_the_ratios():
 def test_tables_show_what_failed():
     failed = Measurement("", "a", "1e-05", 1.0, np.inf, failure="failed (ArithmeticError)")
     assert "| a | 1e-05 | failed (ArithmeticError) |" in work_table([failed])
-    never = Wait(50.0, "waiting, a", "", np.nan, np.inf, print, failed=("1e-06", "1e-07"))
-    text = settling_table([never], [Timed(None, (1.0,))])
+    never = SettlingMethod(50.0, "waiting, a", "", np.nan, np.inf, print, failed=("1e-06", "1e-07"))
+    text = settling_table([never], [TimedRuns(None, (1.0,))])
     assert "waiting, a (fails at 1e-06, 1e-07) |  | not settled" in text
 
 

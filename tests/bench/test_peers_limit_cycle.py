@@ -18,7 +18,7 @@ from benchmarks.limit_cycle.auto_cycles import AutoSetting, continued, rod_file
 from benchmarks.limit_cycle.auto_equations import EQUATIONS
 from benchmarks.limit_cycle.continuation import OWN, cycle_table, first_cycles, judged, ratio_table
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, families
-from rodsweep.bench.limit_cycle.integrators import DEFAULT, Leg
+from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
 from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
 from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, ExactCycle
 from rodsweep.bench.limit_cycle.tracking import (
@@ -89,7 +89,7 @@ def test_order_of_the_errors(name):
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
-            run = family.integrate(tolerance, Leg(at.beam, state, FOLLOWED_PERIODS * at.period))
+            run = family.integrate(tolerance, IntegrationTask(at.beam, state, FOLLOWED_PERIODS * at.period))
             error[i, phase] = judged_run(replace(at, state=state), run)["error"]
             steps[i, phase] = len(run.times) - 1
     (loose, tight), (few, many) = np.sqrt((error**2).mean(axis=1)), steps.mean(axis=1)

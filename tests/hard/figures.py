@@ -10,7 +10,7 @@ from rodsweep.api.dataset import view_of
 from rodsweep.errors import InputError
 from rodsweep.model.arm.neglected import Validity
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.request import FigureLook
 
 from .arm_figures import arm_figure, quantities_told
 from .arm_sentences import force_unit, in_si
@@ -180,7 +180,7 @@ def wrong_figure(task, keywords, choices, width):
     choices = {name: str(value) for name, value in choices.items() if value is not None}
     figures = []
     try:
-        sentence = draw(view, Path("drawn.png"), look=Look(width=width), keep=figures.append, **choices)
+        sentence = draw(view, Path("drawn.png"), look=FigureLook(width=width), keep=figures.append, **choices)
     except InputError as refused:
         return (
             []

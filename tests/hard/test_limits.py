@@ -16,7 +16,7 @@ from rods import rod_of
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -68,7 +68,7 @@ def test_thresholds_leave_the_limit_at_first_order(path):
     assert limit.status == ThresholdStatus.ok
     for i, there in enumerate(limit.crossings[:2]):
         here = (there.at, *path[1:])
-        if there.kind == Kind.onset:
+        if there.kind == ChangeKind.onset:
             slope = float(mp.re(onset_slope(here, there.growth_rate)))
         else:
             slope = float(hopf_slope(here, 1j * there.frequency))

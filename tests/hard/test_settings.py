@@ -56,7 +56,7 @@ from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.motion.held_tip import held_by_tip
-from rodsweep.solve.motion.integrator import Ending, forget_integrators, integrator
+from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
@@ -371,7 +371,7 @@ def motion(accuracy: float) -> Answer:
     start = beam.unknown(rest + 0.1 * (1 - u) * wave)
     forget_integrators()
     run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
-    if run.ending is not Ending.reached:
+    if run.ending is not RunEnding.reached:
         return None
     size = float(np.abs(run.states[0]).max())
     return {f"z{i}": (float(z), 30 * accuracy * size) for i, z in enumerate(run.states[-1])}

@@ -20,7 +20,7 @@ from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.layout.fitting import WORDS, break_lines, fit
 from rodsweep.post.figures.layout.ticks import visible_labels
-from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.style import STYLE
 
 WIDTHS = ("89 mm", "183 mm", None)
@@ -51,7 +51,7 @@ def drawn(view, tmp_path, monkeypatch, width, **words):
     """The figure as it is written."""
     figures = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
-    draw(view, tmp_path / "f.png", look=Look(title=True, width=width), **words)
+    draw(view, tmp_path / "f.png", look=FigureLook(title=True, width=width), **words)
     figures[0].draw_without_rendering()
     return figures[0]
 

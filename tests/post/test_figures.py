@@ -18,7 +18,7 @@ from rodsweep.api.dataset import view_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.lists import number_points
-from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
@@ -266,7 +266,7 @@ def line_of_spectra(command):
 def test_width_is_that_of_a_column_with_type_of_8_points(command, width, inches, monkeypatch):
     path, drawn = line_of_spectra(command), []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
-    draw(read_view(path), path.with_suffix(".png"), look=Look(width=width))
+    draw(read_view(path), path.with_suffix(".png"), look=FigureLook(width=width))
     (figure,) = drawn
     assert figure.get_size_inches()[0] == inches
     assert {text.get_fontsize() for text in figure.findobj(Text) if text.get_text()} == {8.0}
@@ -274,7 +274,7 @@ def test_width_is_that_of_a_column_with_type_of_8_points(command, width, inches,
 
 def test_title_stands_above_a_figure_only_where_it_is_asked_for(command, drawn):
     path = line_of_spectra(command)
-    for look in (Look(), Look(title=True)):
+    for look in (FigureLook(), FigureLook(title=True)):
         draw(read_view(path), path.with_suffix(".png"), look=look)
     assert ["Onset of a soft rod" in figure.get_suptitle() for figure in drawn] == [False, True]
 
@@ -284,7 +284,7 @@ def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, drawn):
     own = command.directory / "own.mplstyle"
     own.write_text("axes.facecolor: 123456\n")
     for style in ("ggplot", str(own)):
-        draw(read_view(path), path.with_suffix(".png"), look=Look(style=style))
+        draw(read_view(path), path.with_suffix(".png"), look=FigureLook(style=style))
     assert [to_hex(figure.axes[0].get_facecolor()) for figure in drawn] == ["#e5e5e5", "#123456"]
     for wrong in ("nosuch", "c.h5"):
         done = command("plot", "c.h5", "--style", wrong)
@@ -305,7 +305,7 @@ def drawn_of(command, monkeypatch, config, points=""):
     assert command("run", "c.yaml", "--fresh").returncode in (0, 1)
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     shown = draw(
-        read_view(command.directory / "c.h5"), command.directory / "f.png", look=Look(width="single")
+        read_view(command.directory / "c.h5"), command.directory / "f.png", look=FigureLook(width="single")
     )
     return drawn[0], shown
 
@@ -395,7 +395,7 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     for width in ("single", "double"):
-        draw(read_view(command.directory / "c.h5"), command.directory / "f.png", look=Look(width=width))
+        draw(read_view(command.directory / "c.h5"), command.directory / "f.png", look=FigureLook(width=width))
         figure = drawn[-1]
         figure.draw_without_rendering()
         axes, (legend,) = figure.axes[0], figure.legends

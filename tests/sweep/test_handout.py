@@ -17,7 +17,7 @@ from rodsweep.sweep.claims import (
     FirstRankClaims,
     OtherRankClaims,
 )
-from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report, chunk_seconds
+from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, RankReport, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import SolvePosition
 
@@ -41,7 +41,7 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
             start, stop = chunks.pop(0)
             at = int(rng.integers(start, stop)) + 1
             done += range(start, at)
-            handout.settle(rank, Report(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
+            handout.settle(rank, RankReport(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
         chunk = None if chunks else handout.take(rank)
         if chunk == OVER:
             assert sorted(done) == units
@@ -54,19 +54,19 @@ def test_chunks_follow_the_pace_and_shrink_towards_the_end():
     handout = Handout([(0, 100_000)], ranks=4)
     start, stop = handout.take(1)
     assert stop - start == 1
-    handout.settle(1, Report(1, 1e-3))
+    handout.settle(1, RankReport(1, 1e-3))
     start, stop = handout.take(1)
     assert stop - start == pytest.approx(CHUNK_SECONDS / 1e-3, abs=1)
     handout = Handout([(0, 16)], ranks=4)
-    handout.settle(1, Report(1, 1e-6))
+    handout.settle(1, RankReport(1, 1e-6))
     assert handout.take(1) == (0, 2)
 
 
 def test_rest_that_is_given_back_goes_to_the_next():
     handout = Handout([(0, 3)], ranks=1)
-    handout.settle(0, Report(1, 1e-6))
+    handout.settle(0, RankReport(1, 1e-6))
     assert handout.take(0) == (0, 1)
-    handout.settle(0, Report(0, 1.0, (0, 1)))
+    handout.settle(0, RankReport(0, 1.0, (0, 1)))
     assert handout.take(1) == (0, 1)
 
 
@@ -74,10 +74,10 @@ def test_idle_rank_waits_while_another_may_give_back():
     handout = Handout([(0, 1)], ranks=2)
     assert handout.take(0) == (0, 1)
     assert handout.take(1) is None
-    handout.settle(0, Report(0, 9.0, (0, 1)))
+    handout.settle(0, RankReport(0, 9.0, (0, 1)))
     assert handout.take(1) == (0, 1)
     assert handout.take(0) is None
-    handout.settle(1, Report(1, 0.1))
+    handout.settle(1, RankReport(1, 0.1))
     assert handout.take(0) == handout.take(1) == OVER
 
 
@@ -86,7 +86,7 @@ def test_two_threads_share_the_work_without_losing_any():
     seen: list[list[int]] = [[], []]
 
     def work(rank):
-        report = Report()
+        report = RankReport()
         while True:
             handout.settle(rank, report)
             while (chunk := handout.take(rank)) is None:
@@ -94,7 +94,7 @@ def test_two_threads_share_the_work_without_losing_any():
             if chunk == OVER:
                 return
             seen[rank] += range(*chunk)
-            report = Report(chunk[1] - chunk[0], 1e-5 * (chunk[1] - chunk[0]))
+            report = RankReport(chunk[1] - chunk[0], 1e-5 * (chunk[1] - chunk[0]))
 
     threads = [threading.Thread(target=work, args=(rank,)) for rank in (0, 1)]
     for thread in threads:
@@ -107,7 +107,7 @@ def test_two_threads_share_the_work_without_losing_any():
 def test_points_that_all_ranks_have_kept_are_counted():
     handout = Handout([(0, 9)], ranks=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
-        handout.settle(rank, Report(points=points))
+        handout.settle(rank, RankReport(points=points))
     assert handout.points == 6
 
 
@@ -116,7 +116,7 @@ def test_after_a_stop_nobody_gets_more_and_nobody_waits():
     assert handout.take(0) == (0, 1)
     handout.stop()
     assert handout.take(1) == OVER
-    handout.settle(0, Report(0, 1.0, (0, 1)))
+    handout.settle(0, RankReport(0, 1.0, (0, 1)))
     assert handout.take(0) == OVER
 
 
@@ -124,7 +124,7 @@ def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
     assert chunk_seconds(2) == CHUNK_SECONDS
     for ranks in (200, 10_000):
         handout = Handout([(0, 10**9)], ranks)
-        handout.settle(1, Report(1000, 1.0))
+        handout.settle(1, RankReport(1000, 1.0))
         start, stop = handout.take(1)
         assert ranks / ((stop - start) * 1e-3) <= 1001
 
@@ -134,14 +134,14 @@ def test_next_chunk_is_given_ahead_while_plenty_is_left():
     assert handout.take(1) == (0, 1)
     assert handout.take_ahead(1) == (1, 2)
     assert handout.take_ahead(0) is None  # seven units left, fewer than four a rank
-    handout.settle(1, Report(1, 9.0))
+    handout.settle(1, RankReport(1, 9.0))
     for _ in range(7):
         handout.take(0)
-        handout.settle(0, Report(1, 9.0))
+        handout.settle(0, RankReport(1, 9.0))
     assert handout.take(0) is None  # rank 1 still has the one that it got ahead, and may give it back
-    handout.settle(1, Report(0, 9.0, (1, 2)))
+    handout.settle(1, RankReport(0, 9.0, (1, 2)))
     assert handout.take(0) == (1, 2)
-    handout.settle(0, Report(1, 9.0))
+    handout.settle(0, RankReport(1, 9.0))
     assert handout.take(0) == OVER
 
 
@@ -183,11 +183,11 @@ def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
-    ahead, done = Report(ahead=True), Report(1, 9.0)
+    ahead, done = RankReport(ahead=True), RankReport(1, 9.0)
     mail = Mail()
     first = claims(mail, [(0, 10)], monkeypatch)
     answers = []
-    for report in [Report(), ahead, done, ahead, done, ahead, done, ahead, done]:
+    for report in [RankReport(), ahead, done, ahead, done, ahead, done, ahead, done]:
         mail.post(REQUEST_TAG, report)
         first.between_points()
         answers.append(mail.sent.pop() if mail.sent else None)
@@ -199,7 +199,7 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
     """Its report may come before the message that it was asked to stop, and while others wait."""
     mail = Mail()
     first = claims(mail, [(0, 1)], monkeypatch)
-    for report in (Report(), Report(0, 9.0, (0, 1), 1, stop="SIGTERM")):
+    for report in (RankReport(), RankReport(0, 9.0, (0, 1), 1, stop="SIGTERM")):
         mail.post(REQUEST_TAG, report)
         first.between_points()
     assert first.stop.name == "SIGTERM"
@@ -209,9 +209,9 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
 
 def test_what_the_first_rank_gives_back_when_stopped_is_for_another_run(monkeypatch):
     first = claims(Mail(), [(0, 1)], monkeypatch)
-    assert first.claim(Report()) == (0, 1)
+    assert first.claim(RankReport()) == (0, 1)
     first.stop.name = "SIGUSR1"
-    assert first.claim(Report(0, 9.0, (0, 1), 1)) == OVER
+    assert first.claim(RankReport(0, 9.0, (0, 1), 1)) == OVER
 
 
 @pytest.mark.parametrize("asked", ["the first", "another"])
@@ -225,10 +225,10 @@ def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
     first.between_points()
     assert first.stop.name == "SIGTERM"
     assert mail.sent == ["SIGTERM"]
-    mail.post(REQUEST_TAG, Report())
+    mail.post(REQUEST_TAG, RankReport())
     first.between_points()
     assert mail.sent == ["SIGTERM", OVER]
-    assert first.claim(Report()) == OVER
+    assert first.claim(RankReport()) == OVER
 
 
 def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
@@ -238,7 +238,7 @@ def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(m
     first.between_points()
     first.report_place(SolvePosition("mesh"))  # its share is not known
     first.report_place(SolvePosition("cycle", 0.25))
-    mail.post(REQUEST_TAG, Report(1, 9.0))
+    mail.post(REQUEST_TAG, RankReport(1, 9.0))
     first.between_points()
     first.report_place(SolvePosition("cycle", 0.75))
     assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
@@ -251,10 +251,10 @@ def other_claims(mail):
 
 def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():
     mail = Mail(sender=0)
-    rank, done = other_claims(mail), Report(3, 9.0)
+    rank, done = other_claims(mail), RankReport(3, 9.0)
     mail.post(ANSWER_TAG, (4, 7))
     assert rank.claim(done) == (4, 7)
-    assert mail.sent == [done, Report(ahead=True)]
+    assert mail.sent == [done, RankReport(ahead=True)]
     mail.post(ANSWER_TAG, OVER)
     assert rank.claim(done) == OVER
     assert mail.sent[2:] == [done]

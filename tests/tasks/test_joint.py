@@ -16,7 +16,7 @@ from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalf
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.sweep.handout import OVER, Pool, Report
+from rodsweep.sweep.handout import OVER, Pool, RankReport
 
 DIAGRAM = """
 task: phase_diagram
@@ -201,7 +201,7 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
         while True:
             rank = next(turn)
             results = {held[rank]: half(units, held[rank])} if rank in held else {}
-            pool.settle(rank, Report(results=results))
+            pool.settle(rank, RankReport(results=results))
             held.pop(rank, None)
             chunk = pool.take(rank)
             if chunk == OVER:
@@ -226,7 +226,7 @@ def test_unit_that_a_stop_ended_is_wanted_again():
     pool = Pool(units, {}, 2)
     first = pool.take(0)
     assert pool.take(1) != first
-    pool.settle(0, Report(given_back=first))
+    pool.settle(0, RankReport(given_back=first))
     assert pool.take(0) == first
     pool.stop()
     assert pool.take(1) == OVER

@@ -15,7 +15,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.model.units import share_of_flutter
 from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
-from rodsweep.solve.changes.unstable_modes import Crossing, Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind, Crossing
 from rodsweep.verdict import flutter
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
 from rodsweep.verdict.planes import PlaneOfMotion, Planes
@@ -193,7 +193,7 @@ def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
 def test_silicone_arm_is_just_below_flutter():
     """A filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it; frequencies as 1/viscosity."""
     rod = arm(viscosity=THICK)
-    flutter = rod.flutter.force(Kind.hopf)
+    flutter = rod.flutter.force(ChangeKind.hopf)
     assert rod.F < flutter.low < flutter.high < 37.695
     assert flutter.always
     verdict = rod.report().verdict
@@ -204,8 +204,10 @@ def test_silicone_arm_is_just_below_flutter():
 def test_frequency_follows_from_tau2():
     rod = arm()
     for drag, found in zip(rod.drags, rod.flutter.forces, strict=True):
-        rate = found.first(Kind.hopf).frequency
-        assert found.frequency(Kind.hopf) == pytest.approx(abs(rate) / (2 * math.pi * rod.tau2_with(drag)))
+        rate = found.first(ChangeKind.hopf).frequency
+        assert found.frequency(ChangeKind.hopf) == pytest.approx(
+            abs(rate) / (2 * math.pi * rod.tau2_with(drag))
+        )
 
 
 def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
@@ -214,14 +216,14 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     from rodsweep.verdict.flutter import REQUEST
 
     rod = arm()
-    flutter = rod.flutter.force(Kind.hopf)
+    flutter = rod.flutter.force(ChangeKind.hopf)
     all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):
         found = solve_thresholds(
             Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), REQUEST
         )
-        first = next(c.at for c in found.crossings if c.kind == Kind.hopf)
+        first = next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
         assert flutter.low <= first <= flutter.high
 
 
@@ -305,14 +307,14 @@ def verdict(rod, *forces):
     ],
 )
 def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
-    window = found(1.0, (20.0, Kind.hopf, 2), (40.0, Kind.restabilization, 0))
-    other = [(25.0, Kind.hopf, 2), (45.0, Kind.restabilization, 0)] if second else []
+    window = found(1.0, (20.0, ChangeKind.hopf, 2), (40.0, ChangeKind.restabilization, 0))
+    other = [(25.0, ChangeKind.hopf, 2), (45.0, ChangeKind.restabilization, 0)] if second else []
     told = " ".join(verdict(arm(viscosity=1e3), window, found(2.0, *other)))
     assert all(words in told for words in sentences)
 
 
 def test_beyond_the_return_the_arm_is_straight_again():
-    window = found(1.0, (20.0, Kind.hopf, 2), (30.0, Kind.restabilization, 0))
+    window = found(1.0, (20.0, ChangeKind.hopf, 2), (30.0, ChangeKind.restabilization, 0))
     told = verdict(arm(viscosity=1e3), window)
     assert told[0] == "2 kPa is beyond flutter, at 1.25 kPa: the straight arm is stable again."
 
@@ -328,8 +330,10 @@ def test_arm_without_flutter_and_failed_search_are_told():
 
 def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatch):
     """With one drag the search ends before the arm returns with another, and before the load."""
-    early = replace(found(1.0, (20.0, Kind.hopf, 2), end=25.0).thresholds, status=ThresholdStatus.ended_early)
-    whole = found(1.0, (21.0, Kind.hopf, 2), (30.0, Kind.restabilization, 0))
+    early = replace(
+        found(1.0, (20.0, ChangeKind.hopf, 2), end=25.0).thresholds, status=ThresholdStatus.ended_early
+    )
+    whole = found(1.0, (21.0, ChangeKind.hopf, 2), (30.0, ChangeKind.restabilization, 0))
 
     def forces(arm, drag, end=200.0):
         return whole if drag == arm.drags[0] else FlutterForces(tau2=2.0, thresholds=early)
@@ -344,7 +348,7 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
 
 
 def test_beyond_where_changes_were_sought_nothing_is_claimed():
-    window = found(1.0, (20.0, Kind.hopf, 2), end=25.0)
+    window = found(1.0, (20.0, ChangeKind.hopf, 2), end=25.0)
     assert verdict(arm(viscosity=1e3), window)[0] == (
         "Flutter is at 1.25 kPa; whether the arm beats at 2 kPa is not known: changes were sought up to "
         "1.56 kPa."

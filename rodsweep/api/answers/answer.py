@@ -17,7 +17,7 @@ from ...post.tables.contents import POINTS
 from ...results.layouts import layout_of
 from ..solved import Result
 from .frames import frame_of, series_of
-from .printing import Printed, brief_html, brief_text, first_lines, whole_html, whole_text
+from .printing import PrintedAnswer, brief_html, brief_text, first_lines, whole_html, whole_text
 
 EIGENVALUE = ("growth_rate", "frequency")
 """Names of the real and the imaginary part of an eigenvalue."""
@@ -164,7 +164,7 @@ class Answer:
     def _repr_html_(self) -> str:
         return brief_html(self._printed())
 
-    def _printed(self) -> Printed:
+    def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
         own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
@@ -177,7 +177,7 @@ class Answer:
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
         totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
-        return Printed(
+        return PrintedAnswer(
             rod=rod,
             heading=first_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],

@@ -15,7 +15,7 @@ from ...config.document.call_arguments import in_sentences, unknown
 from ...config.values import short
 from ...errors import InputError
 from ...post.figures import draw
-from ...post.figures.request import KINDS, ROOTS, Drawing, Look, Shapes
+from ...post.figures.request import KINDS, ROOTS, Drawing, FigureLook, Shapes
 from ...post.figures.sections import choices_of, section
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
@@ -68,7 +68,7 @@ def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
 Drawable = xr.Dataset | Answer | str | Path
 
 
-class Looks(TypedDict, total=False):
+class FigureOptions(TypedDict, total=False):
     """Appearance of a figure: the options `--title`, `--width` and `--style` of `rodsweep plot`."""
 
     title: bool
@@ -148,7 +148,7 @@ def plot(
     what: str | None = None,
     points: Sequence[int] | int = (),
     at: Mapping[str, float | str] = MappingProxyType({}),
-    **look: Unpack[Looks],
+    **look: Unpack[FigureOptions],
 ) -> Picture:
     """Draws the figure for the task of `data`: a Dataset, an Answer or a result file.
 
@@ -156,8 +156,8 @@ def plot(
     remaining arguments are the options of `rodsweep plot`. Raises InputError if there is nothing to draw.
     """
     for name in look:
-        if name not in Looks.__annotations__:
-            raise unknown(name, ["output", "roots", "what", "points", "at", *Looks.__annotations__])
+        if name not in FigureOptions.__annotations__:
+            raise unknown(name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__])
     _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS))
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
@@ -168,7 +168,7 @@ def plot(
     values = choices_of(at)
     views = [section(view_for(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
-    choices |= {"look": Look(**look), "shapes": SolvedShapes()}
+    choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]

@@ -25,7 +25,7 @@ BETWEEN = "+-"
 
 
 @dataclass(frozen=True, slots=True)
-class Printed:
+class PrintedAnswer:
     """Content of a printed answer.
 
     heading: lines with the answer, the rod and the status. numbers: columns with one row. absent: variables
@@ -64,7 +64,7 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
     return answer, f"{name}, {task}: {status}{proof}", meaning
 
 
-def brief_text(printed: Printed) -> str:
+def brief_text(printed: PrintedAnswer) -> str:
     """An answer in about ten lines: the sentence, the main numbers and the main list."""
     lines = [*_heads(printed), *_number_lines(printed)]
     more = _more(printed)
@@ -72,7 +72,7 @@ def brief_text(printed: Printed) -> str:
     return "\n".join([*lines, more])
 
 
-def brief_html(printed: Printed) -> str:
+def brief_html(printed: PrintedAnswer) -> str:
     """An answer as HTML, with the content of `brief_text`."""
     parts = [_html_heading(printed)]
     if pairs := _number_pairs(printed):
@@ -84,7 +84,7 @@ def brief_html(printed: Printed) -> str:
     return "".join([*parts, f"<p>{escape(' '.join(_more(printed).split()))}</p>"])
 
 
-def whole_text(printed: Printed) -> str:
+def whole_text(printed: PrintedAnswer) -> str:
     """An answer as text: every number with its unit and meaning, then the lists."""
     rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
@@ -100,7 +100,7 @@ def whole_text(printed: Printed) -> str:
     return "\n\n".join(filter(None, [*parts, "\n".join(map(folded, printed.closing_lines))]))
 
 
-def whole_html(printed: Printed) -> str:
+def whole_html(printed: PrintedAnswer) -> str:
     """An answer as HTML, with the content of `whole_text`."""
     rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
@@ -113,7 +113,7 @@ def whole_html(printed: Printed) -> str:
     return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
 
 
-def _heads(printed: Printed) -> list[str]:
+def _heads(printed: PrintedAnswer) -> list[str]:
     """Lines of the heading, folded at the width of the window."""
     return [line for text in printed.heading if text for line in folded(text).splitlines()]
 
@@ -126,7 +126,7 @@ def _title(name: str, columns: Sequence[Column], total: int) -> str:
     )
 
 
-def _number_pairs(printed: Printed) -> list[tuple[str, str, str, str]]:
+def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     """(name, value, error with sign, unit) of each number of the headline that is not missing."""
     pairs = []
     for name in printed.headline.numbers:
@@ -137,7 +137,7 @@ def _number_pairs(printed: Printed) -> list[tuple[str, str, str, str]]:
     return pairs
 
 
-def _number_lines(printed: Printed) -> list[str]:
+def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the numbers of the headline, below an empty line."""
     room = BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
     pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
@@ -148,7 +148,7 @@ def _number_lines(printed: Printed) -> list[str]:
     return ["", *(GAP.join(row).rstrip() for row in zip(*kept, strict=True))]
 
 
-def _brief_cells(printed: Printed, room: int) -> tuple[list[list[str]], int]:
+def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], int]:
     """(columns of the list of the headline, number of its items); room: largest number of rows.
 
     A column has the cells name, unit, and values; errors follow as a column of their own. As many columns are
@@ -174,7 +174,7 @@ def _brief_cells(printed: Printed, room: int) -> tuple[list[list[str]], int]:
     return found, count
 
 
-def _brief_list(printed: Printed, room: int) -> list[str]:
+def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
     """Lines of the list of the headline below an empty line; room: number of lines left."""
     rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
     columns, count = _brief_cells(printed, rows)
@@ -186,7 +186,7 @@ def _brief_list(printed: Printed, room: int) -> list[str]:
     return ["", *block] + ([f"and {count - rows} more"] if count > rows + 1 else [])
 
 
-def _more(printed: Printed) -> str:
+def _more(printed: PrintedAnswer) -> str:
     """Line on how to see the rest: the whole table, and the lists with their numbers of items."""
     rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
     rows.update(printed.named)
@@ -198,7 +198,7 @@ def _unit(column: Column) -> str:
     return "" if column.unit == "1" else column.unit
 
 
-def _html_heading(printed: Printed) -> str:
+def _html_heading(printed: PrintedAnswer) -> str:
     """The heading as a paragraph, the answer in bold letters."""
     answer, *others = map(escape, filter(None, printed.heading))
     return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in others)}</p>"

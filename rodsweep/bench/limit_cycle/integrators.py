@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...solve.motion.integrator import Ending, Trajectory, integrator
+from ...solve.motion.integrator import RunEnding, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender
 
@@ -21,7 +21,7 @@ TIGHT_NEWTON = 0.03
 """Convergence tolerance of Newton's method below TIGHT, as a fraction of the integrator's tolerance."""
 
 
-class Leg(NamedTuple):
+class IntegrationTask(NamedTuple):
     """Task of an integrator: a beam, its state z at the start, shape (unknowns,), and a duration in tau2."""
 
     beam: Beam
@@ -29,7 +29,7 @@ class Leg(NamedTuple):
     duration: float
 
 
-Integration = Callable[[float, Leg], Trajectory]
+Integration = Callable[[float, IntegrationTask], Trajectory]
 """Runs an integrator, (tolerance, leg) -> trajectory; raises ArithmeticError if the integration fails."""
 
 
@@ -58,12 +58,12 @@ class IntegratorFamily:
         return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
-def by_petsc(family: str, variant: str, tolerance: float, leg: Leg) -> Trajectory:
+def by_petsc(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """PETSc TS as in the task limit_cycle, with a choice of scheme."""
     newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(leg.beam.mesh, scheme).run(leg.beam, leg.z, leg.duration)
-    if run.ending != Ending.reached:
+    if run.ending != RunEnding.reached:
         raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
     return run
 

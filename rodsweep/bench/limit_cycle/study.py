@@ -1,7 +1,7 @@
 """The limit-cycle benchmark: a settled cycle followed in time, waited for, and solved.
 
-The races FOLLOWING and WAITING run on a `Leg` and give a `Trajectory`. The settings of each method are
-tolerances, from the loosest.
+The races FOLLOWING and WAITING run on an `IntegrationTask` and give a `Trajectory`. The settings of each
+method are tolerances, from the loosest.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,7 +19,7 @@ from ..study import (
     Contender,
     Measurement,
     Study,
-    Timed,
+    TimedRuns,
     by_method,
     every_nth_setting,
     grouped,
@@ -27,7 +27,7 @@ from ..study import (
     race,
     table,
 )
-from .integrators import DEFAULT, Leg
+from .integrators import DEFAULT, IntegrationTask
 from .sweeping import QUICK_RODS, RODS, sweep_introduction, sweep_points, sweep_table
 from .tracking import (
     AMPLITUDE,
@@ -37,7 +37,7 @@ from .tracking import (
     FOLLOWED_PERIODS,
     SETTLED_WITHIN,
     TARGET,
-    Reference,
+    ReferenceCycle,
     cycle_at,
     on_cycle,
     orbit_of,
@@ -148,7 +148,7 @@ def time_at(target: float, errors: Sequence[float], times: Sequence[float]) -> f
 
 
 @dataclass(frozen=True, slots=True)
-class Wait:
+class SettlingMethod:
     """One way to a settled cycle, with the number of returns waited for and the error of the result.
 
     setting: the tolerance. run: the timed run, which takes 1/times of the whole time. failed: looser
@@ -169,7 +169,7 @@ class Wait:
         """Whether the cycle was reached."""
         return isfinite(self.returns)
 
-    def row(self, timed: Timed) -> dict[str, str | float]:
+    def row(self, timed: TimedRuns) -> dict[str, str | float]:
         """Row of the table."""
         about = "about " if self.times != 1 else ""
         return {
@@ -182,18 +182,18 @@ class Wait:
         }
 
 
-def settling(at: Reference, every: Sequence[Contender], rounds: int) -> str:
+def settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Table of all ways to the cycle at F = 50 and near the Hopf point."""
     waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
     cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
-    waits = [Wait(CYCLE_FORCE, SOLVE, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
+    waits = [SettlingMethod(CYCLE_FORCE, SOLVE, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
     waits += waiting.values()
     waits += _near_hopf([c for c in every if waiting[c.method].setting == c.setting])
     return settling_table(waits, race([wait.run for wait in waits], [rounds] * len(waits)))
 
 
-def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
+def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
     """Table of the times of all ways."""
     return (
         f"From a start of {AMPLITUDE:g} L to the settled cycle. Waiting ends when two successive returns "
@@ -209,13 +209,13 @@ def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
     )
 
 
-def _error(at: Reference, period: float, height: float) -> float:
+def _error(at: ReferenceCycle, period: float, height: float) -> float:
     return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
 
 
-def _waited(at: Reference, settings: Sequence[Contender]) -> Wait:
+def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
     """Waiting at the loosest tolerance at which two successive returns agree and are accurate."""
-    leg = Leg(at.beam, AMPLITUDE * leading_mode(at.beam).z.real, PERIODS_OF_WAIT * at.period)
+    leg = IntegrationTask(at.beam, AMPLITUDE * leading_mode(at.beam).z.real, PERIODS_OF_WAIT * at.period)
     way = WAITS + settings[0].method
     failed: tuple[str, ...] = ()
     for contender in settings:
@@ -231,20 +231,20 @@ def _waited(at: Reference, settings: Sequence[Contender]) -> Wait:
             left = _error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
             if left <= SETTLED_WITHIN:
                 again = partial(contender.run, leg._replace(duration=float(found.times[k + 1])))
-                return Wait(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
-    return Wait(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
+                return SettlingMethod(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
+    return SettlingMethod(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
 
 
-def _near_hopf(settled: Sequence[Contender]) -> list[Wait]:
+def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
     """Ways near the Hopf point; the number of periods of waiting is estimated from the largest multiplier."""
     cycle = cycle_at(NEAR_HOPF)
-    leg = Leg(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
+    leg = IntegrationTask(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    waits = [Wait(NEAR_HOPF, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
+    waits = [SettlingMethod(NEAR_HOPF, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
     for contender in settled:
         run = partial(contender.run, leg)
         times = count / FOLLOWED_PERIODS
         way = WAITS + contender.method
-        waits.append(Wait(NEAR_HOPF, way, contender.setting, count, SETTLED_WITHIN, run, times))
+        waits.append(SettlingMethod(NEAR_HOPF, way, contender.setting, count, SETTLED_WITHIN, run, times))
     return waits

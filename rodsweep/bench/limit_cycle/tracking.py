@@ -29,7 +29,7 @@ from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ..study import Contender, Measurement, contest
-from .integrators import Leg
+from .integrators import IntegrationTask
 
 FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 """The rod of the paper's Fig. 5 without its force."""
@@ -63,7 +63,7 @@ OVERSHOOT = 1.25
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class ReferenceCycle:
     """The reference cycle: a state on it, its period in tau2 and the tip's largest y in L."""
 
     beam: Beam
@@ -96,23 +96,23 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
 
 
-def reference() -> Reference:
+def reference() -> ReferenceCycle:
     """The cycle on the benchmark's mesh in space, by collocation in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
     orbit = newton(near, EXACT, NewtonWorkspace()).orbit
-    return Reference(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
+    return ReferenceCycle(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 
-def work_precision(at: Reference, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
+def work_precision(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
     """Measurements of all contenders along the cycle; seconds are per period."""
-    leg = Leg(at.beam, at.state, FOLLOWED_PERIODS * at.period)
+    leg = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
         for m in contest(f"F = {CYCLE_FORCE:g}", leg, list(contenders), rounds, partial(judged_run, at))
     ]
 
 
-def judged_run(at: Reference, run: Trajectory) -> dict[str, Any]:
+def judged_run(at: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
     """Relative rms errors of the period and of the tip's largest y, over all returns but the first."""
     found = returns_of(at.beam, run)
     period = _rms(np.diff(found.times)[1:] / at.period - 1)
@@ -127,7 +127,7 @@ def _rms(values: NDArray[np.floating]) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Returns:
+class TipReturns:
     """Returns of a run: times at which theta of the tip rises through 0.
 
     times in tau2, (k,), states z, (k, unknowns); heights: the tip's largest y in L between two returns, (k -
@@ -139,7 +139,7 @@ class Returns:
     heights: Array
 
 
-def returns_of(beam: Beam, run: Trajectory) -> Returns:
+def returns_of(beam: Beam, run: Trajectory) -> TipReturns:
     """All returns of a run."""
     row = angle_weights(beam)
     y = beam.tip(run.states)[1]
@@ -158,7 +158,7 @@ def returns_of(beam: Beam, run: Trajectory) -> Returns:
         states.append(_again(beam, run.states[k], when).states[-1])
     for first, last in pairwise(rising):
         heights.append(height_near(beam, run, first + int(np.argmax(y[first : last + 1]))))
-    return Returns(np.array(times), np.array(states), np.array(heights))
+    return TipReturns(np.array(times), np.array(states), np.array(heights))
 
 
 def height_near(beam: Beam, run: Trajectory, k: int) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...results.file import provenance
 from ...results.file.creation import Plan
-from ...sweep.loop import Share
+from ...sweep.loop import RankWork
 from ...wording import counted, duration
 
 MAX_FAILURES_PRINTED = 3
@@ -24,7 +24,7 @@ class Contribution:
 
     host: str
     failures: list[str]
-    share: Share
+    share: RankWork
 
 
 def of_the_last_run(plan: Plan) -> dict[str, Any]:

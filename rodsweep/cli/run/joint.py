@@ -12,8 +12,8 @@ from ...results.run.checkpoints import UnitResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.kept import forget_all
 from ...sweep.handout import Handout, Pool
-from ...sweep.loop import Indices, Loop, Share, sweep
-from ...sweep.progress import ProgressReporter, Silent
+from ...sweep.loop import Indices, Loop, RankWork, sweep
+from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import AllPoints, Arrays
@@ -54,7 +54,7 @@ class JointWork:
         self.results: dict[int, Arrays] = {}
         """Results of all finished units, on the first rank only."""
 
-    def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> Share:
+    def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
         """Solves the wanted units on all ranks. title: title of the progress display; None for no display."""
         found: dict[int, Arrays] = {}
 
@@ -72,7 +72,11 @@ class JointWork:
             self.results = self.kept.read()
             todo = Pool(units, self.results, self.team.size)
         self._exchange_starts(units)
-        shown = ProgressReporter(None, f"{title}, curves", NOUN) if self.team.first and title else Silent()
+        shown = (
+            ProgressReporter(None, f"{title}, curves", NOUN)
+            if self.team.first and title
+            else SilentProgress()
+        )
         loop = Loop(
             solve=lambda unit: self._solved(units, unit),
             keep=keep,

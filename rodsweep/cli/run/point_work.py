@@ -18,7 +18,7 @@ from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, total
 from ...sweep.points.stretches import StretchResult, StretchSolver
-from ...sweep.progress import ProgressReporter, Silent
+from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import Solver
@@ -73,7 +73,9 @@ class PointWork:
             else:
                 journal.append(int(index), solver.record(int(index), result), new)
 
-        shown = ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else Silent()
+        shown = (
+            ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else SilentProgress()
+        )
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:

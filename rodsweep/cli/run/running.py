@@ -12,7 +12,7 @@ from ...results.file import provenance
 from ...results.file.store import Store
 from ...results.file.view import read_view
 from ...solve.backend.availability import require_directory, require_solvers
-from ...sweep.loop import Share
+from ...sweep.loop import RankWork
 from ...sweep.points.ranges import IndexRange, total
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
@@ -48,10 +48,10 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
             return CONTINUE
         job = team.on_first(lambda: job_of(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
-        return _Run(team, job, output, options, stop).run()
+        return _RankRun(team, job, output, options, stop).run()
 
 
-class _Run:
+class _RankRun:
     """Run of a job on this rank."""
 
     store: Store
@@ -113,7 +113,7 @@ class _Run:
             self.team.on_first(self._note_kernels)
             contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
         joint = self.team.on_first(lambda: self._fold(count, contributions))
-        shares: list[Share] = []
+        shares: list[RankWork] = []
         if self.joint and joint.units is not None:
             title = None if self.options.quiet else self.job.name
             shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
@@ -202,7 +202,7 @@ class _Run:
         count: int,
         contributions: list[Contribution],
         joint: JointDue,
-        shares: list[Share],
+        shares: list[RankWork],
         exceptions: int,
     ) -> int:
         """Finishes the file, prints how the run ended, and returns the exit status."""

@@ -15,7 +15,7 @@ from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCAL
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..material import LawName, SectionName
-from ..values import Axis, Strict, Values
+from ..values import Axis, StrictSection, Values
 from .axes import AXIS_OF, LOAD_AXES, SECTION, UNCOVERED, UncoveredArm
 from .quantities import Drags, Quantities, drags_written, with_relative_load
 from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
@@ -27,7 +27,7 @@ RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a r
 NO_LOAD = {"pressure": 0.0}
 
 
-class ArmSection(Strict):
+class ArmSection(StrictSection):
     """The arm in the quantities of `rodsweep arm`; each quantity is a value or an axis."""
 
     length: Annotated[Quantities | None, Allowed] = None

@@ -12,10 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..exponents import EXPONENTS, ROUND_OFF
-from ..newton import FAILED, ROOT_NEWTON, Zero
+from ..newton import FAILED, ROOT_NEWTON, LocatedZero
 from ..parameter_path import Path
 from ..root_settings import ROOTS
-from ..value import DETERMINANT, Value
+from ..value import DETERMINANT, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in
 from .newton import refined_root
@@ -82,7 +82,7 @@ class ArmAlongPath:
             slope += weight * neighbour.D * math.exp(neighbour.S - S)
         return slope / h
 
-    def double(self, x: float, p: float, reach: float) -> Zero:
+    def double(self, x: float, p: float, reach: float) -> LocatedZero:
         """The double real eigenvalue D = D_w = 0 near (x, p).
 
         FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
@@ -120,7 +120,7 @@ class ArmAlongPath:
                 # Only now: the spread takes D on further elements.
                 more = max(self._spread(x, p, S) / blur, 1.0)
                 e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.rounding * abs(p)
-                return Zero(x, p, max(more * e_x, abs(in_x)), e_p)
+                return LocatedZero(x, p, max(more * e_x, abs(in_x)), e_p)
             last = abs(in_x)
         return FAILED
 
@@ -138,7 +138,7 @@ class ArmAlongPath:
         D = [value.D.real * math.exp(value.S - S) for value in values]
         return ARM_DOUBLES.spread_factor * (max(D) - min(D))
 
-    def _value(self, x: float, p: float) -> Value:
+    def _value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x."""
         family = self.family(p)
         if family is not None and abs(x) < family.W:

@@ -39,7 +39,7 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Places of the `LocalCoefficients`."""
 
 
-class Method(NamedTuple):
+class IntegrationMatrices(NamedTuple):
     """Integrals from 0 to each Gauss point of [0, 1], (STAGES, STAGES), and weights, (STAGES,)."""
 
     integrals: Array
@@ -47,7 +47,7 @@ class Method(NamedTuple):
 
 
 @compiled
-def fill_terms(F: Array, W: float, coefficients: Array, method: Method, terms: Array) -> int:
+def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array) -> int:
     """Fills the terms of the elements of n arms; returns how many are needed, MAX_TERMS + 1 for more.
 
     F: forces, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n, batches, 6,
@@ -93,7 +93,7 @@ def _put_in_lane(eliminated: Array, lane: int, turning: Array) -> None:
 def _fill_batch(
     load: tuple[float, float],
     local: Array,
-    method: tuple[Method, Array],
+    method: tuple[IntegrationMatrices, Array],
     work: tuple[Array, Array],
     terms: Array,
 ) -> int:

@@ -36,7 +36,7 @@ class PhaseLost(ArithmeticError):
         self.nodes = nodes
 
 
-class Walk(NamedTuple):
+class BoxWalk(NamedTuple):
     """A walk along the sides of a box: the side, the distance t from its start, the change of arg D so far.
 
     here: the last of `nodes` nodes. growth: change of the reach per distance. ahead: distance of the next
@@ -122,7 +122,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     unit = determinant.length(corners[0])
     trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
-    walk = Walk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
+    walk = BoxWalk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
         walk = _advance(walk, (corners, largest), known, hull, samples, level)
         if walk.needed == 0:
@@ -135,13 +135,13 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
 
 @compiled
 def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
-    walk: Walk,
+    walk: BoxWalk,
     box: tuple[Complex, float],
     known: Complex,
     hull: Hull,
     samples: tuple[ArmSamples, ArmSamples],
     level: Level,
-) -> Walk:
+) -> BoxWalk:
     """The walk as far as the level serves its nodes.
 
     box: (corners, largest |w| for which elements are known to exist). samples: those of the lengths over
@@ -156,7 +156,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
             side, t, growth = side + 1, 0.0, 0.0
             continue
         if not here.reach > ARM_COUNT.smallest_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
-            return Walk(side, t, total, nodes, here, growth, ahead, math.inf)
+            return BoxWalk(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_stride(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
@@ -167,7 +167,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         enough = max(first, min(ARM_COUNT.of_height * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
         if not needed <= level[0] <= ARM_COUNT.highest * max(needed, ARM_ELEMENTS.smallest_level):
-            return Walk(side, t, total, nodes, here, growth, ahead, needed)
+            return BoxWalk(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
         growth = (there.reach - here.reach) / ahead
@@ -178,7 +178,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
             ahead = 0.0
         else:
             ahead = _nearer(here.reach, growth, ahead)
-    return Walk(side, t, total, nodes, here, growth, ahead, 0.0)
+    return BoxWalk(side, t, total, nodes, here, growth, ahead, 0.0)
 
 
 @compiled

@@ -21,7 +21,7 @@ from ...model.dispersion import PIECE_SAMPLES, sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..exponents import EXPONENTS
-from ..value import Value
+from ..value import DeterminantValue
 from .element_settings import ARM_ELEMENTS
 from .propagators import element_propagators, gauss_method, tail_of
 from .value import chain_value
@@ -52,12 +52,12 @@ class ArmDeterminant:
         self.samples = ArmSamples(float(rod.F), sampled_coefficients, weights)
         self._samples = Samples(points, weights, LocalCoefficients(*sampled_coefficients[:, None]))
 
-    def value(self, w: complex) -> Value:
+    def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
         W, polynomials = self.level(abs(w))
         return chain_value(complex(w), W, polynomials)
 
-    def value_at_level(self, w: complex, factor: float) -> Value:
+    def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
         """As `value`, with the elements for |w| times a factor of at least 1."""
         W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
         return chain_value(complex(w), W, polynomials)

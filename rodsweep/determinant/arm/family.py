@@ -19,7 +19,7 @@ from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS
 from ..newton import ROOT_NEWTON
 from ..parameter_path import Path
-from ..value import Value
+from ..value import DeterminantValue
 from .collocation import ENTRIES
 from .determinant import Samples, elements_for, samples_of
 from .element_settings import ARM_ELEMENTS
@@ -185,7 +185,7 @@ def level_at(family: ArmFamily, p: float) -> tuple[float, Array]:
 
 
 @compiled
-def value_in(family: ArmFamily, w: complex, p: float) -> Value:
+def value_in(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
     """D and dD/dw times exp(-S) at w, |w| <= W, of the arm at p."""
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

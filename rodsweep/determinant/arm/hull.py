@@ -32,7 +32,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
-from .region import HULL, UNKNOWN, Hull, Hulls
+from .region import HULL, UNKNOWN, Hull, PathHulls
 from .weights import constants, largest_integrals, least_square, squares_following
 
 
@@ -41,23 +41,23 @@ def hull_of(rod: Rod) -> Hull:
     return _hull(_arms([rod]))
 
 
-def hulls_along(rods: Sequence[Rod], places: Array) -> Hulls:
+def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
     """The regions for all arms between places of a path, (k,), from the arms at them.
 
     Extremes along the path are, as those along an arm, looked up at points, with `HULL.margin` between them.
     """
     arms = _arms(rods)
     hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
-    return Hulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
+    return PathHulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
-def _hull(arms: "Arms") -> Hull:
+def _hull(arms: "SampledArms") -> Hull:
     largest = 1 - HULL.least_remainder
     a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
     return Hull((1 + HULL.margin) * a, c) if isfinite(a) else UNKNOWN
 
 
-class Arms(NamedTuple):
+class SampledArms(NamedTuple):
     """n arms: F, (n,); lengths of the smooth pieces, (pieces,); coefficients, (6, n, pieces, points).
 
     The points of a piece are its Chebyshev points, with increasing u. averaged: `averaged_regions` of each,
@@ -70,7 +70,7 @@ class Arms(NamedTuple):
     averaged: Array
 
 
-def _arms(rods: Sequence[Rod]) -> Arms:
+def _arms(rods: Sequence[Rod]) -> SampledArms:
     x = (1 - 2 * HULL.inside) * _chebyshev().points
     build = rods[0].build
     lengths = np.diff(build.breaks)
@@ -79,11 +79,11 @@ def _arms(rods: Sequence[Rod]) -> Arms:
     lengths = lengths * (1 - 2 * HULL.inside)
     local = np.array(Rod.local_of_all(rods, u))
     averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
-    return Arms(F, lengths, local, averaged)
+    return SampledArms(F, lengths, local, averaged)
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
-    """`Arms.averaged` of arms with jumps, from their other fields."""
+    """`SampledArms.averaged` of arms with jumps, from their other fields."""
     starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL.inside) * _chebyshev().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
@@ -94,13 +94,13 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
     return regions
 
 
-def _part(arms: Arms, chosen: slice) -> Arms:
+def _part(arms: SampledArms, chosen: slice) -> SampledArms:
     """Some of the arms."""
     local = np.ascontiguousarray(arms.local[:, chosen])
     return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
 
 
-class Chebyshev(NamedTuple):
+class ChebyshevMatrices(NamedTuple):
     """Points in [-1, 1], (points,), and matrices of their interpolant: derivative, and integral from -1."""
 
     points: Array
@@ -109,19 +109,19 @@ class Chebyshev(NamedTuple):
 
 
 @cache
-def _chebyshev() -> Chebyshev:
+def _chebyshev() -> ChebyshevMatrices:
     x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1))
     to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL.points - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
     derivative = np.polynomial.chebyshev.chebvander(x, HULL.points - 2) @ slopes
     integral = np.polynomial.chebyshev.chebvander(x, HULL.points) @ integrals
-    return Chebyshev(x, np.ascontiguousarray(derivative), np.ascontiguousarray(integral))
+    return ChebyshevMatrices(x, np.ascontiguousarray(derivative), np.ascontiguousarray(integral))
 
 
 @compiled
 def _smallest(
-    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: Chebyshev, largest: float
+    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: ChebyshevMatrices, largest: float
 ) -> tuple[float, float]:
     """(a, c) of the smallest region of all arms, without the margin of a; inf without a bound.
 

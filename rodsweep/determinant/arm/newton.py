@@ -12,7 +12,7 @@ from ..exponents import EXPONENTS, ROUND_OFF
 from ..newton import ROOT_NEWTON
 from ..root_settings import ROOTS
 from ..roots import roots_of_parabola
-from ..value import DETERMINANT, Value, second_difference
+from ..value import DETERMINANT, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, Level
 from .value import ARM_VALUE, chain_value
 
@@ -44,7 +44,7 @@ def _second_derivative(w: complex, S: float, level: Level) -> complex:
 
 
 @compiled
-def _error(w: complex, value: Value, level: Level) -> float:
+def _error(w: complex, value: DeterminantValue, level: Level) -> float:
     """`root_error` from the value of D at w."""
     e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
     size = abs(value.D_w)

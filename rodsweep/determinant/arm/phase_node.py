@@ -25,7 +25,7 @@ from typing import NamedTuple
 from ...arrays import Complex
 from ...model.compiled.compilation import compiled
 from ..exponents import EXPONENTS
-from ..value import Value
+from ..value import DeterminantValue
 from .count_settings import ARM_COUNT
 from .determinant import ArmSamples, Level
 from .dominant_wave import dominant_wave, slope_of_wave
@@ -85,7 +85,11 @@ def phase_node(
 
 @compiled
 def _node_inside(
-    node: PhaseNode, value: Value, known: Complex, trial: tuple[float, float], arm: tuple[ArmSamples, Level]
+    node: PhaseNode,
+    value: DeterminantValue,
+    known: Complex,
+    trial: tuple[float, float],
+    arm: tuple[ArmSamples, Level],
 ) -> PhaseNode:
     """The node with the largest reach by |f| on circles.
 

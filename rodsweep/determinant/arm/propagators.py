@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.material.build import LocalCoefficients
 from ..exponents import EXPONENTS
-from .collocation import ENTRIES, Method, fill_terms
+from .collocation import ENTRIES, IntegrationMatrices, fill_terms
 from .element_settings import ARM_ELEMENTS
 
 
@@ -32,10 +32,10 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 
 @cache
-def _method() -> Method:
+def _method() -> IntegrationMatrices:
     """The collocation of `ARM_ELEMENTS.stages` points, for compiled code."""
     _, integrals, weights = gauss_method(ARM_ELEMENTS.stages)
-    return Method(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
+    return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 
 
 def element_propagators(F: Sequence[float], local: LocalCoefficients, lengths: Array, W: float) -> Array:

@@ -82,7 +82,7 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     return best, normal
 
 
-class Hulls(NamedTuple):
+class PathHulls(NamedTuple):
     """Regions for the arms of a path between places, (k,), increasing: a and c of each interval, (k - 1,)."""
 
     places: Array
@@ -91,7 +91,7 @@ class Hulls(NamedTuple):
 
 
 @compiled
-def hull_at(hulls: Hulls, p: float) -> Hull:
+def hull_at(hulls: PathHulls, p: float) -> Hull:
     """The region for the arm at p, from the first place to the last."""
     i = 0
     while i < len(hulls.a) - 1 and p > hulls.places[i + 1]:

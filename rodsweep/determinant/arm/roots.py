@@ -117,7 +117,7 @@ def _separated(
     return w, reach
 
 
-class _Root(NamedTuple):
+class _LocatedRoot(NamedTuple):
     """A root with its error, and the place of its guess in the list."""
 
     w: complex
@@ -125,18 +125,18 @@ class _Root(NamedTuple):
     place: int
 
 
-def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_Root]:
+def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
     """The root near each guess (w, reach of `_separated`); the conjugate of a root is not refined again."""
-    found: list[_Root] = []
+    found: list[_LocatedRoot] = []
     for place, (w, reach) in enumerate(guesses):
         if place > 0 and w.imag != 0 and w == guesses[place - 1][0].conjugate():
-            found.append(_Root(found[-1].w.conjugate(), found[-1].error, place))
+            found.append(_LocatedRoot(found[-1].w.conjugate(), found[-1].error, place))
         else:
-            found.append(_Root(*refined_root(w, determinant, reach), place))
+            found.append(_LocatedRoot(*refined_root(w, determinant, reach), place))
     return found
 
 
-def _with_equal_roots(found: list[_Root], determinant: ArmDeterminant) -> Array:
+def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
     """Errors of roots, (n,); of two at the same root at least the distance of the next root, 2 |D'/D''|."""
     error = [root.error for root in found]
     for i, one in enumerate(found):

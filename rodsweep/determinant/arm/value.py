@@ -18,7 +18,7 @@ from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import UNIT
 from ..parameter_path import ValueAlong
-from ..value import Value
+from ..value import DeterminantValue
 from .collocation import ENTRIES, SM
 from .element_settings import MINORS
 
@@ -201,10 +201,10 @@ def chain_size(w: complex, W: float, polynomials: Array) -> float:
 
 
 @compiled
-def chain_value(w: complex, W: float, polynomials: Array) -> Value:
+def chain_value(w: complex, W: float, polynomials: Array) -> DeterminantValue:
     """D and D' = dD/dw times exp(-S), from propagators for |w| <= W, shape (elements, terms, ENTRIES)."""
     D, D_w, _, S = _swept(w / W, W, polynomials, polynomials[:0])
-    return Value(D, D_w, S, (len(polynomials) + 2) * UNIT)
+    return DeterminantValue(D, D_w, S, (len(polynomials) + 2) * UNIT)
 
 
 @compiled

@@ -75,7 +75,7 @@ def squares_following(F: Array, lengths: Array, local: Array, derivative: Array)
 def largest_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
     """The largest 4 c^2 of arms for each constant alpha, (alphas,), by theta(0) = 0, which needs no drag.
 
-    local: coefficients, (6, n, pieces, points). integral: that of `Chebyshev`.
+    local: coefficients, (6, n, pieces, points). integral: from `ChebyshevMatrices`.
     """
     found = np.zeros(len(alphas))
     points = local.shape[3]

@@ -28,9 +28,9 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..newton import FAILED, Zero, crossing_newton
+from ..newton import FAILED, LocatedZero, crossing_newton
 from ..parameter_path import changes, coefficients_at, determinant_along
-from .discs import DISCS, Centre, Pair, bound_on_bidisc, centre_at
+from .discs import DISCS, BidiscCentre, Pair, bound_on_bidisc, centre_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +91,7 @@ def distance(value: complex, a: complex, b: complex) -> float:
 
 
 @compiled
-def mean_rates(centre: Centre) -> Pair:
+def mean_rates(centre: BidiscCentre) -> Pair:
     """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials as weights."""
     root_plus = cmath.sqrt(centre.plus)
     root_minus = cmath.sqrt(centre.minus)
@@ -105,7 +105,7 @@ def mean_rates(centre: Centre) -> Pair:
 
 
 @compiled
-def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
+def remainder(centre: BidiscCentre, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
     """Whether M t^2/(1 - t)^power < room for a trial share t; half: half-widths of the box."""
     t = BOX_PROOF.largest_radius_share
     last = math.inf
@@ -158,7 +158,7 @@ def examine(
 
 
 @compiled
-def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
+def costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
     """Changes of the exponents over a box in eta and in p; half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
@@ -175,7 +175,9 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
 
 
 @compiled
-def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[list[Zero], list[Box], int]:
+def cover(
+    first: Array, origin: Coefficients, direction: Coefficients
+) -> tuple[list[LocatedZero], list[Box], int]:
     """(zeros of D(i eta; p), open boxes, number of examined boxes) in the boxes `first`, shape (n, 4)."""
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
@@ -215,6 +217,6 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
 
 
 @compiled
-def _half_widths_away(zero: Zero, eta: float, p: float, half: tuple[float, float]) -> float:
+def _half_widths_away(zero: LocatedZero, eta: float, p: float, half: tuple[float, float]) -> float:
     """Distance of a zero from the centre (eta, p) of a box, in units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])

@@ -12,7 +12,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..parameter_path import Changes, root_changes
+from ..parameter_path import CoefficientDerivatives, root_changes
 from ..value import branches
 
 
@@ -45,12 +45,12 @@ Radii = tuple[float, float]
 """Radii of a bidisc in w and in p."""
 
 
-class Centre(NamedTuple):
+class BidiscCentre(NamedTuple):
     """The centre of a bidisc: w, the rod, S, P, z+ and z-, and slopes (dz/dw, dz/dp) of z+ and z-."""
 
     w: complex
     coefficients: Coefficients
-    changes: Changes
+    changes: CoefficientDerivatives
     S: float
     P: complex
     plus: complex
@@ -60,14 +60,16 @@ class Centre(NamedTuple):
 
 
 @compiled
-def centre_at(w: complex, coefficients: Coefficients, change: Changes, S: float) -> Centre:
+def centre_at(
+    w: complex, coefficients: Coefficients, change: CoefficientDerivatives, S: float
+) -> BidiscCentre:
     """The centre of a bidisc at w, for the rod `coefficients` with derivatives `change` along the path."""
     at = branches(w, coefficients)
     along_plus, along_minus = root_changes(w, at, change)
     drag = coefficients.c2 + coefficients.gamma3
     slopes_plus = (drag + 2 * at.P_w, along_plus)
     slopes_minus = (drag - 2 * at.P_w, along_minus)
-    return Centre(w, coefficients, change, S, at.P, at.plus, at.minus, slopes_plus, slopes_minus)
+    return BidiscCentre(w, coefficients, change, S, at.P, at.plus, at.minus, slopes_plus, slopes_minus)
 
 
 @compiled
@@ -116,7 +118,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
 
 @compiled
-def bound_together(centre: Centre, rates: Pair, radii: Radii) -> float:
+def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     """`bound_on_bidisc` from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|, which is sharp for small P."""
     w = centre.w
     S = centre.S
@@ -139,7 +141,7 @@ def bound_together(centre: Centre, rates: Pair, radii: Radii) -> float:
 
 
 @compiled
-def bound_on_bidisc(centre: Centre, rates: Pair, radii: Radii) -> float:
+def bound_on_bidisc(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     """Bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about (w, p)."""
     F, nu, c2, _ = centre.coefficients
     apart = bound_apart(centre, rates, radii)
@@ -149,7 +151,7 @@ def bound_on_bidisc(centre: Centre, rates: Pair, radii: Radii) -> float:
 
 
 @compiled
-def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
+def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
     """`bound_on_bidisc` from separate bounds of E(z+) and E(z-); inf if the bidisc is too large.
 
     Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with bounds of

@@ -19,11 +19,11 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..parameter_path import Changes
+from ..parameter_path import CoefficientDerivatives
 from ..value import branches, scaled_determinant
 from .discs import DISCS, bound_on_bidisc, centre_at
 
-STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+STILL = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Zero changes along a path, for bounds of a single rod."""
 
 
@@ -43,7 +43,7 @@ class ReachSettings(CompiledSettings):
 REACH = ReachSettings()
 
 
-class Node(NamedTuple):
+class ReachNode(NamedTuple):
     """A point w with D exp(-S), L = D'/D, and the reach: the distance within which D has no zero."""
 
     w: complex
@@ -76,13 +76,13 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
 
 
 @compiled
-def node_at(w: complex, coefficients: Coefficients) -> Node:
+def node_at(w: complex, coefficients: Coefficients) -> ReachNode:
     """The node at w. The phase of f changes by less than pi/2 within the node's reach."""
     D, D_w, S, noise = scaled_determinant(w, coefficients)
     room = DISCS.clearance * abs(D) - DISCS.rounding * noise
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
-        return Node(w, D, 0j, 0.0)
+        return ReachNode(w, D, 0j, 0.0)
     L = D_w / D
     centre = centre_at(w, coefficients, STILL, S)
     best = 0.0
@@ -94,4 +94,4 @@ def node_at(w: complex, coefficients: Coefficients) -> Node:
         # disc.
         best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
-    return Node(w, D, L, best)
+    return ReachNode(w, D, L, best)

@@ -152,7 +152,7 @@ class StraightElements:
         condensed = K[np.ix_(numbering.ends, numbering.ends)]
         inside = None
         if numbering.inside.size:
-            inside = _Inside.of(K, numbering)
+            inside = _InteriorElimination.of(K, numbering)
             condensed -= inside.entering @ inside.right
         exists = numbering.exists
         whole = np.zeros((len(exists), len(exists)), complex)
@@ -167,7 +167,7 @@ LU = tuple[Complex, NDArray[np.int32]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Inside:
+class _InteriorElimination:
     """Elimination of the interior unknowns i of an element, with unknowns e at its ends.
 
     factors: factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
@@ -203,7 +203,7 @@ class ElementFactors:
 
     elements: StraightElements
     K: Complex
-    inside: _Inside | None
+    inside: _InteriorElimination | None
     between: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:

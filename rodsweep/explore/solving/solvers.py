@@ -44,7 +44,7 @@ WARMED_UP = ("spectrum", "cycle", "thresholds")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Patience:
+class SolverTimeLimits:
     """Time limits of a solver, in seconds, when a newer question waits.
 
     interrupt: age at which the old question is cancelled. Faster answers are shown, so that pictures follow a
@@ -58,8 +58,8 @@ class Patience:
 class SolverProcess:
     """One solver process, started by the first question, and restarted after it was killed."""
 
-    def __init__(self, patience: Patience | None = None, niceness: int = 0):
-        self.patience = patience or Patience()
+    def __init__(self, patience: SolverTimeLimits | None = None, niceness: int = 0):
+        self.patience = patience or SolverTimeLimits()
         self.niceness = niceness
         self.waiting: dict[Key, tuple[Question, Done, Done]] = {}
         self.asked: tuple[Key, Done, Done] | None = None
@@ -196,7 +196,7 @@ class SolverProcess:
 class Solvers:
     """The solvers of all pages of a server."""
 
-    def __init__(self, patience: Patience | None = None):
+    def __init__(self, patience: SolverTimeLimits | None = None):
         self.groups = {group: SolverProcess(patience, niceness) for group, niceness in NICENESS.items()}
 
     def warm_up(self) -> None:

@@ -29,13 +29,13 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
 from ...watch import report
-from .digest import Part, digest, kernel_of, type_text
+from .digest import FunctionText, digest, kernel_of, type_text
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions that are part of the digest, because compiled code is valid for one combination only."""
 DIGEST_BYTES = 32
 """Length of the SHA-256 checksum at the start of a file; it reveals a truncated file."""
-_first_parts: dict[FunctionType, Part] = {}
+_first_parts: dict[FunctionType, FunctionText] = {}
 """Description of each function at first use: the state of the code that numba compiled."""
 
 
@@ -84,7 +84,7 @@ class KernelCache(_Cache):
                 "compile them again; NUMBA_CACHE_DIR names another directory"
             )
 
-    def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, Part]) -> str:
+    def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:
         arguments, result = normalize_signature(sig)
         kinds = [type_text(kind) for kind in (*arguments, *([] if result is None else [result]))]
         content = repr((VERSIONS, codegen.magic_tuple(), kinds, digest(self._kernel, parts)))

@@ -28,7 +28,7 @@ PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
 """Types whose repr is equal in every process."""
 
 
-class Part(NamedTuple):
+class FunctionText(NamedTuple):
     """One function of a kernel: code and constants as text, and the called functions."""
 
     text: str
@@ -42,7 +42,7 @@ class Kernel(NamedTuple):
     options: str
 
 
-Parts = MutableMapping[FunctionType, Part]
+Parts = MutableMapping[FunctionType, FunctionText]
 
 
 def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
@@ -80,9 +80,9 @@ def type_text(numba_type: Any) -> str:
     return f"{type(numba_type).__name__} {own} {numba_type} {fields} ({', '.join(map(type_text, inner))})"
 
 
-def _described(function: FunctionType, options: str) -> Part:
+def _described(function: FunctionType, options: str) -> FunctionText:
     lines = [_name_of(function), options]
-    values = _Values(function)
+    values = _ValueTexts(function)
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
     lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cells))
     for code in _code_objects(function.__code__):
@@ -90,7 +90,7 @@ def _described(function: FunctionType, options: str) -> Part:
         lines += _code_lines(code, instructions)
         read = _values_read(function, instructions)
         lines += [f"{name} = {values.text(value)}" for name, value in read.items()]
-    return Part("\n".join(lines), values.called)
+    return FunctionText("\n".join(lines), values.called)
 
 
 def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
@@ -132,7 +132,7 @@ def _ordered(value: Any) -> Any:
     return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
 
 
-class _Values:
+class _ValueTexts:
     """Converts values that one function refers to into text that is equal in every process.
 
     called: the functions among the values.

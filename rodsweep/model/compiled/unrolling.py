@@ -65,13 +65,13 @@ class UnrolledOverAlgebra(Generic[P, R]):
                 namespace[name] = value.of(g)
             elif name in self.function.__globals__:
                 namespace[name] = value
-        tree.body = [_Writer({first: g, **ALWAYS}, _Shared(set(), others, {}, {})).visit(definition)]
+        tree.body = [_Writer({first: g, **ALWAYS}, _WriterState(set(), others, {}, {})).visit(definition)]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
         written: Any = namespace[definition.name]
         return written
 
 
-class _Shared(NamedTuple):
+class _WriterState(NamedTuple):
     """State shared by all writers of one function.
 
     lists: names of lists whose items became variables. others: names of called functions that are unrolled
@@ -87,7 +87,7 @@ class _Shared(NamedTuple):
 class _Writer(ast.NodeVisitor):
     """Rewrites statements and expressions with the constants in `known`; the original tree is unchanged."""
 
-    def __init__(self, known: Mapping[str, Any], shared: _Shared) -> None:
+    def __init__(self, known: Mapping[str, Any], shared: _WriterState) -> None:
         self.known = known
         self.shared = shared
 

@@ -20,7 +20,7 @@ from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
-from .request import FigureRequest, Look, Shapes
+from .request import FigureLook, FigureRequest, Shapes
 from .spectrum import draw_spectrum
 from .style import PRINT_STYLE, STYLE
 from .thresholds import draw_thresholds
@@ -35,13 +35,13 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "branch": draw_branch,
 }
 """Function of each task that writes the figure and returns a description."""
-DEFAULT_LOOK = Look()
+DEFAULT_LOOK = FigureLook()
 """Default appearance of figures."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}
 """Statuses of points absent from all figures, with words for the number."""
 
 
-def _styled(look: Look) -> AbstractContextManager[None]:
+def _styled(look: FigureLook) -> AbstractContextManager[None]:
     """Context with the settings of all figures and the user's; raises InputError for an unknown style."""
     ours = STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
@@ -57,7 +57,7 @@ def _styled(look: Look) -> AbstractContextManager[None]:
     return matplotlib.rc_context(ours | dict(own))
 
 
-class Choices(TypedDict, total=False):
+class FigureChoices(TypedDict, total=False):
     """Choice of the content: `roots` of spectra, `what` of several figures, `points` numbered from 1."""
 
     roots: str | None
@@ -76,10 +76,10 @@ def draw(
     views: View | Sequence[View],
     output: Path,
     *,
-    look: Look = DEFAULT_LOOK,
+    look: FigureLook = DEFAULT_LOOK,
     shapes: Shapes | None = None,
     keep: Callable[[Figure], None] | None = None,
-    **choices: Unpack[Choices],
+    **choices: Unpack[FigureChoices],
 ) -> str:
     """Draws the figure of a file, or of several files, into `output`; returns a sentence.
 

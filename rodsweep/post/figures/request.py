@@ -42,7 +42,7 @@ WIDEST = 20.0
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class FigureLook:
     """Appearance of a figure, independent of the content.
 
     title: whether the figure has the title of the config. width: a name from WIDTHS, or a length with a unit;
@@ -97,7 +97,7 @@ class FigureRequest:
     points: Sequence[int] = ()
     taken: bool = False
     """Whether the output is a file to draw, or exists and is no regular file."""
-    look: Look = Look()
+    look: FigureLook = FigureLook()
     shapes: Shapes | None = None
     """Solves cycles whose shapes a file lacks."""
     keep: Callable[[Figure], None] | None = None

@@ -23,7 +23,7 @@ from ..whole_file import require_name, written_whole
 from .dark_colours import in_the_dark
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
-from .reported import Reported, reported
+from .reported import ReportContents, reported
 from .vector_picture import VectorPicture
 
 QUOTED = re.compile("`([^`]*)`")
@@ -52,7 +52,7 @@ def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = No
     return f"wrote {output}: {counted(len(views), 'result')}, {counted(pictures, 'figure')}"
 
 
-def page_text(results: Sequence[Reported], together: Pictures) -> str:
+def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
     """The page as HTML; together: figures that show several results."""
     pictures = [each.picture for result in results for each in result.pictures.shown]
     pictures += [each.picture for each in together.shown]

@@ -45,7 +45,7 @@ class HoverPoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class HoverSeries:
     """Values drawn together: places in pixels from the lower left corner, (n, 2), and n texts."""
 
     places: Array
@@ -68,7 +68,7 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     return points
 
 
-def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[Series]:
+def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the values of a panel that lie within its frame. words: words of the legend, by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
@@ -82,22 +82,22 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[Series]:
     for series in found:
         inside = np.isfinite(series.places).all(axis=1)
         inside[inside] = [frame.contains(x, y) for x, y in series.places[inside]]
-        yield Series(series.places[inside], [series.texts[i] for i in np.flatnonzero(inside)])
+        yield HoverSeries(series.places[inside], [series.texts[i] for i in np.flatnonzero(inside)])
 
 
-def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> Series:
+def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
     """Vertices of a line; of a line across the whole panel, such as a threshold, the middle and the name."""
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # a logarithmic axis has no place for zero
         places = line.get_transform().transform(data)
     label = _series_name(line.get_label())
     if line.get_transform() == axes.transData:
-        return Series(places, _texts(names, data, label))
+        return HoverSeries(places, _texts(names, data, label))
     # A line across the whole panel: a threshold has a name, and an axis at zero needs no text.
-    return Series(places.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
+    return HoverSeries(places.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
 
 
-def _scatter(dots: PathCollection, names: tuple[str, str]) -> Series:
+def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """Scattered points, by their colours' values if there are any.
 
     An invisible scatter holds the points from which filled contours are drawn.
@@ -107,10 +107,10 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> Series:
     texts = _texts(names, data, _series_name(dots.get_label()))
     values = dots.get_array()
     if values is None:
-        return Series(places, texts)
+        return HoverSeries(places, texts)
     name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
     name = name or _series_name(dots.get_label())
-    return Series(
+    return HoverSeries(
         places,
         [
             f"{name}: {_number(value)}\n{_text(names, at)}" if name else text
@@ -119,7 +119,7 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> Series:
     )
 
 
-def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
+def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the places and texts of coloured cells. A text is the cell's value on the colour bar, or the
     word of its colour in the legend.
     """
@@ -140,10 +140,10 @@ def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterato
         ):
             word = f"{name}: {_number(value)}" if name else words.get(to_hex(mesh.to_rgba(value)), "")
             texts.append("\n".join(filter(None, (word, _text(names, at)))))
-        yield Series(places[kept], texts)
+        yield HoverSeries(places[kept], texts)
 
 
-def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[Series]:
+def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the middles of bars, with the ends of each."""
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
@@ -154,7 +154,7 @@ def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator
             word = words.get(to_hex(bar.get_facecolor()), "")
             ends = f"{names[along]} from {_number(low)} to {_number(high)}"
             middle = axes.transData.transform(bar.get_bbox().get_points().mean(axis=0))
-            yield Series(middle[None], ["\n".join(filter(None, (word, ends)))])
+            yield HoverSeries(middle[None], ["\n".join(filter(None, (word, ends)))])
 
 
 def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:

@@ -20,7 +20,7 @@ UNWRITTEN = Path("figure.svg")
 
 
 @dataclass(frozen=True, slots=True)
-class Captioned:
+class CaptionedPicture:
     """A picture with its caption."""
 
     caption: str
@@ -31,7 +31,7 @@ class Captioned:
 class Pictures:
     """Pictures of a result; refusal: why there are none, or empty."""
 
-    shown: tuple[Captioned, ...]
+    shown: tuple[CaptionedPicture, ...]
     refusal: str = ""
 
 
@@ -44,7 +44,7 @@ def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[in
     # Without its folders, so that no sentence on the page names them.
     views = [replace(view, path=Path(view.path.name)) for view in views]
     kinds = [kind for kind in KINDS_OF_TASK.get(views[0].task, ()) if kind != FILM]
-    found: dict[str, Captioned] = {}
+    found: dict[str, CaptionedPicture] = {}
     refusal = ""
     for kind in (None, *kinds):
         kept: list[Figure] = []
@@ -60,5 +60,5 @@ def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[in
             continue
         caption = sentence.removeprefix(f"wrote {UNWRITTEN}: ")
         if caption not in found:
-            found[caption] = Captioned(caption, vector_picture(kept[0], next(numbers), caption))
+            found[caption] = CaptionedPicture(caption, vector_picture(kept[0], next(numbers), caption))
     return Pictures(tuple(found.values()), "" if found else refusal)

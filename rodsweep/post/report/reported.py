@@ -34,7 +34,7 @@ VERSIONS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reported:
+class ReportContents:
     """Contents of the page about one result.
 
     name: name of the file. title: title of the config, or the file's name. config: as typed. complete: with
@@ -53,12 +53,12 @@ class Reported:
     versions: Sequence[tuple[str, str]]
 
 
-def reported(view: View, pictures: Pictures) -> Reported:
+def reported(view: View, pictures: Pictures) -> ReportContents:
     """Contents of the page about a result."""
     a = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)
-    return Reported(
+    return ReportContents(
         name=name,
         title=str(a.get("title", "")) or name,
         task=view.task,

@@ -5,7 +5,7 @@ from pathlib import Path
 from ..origin import origin_lines
 from ..report import rendered
 from ..report.page_tables import page_tables
-from ..report.pictures import Captioned, Pictures
+from ..report.pictures import CaptionedPicture, Pictures
 from ..report.vector_picture import vector_picture
 from ..whole_file import require_name, written_whole
 from .paragraph import paragraph
@@ -48,7 +48,7 @@ def portrait_page(results: RodResults) -> str:
         kind=results.rod.kind,
         title=f"{results.rod.kind.capitalize()} with {results.rod.words}",
         paragraph=paragraph(results),
-        pictures=Pictures((Captioned(CAPTION, picture),)),
+        pictures=Pictures((CaptionedPicture(CAPTION, picture),)),
         tables=[(name, [t for t in page_tables(view) if t.name not in HIDDEN]) for name, view in views],
         origin=origin_lines(results.views["thresholds"].attributes),
     )

@@ -40,7 +40,7 @@ def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
         raise EnvironmentIncomplete(f"{path} cannot be written: {reason}{kept()}") from error
 
 
-class Exchange:
+class FileReplacement:
     """Exclusive right to replace a result file, which need not exist yet."""
 
     def __init__(self, path: Path):

@@ -15,10 +15,10 @@ from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import total
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals, read_reasons
-from .exchange import Exchange, disk_refusals, identity
+from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, write_points
 from .provenance import now, reasons_added
-from .validation import Header, is_ours, read_header, reading
+from .validation import ResultHeader, is_ours, read_header, reading
 
 MAX_REREADS = 20
 """Largest number of readings of a changing file. Replacements by a run are seconds apart; more replacements
@@ -43,7 +43,7 @@ def read_unfolded(path: Path, read: Callable[[], Found]) -> Found:
     raise EnvironmentIncomplete(f"{path} cannot be read, because a run keeps replacing it; try again")
 
 
-def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
+def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
     """Records, (n,), of journalled points that are missing in the file by `status`, (points,)."""
     found = np.empty(0, header.layout.record)
     directory = journal_directory(header.path)
@@ -56,7 +56,7 @@ def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
     return found[::-1][last]
 
 
-def journalled_reasons(header: Header) -> dict[str, str]:
+def journalled_reasons(header: ResultHeader) -> dict[str, str]:
     """Attribute with the reasons of failed points, also of journalled ones; may be empty."""
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
@@ -81,14 +81,14 @@ def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
         if not _is_snapshot(output):
             raise InputError(f"{output} exists and is not a snapshot; name another file with -o")
     with disk_refusals(output):
-        exchange = Exchange(output)
+        exchange = FileReplacement(output)
     try:
         return read_unfolded(path, lambda: _copied(path, exchange))
     finally:
         exchange.close()
 
 
-def _copied(path: Path, exchange: Exchange) -> tuple[int, int]:
+def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
     """Replaces the snapshot by a copy of the file at `path` with its journals folded in."""
     header = read_header(path)
     with disk_refusals(exchange.path), exchange.replacing(path) as copy:

@@ -9,7 +9,7 @@ from .combination.extension import extension_of
 from .combination.identity import change_between
 from .creation import Plan
 from .points import parameters_of
-from .validation import Header, IncompleteFile, read_header
+from .validation import IncompleteFile, ResultHeader, read_header
 
 SPACE_FACTOR = 3
 """Room needed by a run, in units of the file: for the file, the journals, and the replacing copy."""
@@ -27,7 +27,7 @@ def require_room(path: Path, plan: Plan) -> None:
         )
 
 
-def header_in_the_way(path: Path, plan: Plan, journals: Path) -> Header:
+def header_in_the_way(path: Path, plan: Plan, journals: Path) -> ResultHeader:
     """Header of an existing file at the path of a plan; raises InputError unless it is a complete result."""
     if not path.is_file():
         raise InputError(f"{path} is not a file; choose another with -o")
@@ -37,7 +37,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> Header:
         raise InputError(f"{error}; the file is left unchanged: {_ways_out(plan, journals)}") from None
 
 
-def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
+def refuse_other(header: ResultHeader, plan: Plan, journals: Path) -> None:
     """Refuses a file made for a config different from the plan."""
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)

@@ -33,12 +33,12 @@ from ..run.journal import (
 )
 from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
-from .exchange import Exchange, disk_refusals, identity
+from .exchange import FileReplacement, disk_refusals, identity
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history, reasons_added
 from .recent import SNAPSHOT
 from .refusals import header_in_the_way, refuse_other, require_room
-from .validation import Header, is_ours, reading
+from .validation import ResultHeader, is_ours, reading
 
 BACKUPS = "before-*.h5"
 """Copies, beside the journals, of the file before an extension that is not complete yet."""
@@ -58,7 +58,7 @@ class Store:
         self.notes: list[str] = []
         """Notes for the user about points to compute again, journals, and a moved file."""
         with disk_refusals(path, self._kept):
-            self.exchange = Exchange(path)
+            self.exchange = FileReplacement(path)
             self.journals = self.exchange.journals
             try:
                 self._open(fresh, extend)
@@ -98,7 +98,7 @@ class Store:
             self.fold({})
             self.notes.append("the file was missing; a new file holds the points of its journal")
 
-    def _extend(self, header: Header) -> None:
+    def _extend(self, header: ResultHeader) -> None:
         """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
         extension = extension_of(header, parameters_of(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
@@ -232,7 +232,7 @@ class Store:
         """Releases the file for another run."""
         self.exchange.close()
 
-    def _header(self) -> Header:
+    def _header(self) -> ResultHeader:
         """Header of the existing file; raises InputError unless it is a complete result."""
         left = identity(self.path)
         header = header_in_the_way(self.path, self.plan, self.journals)

@@ -56,7 +56,7 @@ def reason_of(error: Exception) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Header:
+class ResultHeader:
     """Description of a complete result file. config: the resolved config; points: their number."""
 
     path: Path
@@ -67,7 +67,7 @@ class Header:
     points: int
 
 
-def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
+def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader]:
     """The open file and the header: the only entry to a result, for reading, continuing and merging.
 
     values: whether the numbers are compared with the seal as well, which takes a second for each GB.
@@ -89,7 +89,7 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
             raise
 
 
-def read_header(path: Path) -> Header:
+def read_header(path: Path) -> ResultHeader:
     """Header of a file; raises InputError unless the file is a complete result, including the numbers."""
     file, header = open_whole(path)
     file.close()
@@ -102,7 +102,7 @@ def refuse_absent(path: Path) -> None:
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
 
 
-def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header:
+def header_of(path: Path, file: h5py.File, check_content: bool = True) -> ResultHeader:
     """Header of an open file; raises one of DAMAGES unless it is a result with the sealed content.
 
     Raises InputError for a format that this version does not read.
@@ -118,7 +118,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header
     layout = layout_of(config)
     refuse_misfit(file, layout)
     fingerprint = fingerprint_of(config, points_in(file, layout).identity)
-    return Header(path, attributes, config, fingerprint, layout, file["status"].size)
+    return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
 
 def cleaned(value: Any) -> Any:

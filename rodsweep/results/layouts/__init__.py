@@ -8,7 +8,7 @@ from typing import Any
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
 from .rods import optional_in
-from .variables import Increase, Layout, Variable
+from .variables import IncreaseRule, Layout, Variable
 
 MODULES = {
     "spectrum": spectrum,
@@ -23,7 +23,7 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     task: module.layout for task, module in MODULES.items()
 }
 """Function of each task from a resolved config to the layout."""
-INCREASES: dict[str, dict[str, Increase]] = {task: module.INCREASES for task, module in MODULES.items()}
+INCREASES: dict[str, dict[str, IncreaseRule]] = {task: module.INCREASES for task, module in MODULES.items()}
 """Options of each task that ask for more of a point. A change of any other option makes another file."""
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,

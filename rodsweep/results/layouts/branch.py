@@ -8,7 +8,7 @@ from .variables import (
     NEEDS_NEW_SOLVE,
     SECONDS,
     STATUS,
-    Increase,
+    IncreaseRule,
     Layout,
     Variable,
     along,
@@ -111,9 +111,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
     )
 
 
-def _has(name: str) -> Increase:
+def _has(name: str) -> IncreaseRule:
     """Increase of the length of a list; a list with room left is complete already."""
-    return Increase(lambda records, before: records[name] < before)
+    return IncreaseRule(lambda records, before: records[name] < before)
 
 
 INCREASES = {"cycles": _has("point_count"), "special": _has("special_count"), "certify": NEEDS_NEW_SOLVE}

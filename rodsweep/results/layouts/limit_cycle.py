@@ -15,7 +15,7 @@ from .variables import (
     NOT_KNOWN,
     SECONDS,
     STATUS,
-    Increase,
+    IncreaseRule,
     Layout,
     Variable,
     along,
@@ -133,11 +133,11 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
     )
 
 
-NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
+NO_CYCLE = IncreaseRule(lambda records, before: np.isnan(records["period"]))
 """Increase of the data of a cycle; a point without a cycle is complete already."""
 INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE) | {
     "transient": NEEDS_NEW_SOLVE,
-    "time": Increase(NO_CYCLE.has, ("tau2", "tau1")),
+    "time": IncreaseRule(NO_CYCLE.has, ("tau2", "tau1")),
 }
 
 

@@ -9,7 +9,7 @@ from .variables import (
     NEEDS_NEW_SOLVE,
     SECONDS,
     STATUS,
-    Increase,
+    IncreaseRule,
     Layout,
     Variable,
     boolean,
@@ -76,7 +76,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
-CROSSINGS = Increase(lambda records, before: records["crossing_count"] <= before)
+CROSSINGS = IncreaseRule(lambda records, before: records["crossing_count"] <= before)
 """Increase of the length of the list of crossings; a list with room left is complete already."""
 INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 

@@ -165,7 +165,7 @@ def listed(
 
 
 @dataclass(frozen=True, slots=True)
-class Increase:
+class IncreaseRule:
     """Option whose larger value asks for more of every point, without further effect."""
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
@@ -180,9 +180,9 @@ class Increase:
         return bool(now > before)
 
 
-NEEDS_NEW_SOLVE = Increase(lambda records, before: np.zeros(len(records), bool))
+NEEDS_NEW_SOLVE = IncreaseRule(lambda records, before: np.zeros(len(records), bool))
 """Increase for which every point must be solved again."""
-NEEDS_NO_SOLVE = Increase(lambda records, before: np.ones(len(records), bool))
+NEEDS_NO_SOLVE = IncreaseRule(lambda records, before: np.ones(len(records), bool))
 """Increase for which no point must be solved again, because the addition is computed besides the points."""
 Filled = tuple[Variable, NDArray[Any]]
 """A complete variable with values; `extra` names all dimensions."""

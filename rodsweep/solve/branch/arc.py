@@ -10,18 +10,18 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..continuation.follower import StepControl, Stepped, advance
+from ..continuation.follower import StepControl, StepResult, advance
 from ..cycle.accuracy.cycle_verdict import RefinedCycle
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
 from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import Converged, multiplier_change, relative_change
+from ..orbit.newton import ConvergedOrbit, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
-from .bordered.condition import Condition, moved
+from .bordered.condition import BorderCondition, moved
 from .bordered.matrix import BorderedMatrix, bordered
 from .bordered.scale import Scale, deflection_of
-from .errors import BranchCalibration, Place
+from .errors import BranchCalibration, CyclePlace
 
 ARC_STEPS = StepControl(
     first=0.02,
@@ -55,7 +55,7 @@ class ArcPoint:
     """
 
     cycle: RefinedCycle
-    place: Place
+    place: CyclePlace
     length: float
     calibration: BranchCalibration
     unmeasured: int = 0
@@ -107,9 +107,9 @@ class ArcPoint:
         values = bordered(self.cycle.fine).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
-    def condition(self, length: float) -> Condition:
+    def condition(self, length: float) -> BorderCondition:
         """The condition of a given arc length from this cycle."""
-        return Condition.at(self.scale, self.ahead, self.orbit, length)
+        return BorderCondition.at(self.scale, self.ahead, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:
         """Orbit at a length ahead on the cubic through this cycle and the previous one; raises Unsolvable."""
@@ -138,12 +138,12 @@ class ArcPoint:
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def placed(found: Converged, scale: Scale, tangent: Array) -> Place:
+def placed(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePlace:
     """Place of a cycle on its branch, from a tangent of any length, (N + 1,)."""
     own = Scale.of(found.orbit, scale.name, scale.least)
     ahead = own.moved(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
-    return Place(own, tangent / unit, ahead / unit, 0.0, 0.0)
+    return CyclePlace(own, tangent / unit, ahead / unit, 0.0, 0.0)
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
@@ -165,7 +165,7 @@ def point_at(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
     return ARC_STEPS.accepted(_stepped(start, accuracy, length)).solution
 
 
-def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
+def _stepped(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
     """The cycle at an arc length from `start`, with an equal length for the next step.
 
     Raises Unsolvable.
@@ -179,7 +179,7 @@ def _stepped(start: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoin
         off = ARC_STEPS.aim  # the error of a tangent says nothing of the cubic of later steps
     tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered(found))
     cosine = float(start.scale.moved(found.orbit, tangent) @ start.ahead)  # both have unit length
-    return Stepped(cycle_ahead(start, found, tangent, length, length, accuracy), off, cosine)
+    return StepResult(cycle_ahead(start, found, tangent, length, length, accuracy), off, cosine)
 
 
 def arc_between(start: ArcPoint, end: ArcPoint) -> float:
@@ -188,7 +188,7 @@ def arc_between(start: ArcPoint, end: ArcPoint) -> float:
 
 
 def cycle_ahead(
-    start: ArcPoint, found: Converged, tangent: Array, length: float, ahead: float, accuracy: float
+    start: ArcPoint, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
     """A cycle at a length from `start`, its errors not measured.
 

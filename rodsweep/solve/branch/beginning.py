@@ -24,7 +24,7 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..point import Unsolvable
 from .arc import ArcPoint
-from .bordered.condition import Condition
+from .bordered.condition import BorderCondition
 from .bordered.scale import Scale, deflection_of
 from .settling import first_point
 from .special.point import SpecialKind, SpecialPoint
@@ -178,7 +178,7 @@ def _cycle_of(
     scale = Scale.of(start, hopf.name, least)
     # The deflection is prescribed, not the parameter: it cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * DEFLECTION
-    condition = Condition.at(scale, border, start)
+    condition = BorderCondition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])

@@ -11,7 +11,7 @@ from ..cycle.accuracy.refinement_settings import REFINEMENT
 from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint
-from .symmetry import Breaking
+from .symmetry import SymmetryBreaking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ class BranchEnd:
     special: SpecialPoint
     complete: bool
     end_hopf: int = -1
-    end_breaking: Breaking | None = None
+    end_breaking: SymmetryBreaking | None = None
     full: bool = False
 
 
@@ -92,8 +92,8 @@ class BranchCurve:
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
-    breaking: Breaking | None = None
-    end_breaking: Breaking | None = None
+    breaking: SymmetryBreaking | None = None
+    end_breaking: SymmetryBreaking | None = None
     complete: bool = False
     full: bool = False
     explained: bool = True

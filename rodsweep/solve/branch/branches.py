@@ -20,7 +20,7 @@ from .beginning import hopf_point
 from .branch_curve import BranchCurve
 from .following import BranchLimits, follow_branch, follow_without_symmetry
 from .special.point import LOCATING, EndReason
-from .symmetry import Breaking, breakings_of
+from .symmetry import SymmetryBreaking, breakings_of
 from .work import shares_of_branches
 
 
@@ -207,7 +207,7 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
         left -= len(curve.points)
         curves.append(curve)
     breakings = breakings_of([curve.special for curve in curves])
-    met: list[Breaking] = []
+    met: list[SymmetryBreaking] = []
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue

@@ -53,7 +53,7 @@ class CoexistenceStatus(PointStatus):
     special_full = 8, "there are more special points on the branches of the row than the file holds"
 
 
-class Stable(IntEnum):
+class StableStates(IntEnum):
     """Stable states. neither_known: the straight rod is unstable and no branch has a stable cycle."""
 
     neither_known = 0
@@ -90,7 +90,7 @@ def solve_coexistence(
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
     states = stable_states(row.motion, cycles)
-    undecided = request.values[(states == Stable.undecided) & (row.motion != Motion.undecided)]
+    undecided = request.values[(states == StableStates.undecided) & (row.motion != Motion.undecided)]
     status, message = _judged(row, branches, special, undecided)
     return CoexistenceRow(
         row=row,
@@ -205,9 +205,9 @@ def _closed(point: SpecialPoint) -> int:
 def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
     """Stable states, (values,), from the straight rod's classes and the stable cycles, both (values,)."""
     straight = (motion == Motion.monotone) | (motion == Motion.oscillatory)
-    states = np.where(straight, Stable.straight, Stable.neither_known).astype(np.int8)
+    states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.
-    states[cycles > 0] += Stable.cycle
-    states[(cycles < 0) | (motion == Motion.undecided)] = Stable.undecided
-    states[motion == Motion.crushed] = Stable.crushed
+    states[cycles > 0] += StableStates.cycle
+    states[(cycles < 0) | (motion == Motion.undecided)] = StableStates.undecided
+    states[motion == Motion.crushed] = StableStates.crushed
     return states

@@ -20,11 +20,11 @@ from ..cycle.accuracy.cycle_errors import CYCLE_ERRORS, CycleErrors
 from ..cycle.accuracy.finer_meshes import COMPARISON, finer_meshes
 from ..cycle.along_parameter import carried
 from ..orbit.measures import CyclePath
-from ..orbit.newton import Converged, multiplier_change, multipliers_of
+from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
-from .bordered.condition import Condition, moved
+from .bordered.condition import BorderCondition, moved
 from .bordered.scale import Scale
 
 
@@ -54,7 +54,7 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class CyclePlace:
     """Place of a cycle on its branch.
 
     tangent: of unit length in the scale, (N + 1,). ahead: the tangent as a direction of `Scale.place`, (3,).
@@ -176,14 +176,14 @@ def _interpolated(one: Array, other: Array, share: float) -> Array:
 
 
 def measured_errors(
-    found: Converged, place: Place, accuracy: float, before: Calibration | None
+    found: ConvergedOrbit, place: CyclePlace, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of a cycle's mesh, from two finer meshes; raises Unsolvable. before: errors of a neighbouring
     cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
-    condition = Condition.at(place.scale, place.ahead, orbit)
+    condition = BorderCondition.at(place.scale, place.ahead, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
@@ -196,7 +196,7 @@ def measured_errors(
     return BranchCalibration(known, parts[:, -1], slope_at(rough, place))
 
 
-def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: Place) -> Array:
+def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, place: CyclePlace) -> Array:
     """Differences of a cycle from the same cycle on a finer mesh, (6,).
 
     The first five, as in `Calibration.space`, are differences at the rough mesh's value of the parameter; the
@@ -219,7 +219,7 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: Converged, place: 
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
-def slope_at(path: CyclePath, place: Place) -> float:
+def slope_at(path: CyclePath, place: CyclePlace) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest y to the parameter p along a branch."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(moved(orbit, place.scale.name, BRANCH_ERRORS.slope_step * place.tangent))

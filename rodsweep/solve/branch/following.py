@@ -20,7 +20,7 @@ from .special.least_stretch import stretch_at
 from .special.locating import located
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
-from .symmetry import ENDINGS, Breaking, beginning_without_symmetry, breaking_between, mirrored
+from .symmetry import ENDINGS, SymmetryBreaking, beginning_without_symmetry, breaking_between, mirrored
 from .trail import Trail, end_at
 from .work import share_done
 
@@ -40,7 +40,7 @@ class BranchLimits:
     accuracy: float
     max_cycles: int
     workspace: NewtonWorkspace
-    breakings: Sequence[Breaking] = ()
+    breakings: Sequence[SymmetryBreaking] = ()
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:

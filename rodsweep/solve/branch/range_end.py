@@ -5,24 +5,26 @@ import numpy as np
 from ..continuation.follower import zero_along
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from .arc import ArcPoint, cycle_ahead, tangent_at
-from .bordered.condition import Condition
+from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered
-from .special.segment import Segment
+from .special.segment import BranchSegment
 from .symmetry import ENDINGS
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 """Direction of `Scale.place` along the parameter."""
 
 
-def range_end_condition(start: ArcPoint, limit: float) -> Condition:
+def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:
     """The condition for the cycle at a limit of the parameter's coordinate."""
-    return Condition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate)
+    return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate)
 
 
-def cycle_at_range_end(start: ArcPoint, end: ArcPoint, range_end: Condition, accuracy: float) -> ArcPoint:
+def cycle_at_range_end(
+    start: ArcPoint, end: ArcPoint, range_end: BorderCondition, accuracy: float
+) -> ArcPoint:
     """The cycle at an end of the range, between two cycles; raises Unsolvable."""
     scale = start.scale
-    segment = Segment(start, end)
+    segment = BranchSegment(start, end)
 
     def beyond(length: float) -> float:
         # On the predicted cubic, without solving a cycle: the condition itself is solved for once below.

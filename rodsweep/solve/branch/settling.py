@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 from ...arrays import Array
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
-from ..orbit.newton import Converged, multipliers_of
+from ..orbit.newton import ConvergedOrbit, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, placed, tangent_at
-from .bordered.condition import Condition
+from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered
 from .bordered.scale import Scale
 from .errors import BranchCalibration, measured_errors, slope_at
@@ -43,7 +43,7 @@ class SettlingSettings:
 SETTLING = SettlingSettings()
 
 
-def first_point(found: Converged, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
+def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
     """The first cycle of a branch with its errors, on a finer mesh if necessary; raises Unsolvable.
 
     side: direction in which the branch goes on, (3,). born: distance from the point of birth, in the scale;
@@ -80,7 +80,7 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
 
-def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None) -> ArcPoint:
+def refined(point: ArcPoint, accuracy: float, condition: BorderCondition | None = None) -> ArcPoint:
     """The cycle with measured errors within the accuracy, on the cheapest mesh found; raises Unsolvable
     without one.
 
@@ -108,7 +108,7 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
     raise Unsolvable("no allowed mesh reaches the accuracy")
 
 
-def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: float) -> ArcPoint:
+def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
     """The cycle on another mesh, without measured errors; raises Unsolvable."""
     found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
@@ -127,7 +127,7 @@ def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: fl
 
 
 def settled(
-    last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: Condition | None
+    last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: BorderCondition | None
 ) -> list[ArcPoint]:
     """The cycles after a measured one, all with errors within the accuracy; raises Unsolvable.
 

@@ -24,7 +24,7 @@ from ..orbit.symmetry import NONE
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_between
 from .beginning import DEFLECTION
-from .bordered.condition import Condition, moved
+from .bordered.condition import BorderCondition, moved
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import Scale, deflection_of
 from .settling import first_point
@@ -83,7 +83,7 @@ ASYMMETRIC_START = AsymmetricStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Breaking:
+class SymmetryBreaking:
     """A symmetry breaking: number of its branch, from 1, and index among the special points of the branch."""
 
     branch: int
@@ -91,10 +91,10 @@ class Breaking:
     point: SpecialPoint
 
 
-def breakings_of(branches: Sequence[Sequence[SpecialPoint]]) -> list[Breaking]:
+def breakings_of(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
     """Symmetry breakings among the special points of branches, if their cycle is known."""
     return [
-        Breaking(number, place, point)
+        SymmetryBreaking(number, place, point)
         for number, special in enumerate(branches, 1)
         for place, point in enumerate(special)
         if point.kind == SpecialKind.symmetry_breaking and point.orbit is not None
@@ -124,7 +124,7 @@ def _moments(states: Array, orbit: Orbit) -> Array:
 
 
 def beginning_without_symmetry(
-    breaking: Breaking, name: str, accuracy: float, workspace: NewtonWorkspace
+    breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
     """The first cycle of the asymmetric branch from a symmetry breaking along a parameter; raises Unsolvable.
 
@@ -158,7 +158,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     """
     scale = whole.scale
     border = np.sign(change) * DEFLECTION
-    condition = Condition.at(scale, border, start)
+    condition = BorderCondition.at(scale, border, start)
     rough = condition.solved(start, REFINEMENT.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
@@ -171,7 +171,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     return first_point(first, scale, border, abs(change) / scale.deflection, accuracy)
 
 
-def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:
+def mirrored(start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> bool:
     """Whether the asymmetry has changed sign between two cycles, or has almost vanished.
 
     On a mesh that lacks the symmetry of the cycle, the corner where the branches cross is rounded off: the
@@ -196,7 +196,7 @@ def _nearly_symmetric(start: ArcPoint) -> bool:
 
 
 def breaking_between(
-    start: ArcPoint, end: ArcPoint, known: Sequence[Breaking], accuracy: float
+    start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the known symmetry breaking that lies between two cycles, -1 for none.
 
@@ -210,7 +210,7 @@ def breaking_between(
     return None
 
 
-def _nearest(start: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int:
+def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
     """Index of the symmetry breaking at the extrapolated place where the asymmetry vanishes, -1 for none."""
     orbit = start.orbit
     present = asymmetry(orbit)

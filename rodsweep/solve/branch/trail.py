@@ -7,7 +7,7 @@ import numpy as np
 
 from ..point import Unsolvable
 from .arc import ArcPoint
-from .bordered.condition import Condition
+from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
 from .settling import settled
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -45,7 +45,7 @@ class Trail:
         self._waiting.append(point)
         self.curve.points.append(BranchPoint.of(point, self.accuracy))
 
-    def settle(self, condition: Condition | None = None) -> ArcPoint:
+    def settle(self, condition: BorderCondition | None = None) -> ArcPoint:
         """Gives errors to the waiting cycles and returns the last cycle. Raises Unsolvable.
 
         condition: holds for the last cycle on every mesh; by default its arc length along the branch is kept.

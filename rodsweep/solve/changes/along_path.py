@@ -11,15 +11,15 @@ from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover
 from ...determinant.certificate.first_boxes import first_boxes
-from ...determinant.newton import Zero
+from ...determinant.newton import LocatedZero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable
 from .arm_crossings import CrossingSearch
 from .arm_path import ArmPath, path_problem
 from .leading_eigenvalue import Tracer
 from .path_problem import PathProblem
-from .search_range import Reach
-from .unstable_modes import Counts, Crossing, Kind
+from .search_range import SearchEnd
+from .unstable_modes import ChangeKind, Crossing, UnstableModeCounter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,10 +76,10 @@ class AxisCrossings:
     path: Path
     crossings: list[Crossing]
     gaps: list[tuple[float, float]]
-    reach: Reach
+    reach: SearchEnd
     boxes: int = 0
 
-    def up_to(self, reach: Reach) -> "AxisCrossings":
+    def up_to(self, reach: SearchEnd) -> "AxisCrossings":
         """The part of a search that ended earlier; itself if the search `reach` ended at the same place."""
         if reach.p == self.reach.p:
             return self
@@ -114,7 +114,7 @@ def transitions(
         changes, reach = tracer.changes([*(p for p in edges if p < found.reach.p), found.reach.p])
         found = found.up_to(reach) if reach.reason else found
         ends = found.searched(start, stop)
-        counts = Counts(problem, found.gaps, certify)
+        counts = UnstableModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: nothing is unstable, and no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, found.crossings)
         oscillates = tracer.anchor(path.variable(ends[0])).oscillates
@@ -145,7 +145,7 @@ def pair_crossings(
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
-    counts = Counts(problem, found.gaps, certify)
+    counts = UnstableModeCounter(problem, found.gaps, certify)
     ends = found.searched(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, ordered)
@@ -153,7 +153,9 @@ def pair_crossings(
     return _with_range(_counted(counts, unstable, crossings, at_end), found, (start, stop))
 
 
-def _counted(counts: Counts, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
+def _counted(
+    counts: UnstableModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int
+) -> Transitions:
     """The counted crossings as `Transitions`, without the leading eigenvalue at the start.
 
     unstable, at_end: number of unstable modes at the two ends of the searched interval.
@@ -203,7 +205,7 @@ def _covered(path: Path, low: float, high: float) -> AxisCrossings:
         raise Unsolvable("no a-priori bound on the eigenvalues applies")
     zeros, left, examined = cover(boxes, path.origin, path.direction)
     hopfs = [_hopf(path, zero) for zero in zeros if low <= zero.p <= high]
-    return AxisCrossings(path, hopfs, _gaps(path, left), Reach(high), examined)
+    return AxisCrossings(path, hopfs, _gaps(path, left), SearchEnd(high), examined)
 
 
 def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
@@ -227,13 +229,13 @@ def _pairs_missed_as_leaders(
     return missed
 
 
-def _hopf(path: Path, zero: Zero) -> Crossing:
+def _hopf(path: Path, zero: LocatedZero) -> Crossing:
     """A crossing; the direction in which the pair moves decides between hopf and hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
     growing = (-there.D_p / there.D_w).real > 0
-    kind = Kind.hopf if growing != path.inverse else Kind.hopf_reverse
+    kind = ChangeKind.hopf if growing != path.inverse else ChangeKind.hopf_reverse
     at, error = path.value(zero.p, zero.error_of_p)
     return Crossing(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 

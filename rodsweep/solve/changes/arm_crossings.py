@@ -13,8 +13,8 @@ import numpy as np
 from ..point import Unsolvable
 from .arm_path import ArmPath
 from .axis_place import AxisPlace, AxisPlaces, next_count_place
-from .search_range import Reach, SearchedIntervals
-from .unstable_modes import Crossing, Kind
+from .search_range import SearchedIntervals, SearchEnd
+from .unstable_modes import ChangeKind, Crossing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +64,7 @@ class CrossingSearch:
         self.found: dict[float, Crossing] = {}
         self.gaps: list[tuple[float, float]] = []
 
-    def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], Reach]:
+    def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
         """All crossings from the first of `edges` up to the reach of the search, in increasing order of p.
 
         The search ends behind the first crossing beyond `most`: where dozens of modes grow, each further one
@@ -198,7 +198,7 @@ class CrossingSearch:
         # Newton's method may find another pair of the interval, going the other way.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
-        kind = Kind.hopf if grows != self.problem.path.inverse else Kind.hopf_reverse
+        kind = ChangeKind.hopf if grows != self.problem.path.inverse else ChangeKind.hopf_reverse
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
         error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # its own, and that by p

@@ -13,7 +13,7 @@ from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.family import ArmFamily, family_of
 from ...determinant.arm.hull import hull_of
 from ...determinant.certificate.winding_number import Count
-from ...determinant.newton import Zero
+from ...determinant.newton import LocatedZero
 from ...determinant.parameter_path import Path
 from ...model.dispersion import sampled
 from ..spectrum.followed_arms import FollowedArms
@@ -145,7 +145,7 @@ class ArmPath(PathProblem):
         known = self._followed.slope(guess, p) if self._followed is not None else None
         return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
-    def double(self, x: float, p: float, reach: float) -> Zero:
+    def double(self, x: float, p: float, reach: float) -> LocatedZero:
         return self._along.double(x, p, reach)
 
     def count(self, line: float, p: float) -> Count:

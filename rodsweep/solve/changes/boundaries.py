@@ -14,7 +14,7 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane
 from ..continuation.boundaries import Boundaries, boundary_search
 from .boundary_curves import BoundaryCurve, trace
-from .unstable_modes import Kind
+from .unstable_modes import ChangeKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,9 +52,9 @@ class Seed:
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
     """The seed of a change; None for an overtaking, because no curve is made of overtakings."""
-    if kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
+    if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
         return Seed(values, 0.0, frequency)
-    if kind in (Kind.onset, Kind.real_again):
+    if kind in (ChangeKind.onset, ChangeKind.real_again):
         return Seed(values, math.copysign(1.0, growth_rate), growth_rate)
     return None
 

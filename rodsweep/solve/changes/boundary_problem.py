@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
-from ..continuation.follower import Curve, CurveStop, StepControl, Stepped
+from ..continuation.follower import Curve, CurveStop, StepControl, StepResult
 from ..point import Unsolvable
 
 BOUNDARY_STEPS = StepControl(
@@ -77,12 +77,12 @@ class ChangeCurveProblem:
 
     boundary: Boundary
 
-    def step(self, behind: Sequence[BoundaryPoint], length: float) -> Stepped[BoundaryPoint]:
+    def step(self, behind: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
         """The point a step along the tangent; raises Unsolvable."""
         v, tangent = behind[-1]
         there = BoundaryPoint.on(self.near(v + length * tangent, tangent), tangent)
         # The turn of the tangent alone controls the step length.
-        return Stepped(there, 0.0, float(there.tangent @ tangent))
+        return StepResult(there, 0.0, float(there.tangent @ tangent))
 
     def near(self, guess: Array, normal: Array) -> OnBoundary:
         """The point in the plane through a guess with a normal, both (3,); raises Unsolvable."""

@@ -19,8 +19,8 @@ from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
 from .anchors import Anchor, next_anchor
 from .path_problem import PathProblem
-from .search_range import Reach, SearchedIntervals
-from .unstable_modes import Crossing, Kind
+from .search_range import SearchedIntervals, SearchEnd
+from .unstable_modes import ChangeKind, Crossing
 
 ANCHOR_MODES = 4
 """Number of leading eigenvalues at an anchor: the two that lead, and two that may overtake them. Fewer would
@@ -57,7 +57,7 @@ class LeaderSettings:
 LEADER = LeaderSettings()
 
 
-class Meeting(NamedTuple):
+class LeaderExchange(NamedTuple):
     """A double real eigenvalue (frequency 0), or a real eigenvalue and a pair with equal real parts."""
 
     p: float
@@ -101,7 +101,7 @@ class Tracer:
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
-    def changes(self, edges: list[float]) -> tuple[list[Crossing], Reach]:
+    def changes(self, edges: list[float]) -> tuple[list[Crossing], SearchEnd]:
         """All changes from the first of `edges` up to the reach of the search, in increasing order of p.
 
         Raises Unsolvable if the search does not reach beyond the first edge.
@@ -147,11 +147,11 @@ class Tracer:
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, which along a stiffness is that of falling p.
         if right.oscillates != self.path.inverse:
-            double = Kind.onset
-            single = Kind.pair_leads
+            double = ChangeKind.onset
+            single = ChangeKind.pair_leads
         else:
-            double = Kind.real_again
-            single = Kind.real_leads
+            double = ChangeKind.real_again
+            single = ChangeKind.real_leads
         for find, kind, meeting in ((self._double, double, 2), (self._overtaking, single, 3)):
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
@@ -167,7 +167,7 @@ class Tracer:
                 return Crossing(at, kind, found.frequency, found.growth_rate, error)
         return None
 
-    def _double(self, pair: Anchor, real: Anchor) -> Meeting | None:
+    def _double(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
         """The double eigenvalue between an anchor with a leading pair and one with two real eigenvalues; or
         None."""
         below = pair.partner()
@@ -180,9 +180,9 @@ class Tracer:
         p = real.p + share * (pair.p - real.p)
         x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
         x, p, _, error = self.problem.double(x, p, width)
-        return None if math.isnan(p) else Meeting(p, error, x, 0.0)
+        return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
-    def _overtaking(self, pair: Anchor, real: Anchor) -> Meeting | None:
+    def _overtaking(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
         """Newton's method for equal real parts of the real eigenvalue and the pair, each followed by itself;
         or None."""
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
@@ -205,7 +205,7 @@ class Tracer:
             if not ends[0] <= p <= ends[1]:
                 return None
             if abs(step) <= LEADER.converged * error:
-                return Meeting(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
+                return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
             w_real = w_real + step * s_real
             w_pair = w_pair + step * s_pair
             if w_real.imag != 0:

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 
 from ...determinant.certificate.first_boxes import slabs
 from ...determinant.certificate.winding_number import Count, count_right_of
-from ...determinant.newton import Zero, double_newton, eigenvalue_newton
+from ...determinant.newton import LocatedZero, double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
@@ -35,7 +35,7 @@ class PathProblem(ABC):
         """(eigenvalue near the guess, its slope by p, its error) at p."""
 
     @abstractmethod
-    def double(self, x: float, p: float, reach: float) -> Zero:
+    def double(self, x: float, p: float, reach: float) -> LocatedZero:
         """The double real eigenvalue near (x, p) with p at most `reach` away; nan if not found."""
 
     @abstractmethod
@@ -61,7 +61,7 @@ class UniformPath(PathProblem):
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         return eigenvalue_newton(guess, coefficients, self.path.direction)
 
-    def double(self, x: float, p: float, reach: float) -> Zero:
+    def double(self, x: float, p: float, reach: float) -> LocatedZero:
         return double_newton(x, p, self.path.origin, self.path.direction, reach)
 
     def count(self, line: float, p: float) -> Count:

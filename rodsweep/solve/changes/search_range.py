@@ -22,7 +22,7 @@ class SearchRangeSettings:
 SEARCH_RANGE = SearchRangeSettings()
 
 
-class Reach(NamedTuple):
+class SearchEnd(NamedTuple):
     """The last path variable of a search, and why the search ended there; the reason is empty at the
     requested end."""
 
@@ -39,7 +39,7 @@ class SearchedIntervals:
     def __init__(self, edges: list[float]):
         self.first = edges[0]
         self.length = edges[-1] - edges[0]
-        self.reach = Reach(edges[-1])
+        self.reach = SearchEnd(edges[-1])
         self._left = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
         self._unsolvable = edges[-1]
         self._halvings = 0
@@ -52,7 +52,7 @@ class SearchedIntervals:
                 self._halvings += 1
                 middle = (self.reach.p + self._unsolvable) / 2
                 self._left.append((self.reach.p, middle))
-                self.reach = Reach(middle, self.reach.reason)
+                self.reach = SearchEnd(middle, self.reach.reason)
             if not self._left:
                 break
             yield self._left.pop()
@@ -67,10 +67,10 @@ class SearchedIntervals:
         """Ends the search at a place up to which everything is searched."""
         self._left.clear()
         self._halvings = SEARCH_RANGE.last_halvings
-        self.reach = Reach(p, reason)
+        self.reach = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
         """Ends the search in the present interval, which cannot be searched to its end."""
         self._left.clear()
         self._unsolvable = interval[1]
-        self.reach = Reach(interval[0], reason)
+        self.reach = SearchEnd(interval[0], reason)

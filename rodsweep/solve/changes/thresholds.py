@@ -9,7 +9,7 @@ from ...model.rod import Rod
 from ..point import solved
 from ..status import PointStatus
 from .along_path import Transitions, transitions
-from .unstable_modes import Crossing, Kind, end_below_crushing
+from .unstable_modes import ChangeKind, Crossing, end_below_crushing
 
 
 class ThresholdStatus(PointStatus):
@@ -114,4 +114,4 @@ def warm_up() -> None:
 def filament_hopf() -> float:
     """Fc, where the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De Canio et al. 2017)."""
     found = transitions(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
-    return next(c.at for c in found.crossings if c.kind == Kind.hopf)
+    return next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)

@@ -40,7 +40,7 @@ def end_below_crushing(rod: Rod, F: float) -> float:
     return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
 
 
-class Kind(IntEnum):
+class ChangeKind(IntEnum):
     """Kind of a change along a path, in the direction of increasing parameter."""
 
     onset = 1
@@ -54,12 +54,12 @@ class Kind(IntEnum):
     @property
     def changes_leader(self) -> bool:
         """Whether the leading eigenvalue changes its kind, as opposed to a pair that crosses the axis."""
-        return self in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads)
+        return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)
 
     @property
     def pair_leads_after(self) -> bool:
         """Whether a pair leads beyond the change."""
-        return self in (Kind.onset, Kind.pair_leads)
+        return self in (ChangeKind.onset, ChangeKind.pair_leads)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class Crossing:
     """
 
     at: float
-    kind: Kind
+    kind: ChangeKind
     frequency: float
     growth_rate: float
     error: float
@@ -79,7 +79,7 @@ class Crossing:
     frequency_error: float = math.nan
 
 
-class Counts:
+class UnstableModeCounter:
     """Number of unstable modes along a path, carried from crossing to crossing and confirmed by counts.
 
     gaps: intervals of the parameter that may contain crossings missing from the list. doubts: statements that
@@ -125,13 +125,13 @@ class Counts:
         place = ends[0]
         for crossing in ordered:
             kind = crossing.kind
-            if kind in (Kind.hopf, Kind.hopf_reverse):
+            if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
                 unstable = self._between(place, crossing.at, unstable)
                 place = crossing.at
                 if unstable >= 0:
-                    unstable += 2 if kind == Kind.hopf else -2
-                if kind == Kind.hopf_reverse and unstable == 0:
-                    kind = Kind.restabilization
+                    unstable += 2 if kind == ChangeKind.hopf else -2
+                if kind == ChangeKind.hopf_reverse and unstable == 0:
+                    kind = ChangeKind.restabilization
             out.append(replace(crossing, kind=kind, unstable_after=unstable))
         return tuple(out), self._between(place, ends[1], unstable)
 

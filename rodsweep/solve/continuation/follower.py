@@ -22,7 +22,7 @@ from ..point import FAILURES, Unsolvable
 Solution = TypeVar("Solution")
 
 
-class Stepped(NamedTuple, Generic[Solution]):
+class StepResult(NamedTuple, Generic[Solution]):
     """A solution at one step ahead.
 
     off: relative distance from the prediction. cosine: cosine of the angle by which the curve has turned.
@@ -36,7 +36,7 @@ class Stepped(NamedTuple, Generic[Solution]):
 class CurveProblem(Protocol[Solution]):
     """Interface to a curve of solutions, used by the follower."""
 
-    def step(self, behind: Sequence[Solution], length: float) -> Stepped[Solution]:
+    def step(self, behind: Sequence[Solution], length: float) -> StepResult[Solution]:
         """The solution at a length ahead of `behind[-1]`; raises Unsolvable if no solution is near."""
 
     def margins(self, solution: Solution) -> Array:
@@ -79,7 +79,7 @@ class StepControl:
         if not self.growth > 1:
             raise ValueError(f"growth = {self.growth}, but steps must grow")
 
-    def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
+    def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The next solution; raises Unsolvable if the solution may lie on another curve."""
         if not there.off <= self.far:
             raise Unsolvable("the solution is far from its prediction")
@@ -87,7 +87,7 @@ class StepControl:
             raise Unsolvable("the curve turns by too large an angle")
         return there
 
-    def next_length(self, length: float, there: Stepped[Solution], solutions: int) -> float:
+    def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
         """Length of the step after an accepted step, for a curve with a number of solutions."""
         # The error of a prediction through m solutions grows with the m-th power of the step.
         by_distance = (self.aim / max(there.off, self.min_measured)) ** (1 / min(self.order, solutions))
@@ -124,8 +124,8 @@ class Curve(Generic[Solution]):
 
 
 def advance(
-    step: Callable[[float], Stepped[Solution]], length: float, control: StepControl
-) -> tuple[Stepped[Solution], float]:
+    step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
+) -> tuple[StepResult[Solution], float]:
     """(the next solution of a curve, the length of the step); the given length is halved after every failure.
 
     step: returns the solution at a length ahead, or raises an error of FAILURES. `advance` raises the last

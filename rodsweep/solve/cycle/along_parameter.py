@@ -12,9 +12,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.stress.form import StressForm
-from ..continuation.follower import StepControl, Stepped, advance
+from ..continuation.follower import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import Converged, at_orbit, newton, relative_change
+from ..orbit.newton import ConvergedOrbit, at_orbit, newton, relative_change
 from ..orbit.normalised import (
     combined,
     normalised,
@@ -108,7 +108,7 @@ def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     return target.carry(replace(orbit, values=change)).values
 
 
-def predictor_from(found: Converged, before: CyclePredictor | None, name: str) -> CyclePredictor:
+def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:
     """The predictor at an orbit that was solved with its tangent. before: predictor at the previous orbit.
 
     A tangent has the relative error of its orbit's prediction, a value far less. From
@@ -146,7 +146,9 @@ def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
-def near_prediction(predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str) -> Converged:
+def near_prediction(
+    predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
+) -> ConvergedOrbit:
     """The orbit near a prediction; raises Unsolvable if they differ by more than PREDICTION.max_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > PREDICTION.max_distance:
@@ -154,14 +156,14 @@ def near_prediction(predicted: Orbit, tolerance: float, workspace: NewtonWorkspa
     return found
 
 
-def _distance(predicted: Orbit, found: Converged) -> float:
+def _distance(predicted: Orbit, found: ConvergedOrbit) -> float:
     """Relative distance of an orbit from its prediction."""
     return relative_change(predicted, found.orbit.values - predicted.values)
 
 
 def in_steps(
     start: CyclePredictor, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
-) -> Converged:
+) -> ConvergedOrbit:
     """The orbit of a distant rod, in steps that Newton's method can follow; raises Unsolvable.
 
     form: the rod. name: varied parameter. workspace: memory of the matrices.
@@ -172,12 +174,12 @@ def in_steps(
     length = PARAMETER_STEPS.first
     predictor = start
 
-    def step(length: float) -> Stepped[Converged]:
+    def step(length: float) -> StepResult[ConvergedOrbit]:
         at = share + length
         between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
         predicted = predictor.at(between, name)
         found = near_prediction(predicted, tolerance, workspace, name)
-        return Stepped(found, _distance(predicted, found), 1.0)
+        return StepResult(found, _distance(predicted, found), 1.0)
 
     for _ in range(PARAMETER_STEPS.most):
         try:

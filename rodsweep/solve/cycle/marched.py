@@ -48,7 +48,7 @@ from .transient.returns import (
 
 
 @dataclass(frozen=True, eq=False)
-class _Settled:
+class _SettledMotion:
     """A settled motion. z: its state, (unknowns,). turns: returns of the tip per period. step: last time
     step.
     """
@@ -58,7 +58,7 @@ class _Settled:
     step: float
 
 
-class _Ended(Exception):
+class _NoCycle(Exception):
     """The motion has an outcome that is not a cycle."""
 
     def __init__(self, status: MarchedStatus, why: str) -> None:
@@ -74,10 +74,10 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
         forget_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
-    return solved(lambda: _Marching(rod, request).cycle(), failed)
+    return solved(lambda: _MarchedMotion(rod, request).cycle(), failed)
 
 
-class _Marching:
+class _MarchedMotion:
     """The motion of one rod, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
@@ -109,14 +109,14 @@ class _Marching:
                     break
             if in_limit:
                 errors = self._errors_of_the_limit(settled, path, errors)
-        except _Ended as end:
+        except _NoCycle as end:
             return replace(straight, status=end.status, message=end.why, periods=self.waited)
         return self._measured(straight, path, errors)
 
     def _beam(self) -> Beam:
         return Beam(self.rod, self.mesh)
 
-    def _refined(self, settled: _Settled) -> _Settled:
+    def _refined(self, settled: _SettledMotion) -> _SettledMotion:
         """The settled motion on a finer mesh with a smaller tolerance, started from the settled state."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.more_orders)
@@ -125,8 +125,8 @@ class _Marching:
         z = self.beam.scaled(before.stresses_on(self.beam.mesh, settled.z))
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
-    def _settled(self, z: Array) -> _Settled:
-        """The settled motion that starts from z, (unknowns,); raises _Ended."""
+    def _settled(self, z: Array) -> _SettledMotion:
+        """The settled motion that starts from z, (unknowns,); raises _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
         row = angle_weights(self.beam)
         step = self.mode.period / MARCHING.first_steps
@@ -148,7 +148,7 @@ class _Marching:
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURNS.straight_size:
-                raise _Ended(MarchedStatus.straight, "decayed to rounding")
+                raise _NoCycle(MarchedStatus.straight, "decayed to rounding")
             if len(past) <= MARCHING.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
@@ -161,19 +161,19 @@ class _Marching:
             last = distance
             # A geometric sequence of distances has distance/(1 - rate) left to its limit.
             if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
-                return _Settled(z, turns, step)
-        raise _Ended(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
+                return _SettledMotion(z, turns, step)
+        raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
 
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """A complete run, by default with the scheme of the motion; raises _Ended if the run fails or leaves
-        the model.
+        """A complete run, by default with the scheme of the motion; raises _NoCycle if the run fails or
+        leaves the model.
         """
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.waited):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
-            raise _Ended(status, end.why)
+            raise _NoCycle(status, end.why)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
@@ -197,8 +197,8 @@ class _Marching:
             states[i] = z - late * rates
         return times, states
 
-    def _path(self, settled: _Settled) -> CyclePath:
-        """One period of the settled motion; raises _Ended."""
+    def _path(self, settled: _SettledMotion) -> CyclePath:
+        """One period of the settled motion; raises _NoCycle."""
         returns = settled.turns + 2
         limit = until_returns(angle_weights(self.beam), settled.z, returns)
         scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.measured_tolerance))
@@ -207,7 +207,7 @@ class _Marching:
         )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
-            raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
+            raise _NoCycle(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
         states = spline(
@@ -219,8 +219,10 @@ class _Marching:
             Orbit.of(form, NONE, period, stressed(self.beam, form, states), MARCHING.measured_stages)
         )
 
-    def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """The errors plus the effect of integrating a rod near the limit instead of in it; raises _Ended."""
+    def _errors_of_the_limit(
+        self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors
+    ) -> CycleErrors:
+        """The errors plus the effect of integrating a rod near the limit, not in it; raises _NoCycle."""
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]

@@ -18,7 +18,7 @@ from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import Converged, at_orbit, newton
+from ..orbit.newton import ConvergedOrbit, at_orbit, newton
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NONE, REFLECTION
@@ -160,7 +160,7 @@ def followed_cycle(
 
 def _converged(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
-) -> Converged:
+) -> ConvergedOrbit:
     """The cycle on the neighbour's `next_mesh`, with a matrix for the tangent and the multipliers."""
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh

@@ -18,7 +18,7 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..continuation.follower import CurveStop, Stepped, follow
+from ..continuation.follower import CurveStop, StepResult, follow
 from ..point import FAILURES, Unsolvable
 from .bautin_settings import BAUTIN, BAUTIN_STEPS
 from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
@@ -65,7 +65,7 @@ class BautinCurve:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _CurvePoint:
     """A point of a curve. v: scaled values of the three parameters and log eta, (4,)."""
 
     v: Array
@@ -91,7 +91,7 @@ class BautinSpace:
         places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
-    def solved(self, guess: Array, held: int) -> _Place:
+    def solved(self, guess: Array, held: int) -> _CurvePoint:
         """The point near a guess, (4,), with the scaled parameter `held` fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
@@ -110,9 +110,9 @@ class BautinSpace:
         found = BautinCurvePoint(
             values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
         )
-        return _Place(self.scaled(found_values, point.frequency), found)
+        return _CurvePoint(self.scaled(found_values, point.frequency), found)
 
-    def step(self, behind: Sequence[_Place], length: float) -> Stepped[_Place]:
+    def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
         """The next point, predicted along the chord of the last two points; raises Unsolvable."""
         here = behind[-1].v
         tangent = np.array([0.0, 0.0, self.side, 0.0])
@@ -126,9 +126,9 @@ class BautinSpace:
             raise Unsolvable(f"the step leaves the range of possible rods: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
-        return Stepped(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
+        return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
-    def _within(self, here: Array, change: Array) -> tuple[_Place, bool]:
+    def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
         """(point after a change, (4,), or at the edge that the change crosses; whether it crosses an edge).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
@@ -144,15 +144,15 @@ class BautinSpace:
         guess[which] = beyond[which]
         return self.solved(guess, which), True
 
-    def margins(self, place: _Place) -> Array:
+    def margins(self, place: _CurvePoint) -> Array:
         """Distances from the ends of the three ranges, negative on an end, shape (6,)."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
 
-    def landed(self, behind: Sequence[_Place], outer: _Place, margin: int) -> _Place | None:
+    def landed(self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int) -> _CurvePoint | None:
         """The outer point itself: `_within` has already shortened the step to end on the edge."""
         return outer
 
-    def closes(self, behind: Sequence[_Place], there: _Place) -> bool:
+    def closes(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
         """Whether the curve is closed: its first point lies between the last point and the next."""
         first = behind[0].v
         last = behind[-1].v
@@ -186,7 +186,7 @@ class BautinSpace:
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     """The curve through a generalised Hopf point, followed in both directions."""
-    here = _Place(space.scaled(start.values, start.frequency), start)
+    here = _CurvePoint(space.scaled(start.values, start.frequency), start)
     back, first = _followed(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
         return BautinCurve(tuple(place.point for place in back), (first, first))
@@ -212,7 +212,7 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
     return any(float(np.abs(v - other).max()) < BAUTIN.same_point for other in others)
 
 
-def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEnd]:
+def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """Points from the start to `space.side`, requested third values included, and why the curve ends."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.shortest < 1:
         return [start], BautinEnd.range_end
@@ -228,12 +228,12 @@ def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEn
     return places, END_OTHERWISE[curve.end]
 
 
-def _report(places: Sequence[_Place]) -> None:
+def _report(places: Sequence[_CurvePoint]) -> None:
     """Reports the number of points found so far."""
     report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(places)} points"))
 
 
-def _asked_between(space: BautinSpace, here: _Place, there: _Place) -> list[_Place]:
+def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
     """Points at requested third values between two of a curve; raises Unsolvable or ValueError."""
     a = here.v[2]
     b = there.v[2]

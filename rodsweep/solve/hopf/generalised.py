@@ -18,7 +18,7 @@ from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
 from ..changes.arm_path import path_problem
 from ..changes.boundary_curves import BoundaryCurve
-from ..changes.unstable_modes import Crossing, Kind
+from ..changes.unstable_modes import ChangeKind, Crossing
 from ..point import FAILURES, Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
@@ -73,7 +73,7 @@ class CurveCriticality:
 
 
 @dataclass(frozen=True, slots=True)
-class _At:
+class _HopfNormalForm:
     """Hopf point of the plane with its normal form."""
 
     there: OnBoundary
@@ -128,7 +128,7 @@ class HopfCurve:
         except FAILURES:
             return math.nan
 
-    def at(self, guess: Array, normal: Array, accuracy: float) -> _At:
+    def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
         """The Hopf point in the plane through a guess, (3,), with a normal, (3,); raises Unsolvable."""
         there = self.boundary.corrected(guess, normal)
         if there is None:
@@ -140,8 +140,8 @@ class HopfCurve:
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
         error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
-        hopf = Crossing(rod.F, Kind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
-        return _At(there, hopf_coefficients(rod, hopf, accuracy))
+        hopf = Crossing(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
+        return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The zero of Re c between two points of opposite sign; None if Brent's method does not find it."""
@@ -151,7 +151,7 @@ class HopfCurve:
         chord = self.scaled[last] - self.scaled[first]
         normal = chord / np.linalg.norm(chord)
 
-        def on_chord(s: float) -> _At:
+        def on_chord(s: float) -> _HopfNormalForm:
             return self.at(start + s * chord, normal, self.accuracy)
 
         try:
@@ -167,7 +167,7 @@ class HopfCurve:
         along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF.tolerance
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
-    def as_point(self, here: _At, after: int, moved: Array) -> GeneralisedHopfPoint:
+    def as_point(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
         """Generalised Hopf point from its normal form; moved: position error along the chord, (3,)."""
         there = here.there
         axes = self.boundary.plane.axes

@@ -18,7 +18,7 @@ from ...determinant.value import distance_to_next
 from ...discretization.elements.resolution import mesh_accuracy
 from ...discretization.straight.transverse_mesh import finer_mesh, mesh_for, pencil_on
 from ...model.rod import Rod
-from .inverse_iteration import Vectors, mode_vectors
+from .inverse_iteration import ModeVectors, mode_vectors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,13 +48,13 @@ def vector_accuracy(accuracy: float) -> float:
 
 def converged_vectors(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
-) -> Vectors | None:
+) -> ModeVectors | None:
     """Mode vectors at `points`, (n,), on the best of a few meshes; None if even the first mesh is too
     large."""
     mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
     gaps = np.array([gap(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
-    best: Vectors | None = None
+    best: ModeVectors | None = None
     least = inf
     for _ in range(MODE_MESH.max_meshes):
         if best is None:
@@ -77,7 +77,7 @@ def converged_vectors(
     return best
 
 
-def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
+def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
     """The finer mesh's modes, with the differences of the coarser mesh's modes as errors; gaps: (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))

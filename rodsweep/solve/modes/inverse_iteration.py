@@ -32,7 +32,7 @@ MODE_ITERATION = ModeIterationSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Vectors:
+class ModeVectors:
     """Modes on one mesh, at given points.
 
     right: (Y, Theta) with Y(1) = 1; left: (Y+, Theta+) with Y+(1) = 1; both in L and rad for a tip deflection
@@ -65,7 +65,7 @@ class Vectors:
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
-def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> Vectors:
+def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> ModeVectors:
     """Modes of known eigenvalues on one mesh, at `points` in [0, 1], (n,)."""
     form = dense_form(rod, pencil)
     X, Z, rounding = _vectors(form, eigenvalues)
@@ -84,11 +84,11 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
+def no_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
     """Placeholder for unknown vectors: all entries NaN."""
     shape = np.full((2, modes, points), np.nan + 0j)
     numbers = np.full(modes, np.nan)
-    return Vectors(
+    return ModeVectors(
         resolution=resolution,
         right=shape,
         deformation=shape,
@@ -102,7 +102,7 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
 
 
 def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
-    """Right and left vectors, (unknowns, modes) each, scaled at the tip, and `Vectors.rounding`."""
+    """Right and left vectors, (unknowns, modes) each, scaled at the tip, and `ModeVectors.rounding`."""
     A = form.A
     B = form.B
     m = len(eigenvalues)

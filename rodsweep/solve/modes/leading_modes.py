@@ -24,7 +24,7 @@ from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
-from .inverse_iteration import Vectors, no_vectors
+from .inverse_iteration import ModeVectors, no_vectors
 from .transient_growth import Growth, growth_of
 
 
@@ -62,7 +62,7 @@ class Modes:
 
     status: SpectrumStatus
     spectrum: Spectrum
-    vectors: Vectors
+    vectors: ModeVectors
     growth: Growth = Growth()
     seconds: float = 0.0
     message: str = ""

@@ -55,7 +55,7 @@ RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance,
 """Scheme of `relaxed`."""
 
 
-class Ending(IntEnum):
+class RunEnding(IntEnum):
     """Reasons of the end of a run."""
 
     reached = 0
@@ -69,7 +69,7 @@ class Ending(IntEnum):
 class Trajectory:
     """Steps of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns); and why the run ended."""
 
-    ending: Ending
+    ending: RunEnding
     times: Array
     states: Array
     message: str = ""
@@ -135,7 +135,7 @@ class Integrator:
     def run(
         self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
     ) -> Trajectory:
-        """Integrates from z, shape (unknowns,), over `duration` or to the limit; failures become an Ending.
+        """Integrates from z, shape (unknowns,), over `duration` or to the limit; failures become a RunEnding.
 
         step: the first step, or each step if the steps are equal. Tolerances are relative to the largest
         component of z, so that small motions are integrated as accurately as large ones.
@@ -170,15 +170,15 @@ class Integrator:
         states = np.ascontiguousarray(rows[:, 1:])
         return Trajectory(self._ending(message, states[-1]), times, states, message)
 
-    def _ending(self, message: str, end: Array) -> Ending:
+    def _ending(self, message: str, end: Array) -> RunEnding:
         reason = self.ts.getConvergedReason()
         reasons = PETSc.TS.ConvergedReason
         if message or reason < 0 or not np.isfinite(end).all():
-            return Ending.failed
+            return RunEnding.failed
         if self.workspace.context["left"]:
-            return Ending.left_the_model
-        named = {reasons.CONVERGED_TIME: Ending.reached, reasons.CONVERGED_USER: Ending.stopped}
-        return named.get(reason, Ending.too_many_steps)
+            return RunEnding.left_the_model
+        named = {reasons.CONVERGED_TIME: RunEnding.reached, reasons.CONVERGED_USER: RunEnding.stopped}
+        return named.get(reason, RunEnding.too_many_steps)
 
     @property
     def kept_bytes(self) -> int:
@@ -217,4 +217,4 @@ def relaxed(beam: Beam, z: Array, period: float) -> Array:
     duration = INTEGRATOR.relaxation_share * period
     step = period / INTEGRATOR.relaxation_steps
     run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
-    return run.states[-1] if run.ending == Ending.reached else z
+    return run.states[-1] if run.ending == RunEnding.reached else z

@@ -48,7 +48,7 @@ class TipPath(NamedTuple):
     largest: Array
 
 
-class Means(NamedTuple):
+class OrbitMeans(NamedTuple):
     """Means over an orbit, with names and units as in `Measures`."""
 
     injection_mean: float
@@ -107,7 +107,7 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 
 @compiled_for_vectors
-def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
+def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
     """Means over all stages, (K, s, n), with the weights of the method, (s,)."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
@@ -130,7 +130,7 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
         # At a jump the node has a mean strain; the smaller stretch of both sides counts.
         for j in range(len(p.rod.jumps)):
             stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.sides[j], p.rod))
-    return Means(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
+    return OrbitMeans(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
 
 
 @compiled_for_vectors

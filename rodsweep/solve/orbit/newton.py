@@ -46,7 +46,7 @@ class HasMultipliers(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Converged:
+class ConvergedOrbit:
     """Solution of Newton's method: the orbit, its last matrix, and the relative distance between the two."""
 
     orbit: Orbit
@@ -61,7 +61,7 @@ class Converged:
 
 def newton(
     orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter: str | None = None
-) -> Converged:
+) -> ConvergedOrbit:
     """The orbit near a start; raises Unsolvable.
 
     tolerance: relative, of states and period. workspace: memory of the matrices. parameter: parameter of the
@@ -90,7 +90,7 @@ def newton(
         # the last two steps.
         left = ORBIT_NEWTON.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
         if left <= tolerance:
-            return Converged(orbit, matrix, distance)
+            return ConvergedOrbit(orbit, matrix, distance)
         # A correction by the old factors is far cheaper than a new elimination, so a matrix is kept while it
         # contracts.
         if change > ORBIT_NEWTON.new_matrix_ratio * min(last, 1.0):
@@ -105,21 +105,21 @@ def newton(
     )
 
 
-def at_orbit(found: Converged, distance: float, parameter: str | None = None) -> Converged:
+def at_orbit(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
     """The solution with a matrix at most at this relative distance from the orbit."""
     if found.distance <= distance:
         return found
     return linearised(found, parameter)
 
 
-def linearised(found: Converged, parameter: str | None = None) -> Converged:
+def linearised(found: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
     """The solution after one more Newton step, with a matrix at the orbit before this step."""
     orbit = found.orbit
     matrix = Linearisation(orbit, found.workspace, parameter)
-    return Converged(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
+    return ConvergedOrbit(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
-def multipliers_of(found: Converged) -> tuple[Complex, float]:
+def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
     """(nontrivial multipliers, (rank - 1,), by descending modulus; distance of the trivial one from 1)."""
     values = found.matrix.multipliers()
     # The derivative of the orbit by time is an eigenvector with multiplier 1; its computed distance from 1

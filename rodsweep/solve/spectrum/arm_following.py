@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import COMPLETENESS, proves, remainder, right_of_hull
 from ...determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
-from ...determinant.arm.region import Hull, Hulls, hull_at
+from ...determinant.arm.region import Hull, PathHulls, hull_at
 from ...determinant.arm.value import ARM_VALUE, chain_along, chain_value
 from ...determinant.roots import roots_of_parabola, sort_descending
 from ...determinant.value import DETERMINANT, second_difference
@@ -20,7 +20,7 @@ from ...model.compiled.compilation import compiled
 from .candidates import CANDIDATES
 from .following import (
     FOLLOWING,
-    Corrected,
+    CorrectedEigenvalue,
     crowding_of,
     distinct_roots,
     newton_step,
@@ -34,14 +34,16 @@ Level = tuple[float, Array, Array]
 
 
 @compiled
-def corrected_of_arm(w: complex, level: Level) -> Corrected:
+def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
 
 
 @compiled
-def _settled(first: Corrected, crowding: float, exact: bool, level: Level) -> tuple[Corrected, float]:
+def _settled(
+    first: CorrectedEigenvalue, crowding: float, exact: bool, level: Level
+) -> tuple[CorrectedEigenvalue, float]:
     """(the last correction, error): Newton's method until the remaining error, crowding step^2, is small."""
     here = first
     for _ in range(FOLLOWING.max_corrections):
@@ -120,7 +122,9 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
 
 
 @compiled
-def follow_arms(track: Track, family: ArmFamily, hulls: Hulls, p: Array, modes: int, known: NDArray) -> int:
+def follow_arms(
+    track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, known: NDArray
+) -> int:
     """Follows eigenvalues from the first point on and fills the track; returns the number of points reached.
 
     track: w and order of the first point are set; p: (points,), path variable of each point, inside the

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.moving_line import End, none_crosses
+from ...determinant.moving_line import IntervalEnd, none_crosses
 from ...determinant.root_settings import ROOTS
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
@@ -91,9 +91,9 @@ def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p:
 
 
 @compiled
-def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> End:
+def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
     F, nu, c2, gamma3 = coefficients[i]
-    return End(p[i], Coefficients(F, nu, c2, gamma3), line_in(track, i, gap)[0])
+    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in(track, i, gap)[0])
 
 
 @compiled

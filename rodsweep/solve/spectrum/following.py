@@ -41,7 +41,7 @@ class FollowingSettings(CompiledSettings):
 FOLLOWING = FollowingSettings()
 
 
-class Corrected(NamedTuple):
+class CorrectedEigenvalue(NamedTuple):
     """An eigenvalue after one Newton step: w, slope dw/dp, length of the step, rounding error `blur`."""
 
     w: complex
@@ -51,24 +51,24 @@ class Corrected(NamedTuple):
 
 
 @compiled
-def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> Corrected:
+def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> CorrectedEigenvalue:
     """One Newton step; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
 
 
 @compiled
-def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> Corrected:
+def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
     """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
     size = abs(D_w)
     if not size > 0:
-        return Corrected(w, 0j, math.inf, math.inf)
+        return CorrectedEigenvalue(w, 0j, math.inf, math.inf)
     step = D / D_w
     slope = -D_p / D_w
     if w.imag == 0:
         step = complex(step.real, 0.0)
         slope = complex(slope.real, 0.0)
-    return Corrected(w - step, slope, abs(step), rounding / size)
+    return CorrectedEigenvalue(w - step, slope, abs(step), rounding / size)
 
 
 @compiled
@@ -82,7 +82,7 @@ def crowding_of(w: Complex, k: int) -> float:
 
 
 @compiled
-def settled_error(here: Corrected, crowding: float, exact: bool) -> float:
+def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
     """Error of an eigenvalue, with the remainder crowding step^2; inf until that is small enough."""
     left = crowding * here.step * here.step
     allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
@@ -92,7 +92,7 @@ def settled_error(here: Corrected, crowding: float, exact: bool) -> float:
 
 
 @compiled
-def store_root(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool:
+def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalue) -> bool:
     """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
 
     False for a pair that has become real. The error of eigenvalue k is in the track already.
@@ -113,8 +113,8 @@ def store_root(track: Track, i: int, k: int, mate: int, last: Corrected) -> bool
 
 @compiled
 def _settled(
-    first: Corrected, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
-) -> tuple[Corrected, float]:
+    first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
+) -> tuple[CorrectedEigenvalue, float]:
     """(last correction, error): Newton steps until the estimated remainder, crowding step^2, is small."""
     here = first
     for _ in range(FOLLOWING.max_corrections):
@@ -151,7 +151,7 @@ def _correct_all(
     mate = np.empty(m, np.int64)
     mates_of(guess, mate)
     # One step for all before further steps for any: the crowding of a root needs its neighbours.
-    first = [Corrected(0j, 0j, math.inf, math.inf) for _ in range(m)]
+    first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
             return False

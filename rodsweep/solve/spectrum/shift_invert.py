@@ -67,7 +67,7 @@ SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
 
 
-class Pattern(Protocol):
+class PencilPattern(Protocol):
     """Sparsity pattern and nodes of a pencil, as a solver needs them."""
 
     @property
@@ -109,7 +109,7 @@ class ShiftInvertSolver(ABC):
     mass: mass of the nodes without the clamp, (nodes,), for the first Krylov vector.
     """
 
-    def __init__(self, pattern: Pattern, mass: Array):
+    def __init__(self, pattern: PencilPattern, mass: Array):
         self.nodes = pattern.nodes
         n = pattern.unknowns
         package = sparse_package()

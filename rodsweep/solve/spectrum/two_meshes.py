@@ -91,7 +91,7 @@ def _scale(problem: TransverseProblem) -> float:
     return abs(problem.shift) + problem.rod.F**2
 
 
-class _Found(NamedTuple):
+class _MeshEigenvalues(NamedTuple):
     """Eigenvalues of a mesh, sorted as defined in `rodsweep.model`, (k,), and the index of each in SLEPc,
     (k,)."""
 
@@ -99,7 +99,7 @@ class _Found(NamedTuple):
     indices: NDArray[np.intp]
 
 
-def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
+def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
     """Eigenvalues of a mesh, sorted; more eigenvalues do not change the leading `modes` ones.
 
     Empty if the mesh is too coarse for twice as many eigenvalues.
@@ -116,9 +116,9 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _Found:
         complete = len(leading) == len(before) == modes
         by_rounding = TWO_MESHES.unchanged_by_rounding * _scale(problem)
         if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged, atol=by_rounding):
-            return _Found(raw[order], order)
+            return _MeshEigenvalues(raw[order], order)
         if 2 * wanted > mesh.unknowns // TWO_MESHES.unknowns_a_mode:
-            return _Found(raw[:0], order[:0])
+            return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
         wanted = 2 * wanted
 
@@ -148,7 +148,7 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
 
 
 def _spectrum(
-    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _Found, error: Array
+    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _MeshEigenvalues, error: Array
 ) -> Spectrum:
     """The outcome of a mesh. error: absolute error of each eigenvalue found, (k,)."""
     w = found.w

@@ -50,7 +50,7 @@ class NoRod(PointStatus):
 
 
 @dataclass(frozen=True, slots=True)
-class Uncovered:
+class UncoveredPoint:
     """Outcome of a point to which the rod model does not apply."""
 
     status: NoRod
@@ -153,14 +153,14 @@ class SkippingSolver:
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.coverage[index] == SLENDER:
             return solve()
-        return Uncovered(self._status(index), self.failures.get(index, "")), None
+        return UncoveredPoint(self._status(index), self.failures.get(index, "")), None
 
     def _status(self, index: int) -> NoRod:
         """Status of a point without a rod."""
         return next(status for status in NoRod if status == self.coverage[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
-        if not isinstance(outcome, Uncovered):
+        if not isinstance(outcome, UncoveredPoint):
             return self.inner.record(index, outcome)
         return self._empty | {STATUS.name: int(outcome.status)}
 

@@ -2,7 +2,7 @@
 
 import re
 from functools import partial
-from pathlib import Path as Place
+from pathlib import Path as CyclePlace
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def branch_of_auto(program, rod, setting, place):
     )
     run_auto(program, place, constants)
     lines = [(words[2], float(words[4])) for words in table_lines(place)]
-    pairs = re.findall(r"Multiplier +\d+ +(\S+) +(\S+) ", Place(place / "fort.9").read_text())
+    pairs = re.findall(r"Multiplier +\d+ +(\S+) +(\S+) ", CyclePlace(place / "fort.9").read_text())
     return lines, np.array([complex(*map(float, pair)) for pair in pairs[-unknowns:]])
 
 

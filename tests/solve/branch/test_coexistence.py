@@ -17,11 +17,11 @@ from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
-from rodsweep.solve.branch.bordered.condition import Condition
+from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.branch.branches import BranchStatus
-from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
+from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
@@ -69,7 +69,7 @@ def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2
 
 def test_a_cycle_on_the_last_value_of_a_row_counts():
     row = solve_coexistence(FIG_2C, request([40, 60, 70]), 64)
-    assert row.stable_states.tolist() == [Stable.straight, Stable.cycle, Stable.cycle]
+    assert row.stable_states.tolist() == [StableStates.straight, StableStates.cycle, StableStates.cycle]
 
 
 def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
@@ -82,12 +82,12 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
     row = solve_coexistence(FIG_2C, request([0, 40, 60, 70]), 64)
     assert row.status == CoexistenceStatus.branches_stopped
     assert "no further cycle" in row.message
-    nothing_beats_without_a_force = Stable.straight
+    nothing_beats_without_a_force = StableStates.straight
     assert row.stable_states.tolist() == [
         nothing_beats_without_a_force,
-        Stable.undecided,
-        Stable.cycle,
-        Stable.cycle,
+        StableStates.undecided,
+        StableStates.cycle,
+        StableStates.cycle,
     ]
 
 
@@ -96,7 +96,7 @@ def test_cycles_whose_multipliers_are_lost_to_rounding_but_for_their_size_are_un
     rod = Rod(F=0.0, k1=1844.51, k2=7.75717, gamma3=0.3, gamma1=0.602896)
     row = solve_coexistence(rod, replace(request([95, 100, 103]), cycle_accuracy=6e-4), 64)
     assert row.status == CoexistenceStatus.ok
-    assert row.stable_states.tolist() == [Stable.neither_known] * 3
+    assert row.stable_states.tolist() == [StableStates.neither_known] * 3
 
 
 def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(monkeypatch):
@@ -110,7 +110,11 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
 
     monkeypatch.setattr(coexistence, "solve_branches", on_the_circle)
     row = solve_coexistence(FIG_2C, request([40, 60, 70]), 64)
-    assert row.stable_states.tolist() == [Stable.straight, Stable.undecided, Stable.undecided]
+    assert row.stable_states.tolist() == [
+        StableStates.straight,
+        StableStates.undecided,
+        StableStates.undecided,
+    ]
     assert row.status == CoexistenceStatus.special_undecided
     assert "undecided at 2 places, F = 60 to 70" in row.message
 
@@ -151,7 +155,9 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     ahead = scale.moved(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
     truth = FoldFunction(own, border, small=False).value(fold.orbit)
-    other = Condition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10, NewtonWorkspace()).orbit
+    other = (
+        BorderCondition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10, NewtonWorkspace()).orbit
+    )
     function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, small=False)
     before = abs(function.value(fold.orbit) - truth)
     for _ in range(8):

@@ -15,7 +15,7 @@ from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.hopf.generalised import curve_criticality
 
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
@@ -31,19 +31,19 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     found = transitions(Path(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
     change = next(c for c in found.crossings if c.kind == kind)
     plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
-    sign = 0.0 if kind == Kind.hopf else -1.0
+    sign = 0.0 if kind == ChangeKind.hopf else -1.0
     return trace(sign, plane, (first.scaled(change.at), 0.5), change.frequency or change.growth_rate)
 
 
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
-    exact, found = (traced(build, Kind.hopf) for build in (Build(), ONES))
+    exact, found = (traced(build, ChangeKind.hopf) for build in (Build(), ONES))
     (fold,), (of_arm,) = exact.folds, found.folds
     assert of_arm.values[1] == pytest.approx(fold.values[1], rel=1e-13)
     assert abs(of_arm.values[0] - fold.values[0]) <= of_arm.errors[0] < 2e-7
     assert found.values[[0, -1]] == pytest.approx(exact.values[[0, -1]], rel=1e-10)
 
 
-@pytest.mark.parametrize("kind", [Kind.hopf, Kind.onset])
+@pytest.mark.parametrize("kind", [ChangeKind.hopf, ChangeKind.onset])
 def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
     curve = traced(Build(), kind)
     boundaries = [
@@ -57,13 +57,13 @@ def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
 
 def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     axes = PlaneAxis("F", 20.0, 500.0), PlaneAxis("k1", 350.0, 550.0)
-    (fold,) = traced(SWELLING, Kind.hopf, axes).folds
+    (fold,) = traced(SWELLING, ChangeKind.hopf, axes).folds
     assert fold.axis == 1
     k1, error = fold.values[1], 1e-6
 
     def hopfs(stiffness):
         found = transitions(Path(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0)
-        return [c.at for c in found.crossings if c.kind in (Kind.hopf, Kind.restabilization)]
+        return [c.at for c in found.crossings if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
 
     assert hopfs(k1 * (1 - error)) == []
     low, high = hopfs(k1 * (1 + error))
@@ -72,13 +72,13 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
 
 def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     axes = PlaneAxis("F", 40.0, 560.0), PlaneAxis("taper", 1.1, 1.8)
-    (fold,) = (f for f in traced(SWELLING, Kind.hopf, axes, k1=500.0).folds if f.axis == 1)
+    (fold,) = (f for f in traced(SWELLING, ChangeKind.hopf, axes, k1=500.0).folds if f.axis == 1)
     taper = fold.values[1]
     numbers = []
     for side in (-1e-5, 1e-5):
         rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, build=SWELLING)
         found = transitions(Path(rod, "F"), 0.0, 560.0)
-        numbers.append(sum(c.kind in (Kind.hopf, Kind.restabilization) for c in found.crossings))
+        numbers.append(sum(c.kind in (ChangeKind.hopf, ChangeKind.restabilization) for c in found.crossings))
     assert numbers == [2, 0]
 
 

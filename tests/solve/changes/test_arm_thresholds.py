@@ -19,11 +19,11 @@ from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum import followed_arms
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
-ACROSS = (Kind.hopf, Kind.hopf_reverse, Kind.restabilization)
+ACROSS = (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization)
 
 
 def across_the_axis(found):
@@ -33,21 +33,21 @@ def across_the_axis(found):
 @pytest.mark.parametrize(
     ("rod", "F_max", "expected"),
     [
-        (Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), 40.0, [(Kind.hopf, 15.4627583986)]),
+        (Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), 40.0, [(ChangeKind.hopf, 15.4627583986)]),
         (
             Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
             150.0,
-            [(Kind.hopf, 45.8967541917)],
+            [(ChangeKind.hopf, 45.8967541917)],
         ),
         (
             Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
             150.0,
-            [(Kind.hopf, 57.3983354479)],
+            [(ChangeKind.hopf, 57.3983354479)],
         ),
         (
             Rod(F=0.0, k1=500.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")),
             600.0,
-            [(Kind.hopf, 59.0162383065), (Kind.restabilization, 414.527760519)],
+            [(ChangeKind.hopf, 59.0162383065), (ChangeKind.restabilization, 414.527760519)],
         ),
         (Rod(F=0.0, k1=300.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")), 600.0, []),
     ],
@@ -119,7 +119,9 @@ def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_som
     whole = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
     assert whole.status == ThresholdStatus.ok
     expected = [c for c in whole.crossings if c.at < found.end]
-    assert [c.kind for c in found.crossings] == [c.kind for c in expected] == [Kind.onset, Kind.hopf]
+    assert (
+        [c.kind for c in found.crossings] == [c.kind for c in expected] == [ChangeKind.onset, ChangeKind.hopf]
+    )
     np.testing.assert_allclose([c.at for c in found.crossings], [c.at for c in expected], rtol=1e-11)
     assert found.transitions.unstable_at_end == 2
 
@@ -197,7 +199,7 @@ def test_errors_of_double_eigenvalues_hold_in_the_last_digit():
     build = Build("neo_hookean", "swelling", Profile((0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 1.0), rows))
     rod = Rod(F=0.0, k1=5800.0, k2=29.0, gamma3=0.17, build=build)
     found = solve_thresholds(rod, ThresholdsRequest(130.0, 1e-10, True, 16)).crossings
-    double = [crossing for crossing in found if crossing.kind in (Kind.onset, Kind.real_again)]
+    double = [crossing for crossing in found if crossing.kind in (ChangeKind.onset, ChangeKind.real_again)]
     exact = "11.144982346022727144", "79.813236894182175485", "125.31246511120310814"
     for crossing, at in zip(double, exact, strict=True):
         assert abs(Decimal(crossing.at) - Decimal(at)) <= Decimal(crossing.error) <= 1e-12 * crossing.at

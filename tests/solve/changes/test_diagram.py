@@ -16,7 +16,7 @@ from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.changes.boundary_problem import BoundaryEnd
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 
 FOLDS = [
     # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian
@@ -49,7 +49,7 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     row = solve_row(
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
-    hopf = next(c for c in row.changes.crossings if c.kind == Kind.hopf)
+    hopf = next(c for c in row.changes.crossings if c.kind == ChangeKind.hopf)
     curve = trace(0.0, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
     (fold,) = [f for f in curve.folds if f.axis == 1]
     assert fold.values[1] == pytest.approx(k1, rel=1e-12)

@@ -14,7 +14,7 @@ from rodsweep.solve.changes import along_path as transitions_module
 from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.changes.rows import classes
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
@@ -50,12 +50,12 @@ def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
 def test_the_partial_beam_flutters_where_the_compressed_filament_does():
     """k2 = inf, gamma3 = 0: F (1 - F/k1) = Fc (Sec. VIII), so both ends of the window are known."""
     filament = thresholds(inf, inf, 0.0)
-    Fc = next(c.at for c in filament.crossings if c.kind == Kind.hopf)
+    Fc = next(c.at for c in filament.crossings if c.kind == ChangeKind.hopf)
     assert Fc == pytest.approx(37.6954308403186, rel=1e-13)
     for k1 in (4 * Fc * 1.0001, 163.0, 400.0):
         root = np.sqrt(1 - 4 * Fc / k1)
         found = [c for c in thresholds(k1, inf, 0.0, 2 * k1).crossings if c.kind in (2, 4)]
-        assert [c.kind for c in found][:2] == [Kind.hopf, Kind.restabilization] or k1 == 400.0
+        assert [c.kind for c in found][:2] == [ChangeKind.hopf, ChangeKind.restabilization] or k1 == 400.0
         # Near the fold F moves like the root of what D can tell.
         assert found[0].at == pytest.approx(k1 / 2 * (1 - root), rel=1e-13 / root)
         assert found[-1].at == pytest.approx(k1 / 2 * (1 + root), rel=1e-13 / root)
@@ -71,7 +71,7 @@ def test_a_window_far_narrower_than_any_sampling_is_found(beyond):
     known = next(rod for rod in REFERENCE if rod["k1"] == "147.93")
     start, stop = (float(e["F"]) for e in known["events"] if e["kind"].startswith("hopf"))
     found = thresholds(FOLD + beyond, 1e4, 1e-4, accuracy=1e-8)
-    window = [c for c in found.crossings if c.kind in (Kind.hopf, Kind.restabilization)]
+    window = [c for c in found.crossings if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
     assert [c.unstable_after for c in window] == [2, 0]
     assert window[1].at - window[0].at == pytest.approx(
         (stop - start) * np.sqrt(beyond / (147.93 - FOLD)), rel=2e-3
@@ -133,8 +133,8 @@ def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, s
             for v in (crossing.at * 0.99, crossing.at * 1.01)
         )
         assert after == crossing.unstable_after
-        if crossing.kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
-            assert after - before == (2 if crossing.kind == Kind.hopf else -2)
+        if crossing.kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
+            assert after - before == (2 if crossing.kind == ChangeKind.hopf else -2)
 
 
 def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
@@ -178,7 +178,7 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
     kinds = [c.kind for c in found.crossings]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
-    assert kinds[:3] == [Kind.onset, Kind.restabilization, Kind.real_leads]
+    assert kinds[:3] == [ChangeKind.onset, ChangeKind.restabilization, ChangeKind.real_leads]
     assert found.proved
     onset, _, overtaken = found.crossings[:3]
     assert onset.growth_rate > 60
@@ -204,7 +204,7 @@ def test_a_narrow_window_of_oscillations_is_found(beyond):
     found = thresholds(k1, inf, 0.0, 60.0, accuracy=1e-8)
     half = k1 / 2 * np.sqrt(1 - 4 * start / k1)
     assert found.status == ThresholdStatus.ok
-    assert [c.kind for c in found.crossings] == [Kind.onset, Kind.real_again]
+    assert [c.kind for c in found.crossings] == [ChangeKind.onset, ChangeKind.real_again]
     assert found.crossings[1].at - found.crossings[0].at == pytest.approx(2 * half, rel=1e-3)
 
 
@@ -213,8 +213,8 @@ def test_a_pair_about_to_cross_the_axis_leads():
     rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
     found = transitions(Path(rod, "F"), -27.170544378578725, 100.0)
     kinds = [c.kind for c in found.crossings]
-    assert Kind.onset in kinds
-    assert Kind.real_leads in kinds
+    assert ChangeKind.onset in kinds
+    assert ChangeKind.real_leads in kinds
     motion, _ = classes(found, np.array([-4.95]))
     assert motion.tolist() == [1]
     assert found.proved
@@ -225,7 +225,7 @@ def test_no_change_outside_the_path_is_reported():
     hopf = 37.6559805452710668
     before = thresholds(1e4, 1e4, 1e-4, F_max=hopf * (1 - 1e-6))
     assert before.status == ThresholdStatus.ok
-    assert [c.kind for c in before.crossings] == [Kind.onset]
+    assert [c.kind for c in before.crossings] == [ChangeKind.onset]
     assert before.transitions.unstable_at_end == 0
     beyond = transitions(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
     assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
@@ -234,9 +234,9 @@ def test_no_change_outside_the_path_is_reported():
 @pytest.mark.parametrize("k1", [8e8, 1.6e8, 3.1e9])
 def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
-    hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == Kind.hopf)
+    hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == ChangeKind.hopf)
     found = transitions(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
-    assert [c.unstable_after for c in found.crossings if c.kind == Kind.hopf] == [2]
+    assert [c.unstable_after for c in found.crossings if c.kind == ChangeKind.hopf] == [2]
 
 
 @pytest.mark.parametrize("F_max", [1e-3, 0.3, 0.7])

@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rodsweep.solve.continuation.follower import CurveStop, StepControl, Stepped, crossed, follow, zero_along
+from rodsweep.solve.continuation.follower import (
+    CurveStop,
+    StepControl,
+    StepResult,
+    crossed,
+    follow,
+    zero_along,
+)
 from rodsweep.solve.point import Unsolvable
 
 STEPS = StepControl(first=0.01, longest=0.2, shortest=1e-6, turn=0.1, sharpest=0.3, growth=2.0, most=500)
@@ -48,7 +55,7 @@ class Ellipse:
             raise Unsolvable("no point of the ellipse is near")
         if self.gap[0] < self.angle(point) < self.gap[1]:
             raise Unsolvable("the curve has a gap")
-        return Stepped(point, float(np.linalg.norm(point - guess)), float(self.tangent(point) @ tangent))
+        return StepResult(point, float(np.linalg.norm(point - guess)), float(self.tangent(point) @ tangent))
 
     def margins(self, point):
         return np.array([point[0] - self.least])
@@ -113,7 +120,7 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
 
 def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine():
     above = np.nextafter(1.0, 2.0)
-    straight, back = (Stepped(None, 0.0, cosine) for cosine in (above, -above))
+    straight, back = (StepResult(None, 0.0, cosine) for cosine in (above, -above))
     assert STEPS.accepted(straight) is straight
     assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.growth
     with pytest.raises(Unsolvable, match="too large an angle"):

@@ -23,7 +23,7 @@ from rodsweep.model.material.response import LocalSection, stress
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -348,7 +348,7 @@ def test_inextensible_cones_of_every_law_are_one(build):
 def test_a_cone_begins_to_beat_where_its_thresholds_say():
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     found = solve_thresholds(rod, ThresholdsRequest(40.0, 1e-10, True, 8))
-    hopf = next(c.at for c in found.crossings if c.kind == Kind.hopf)
+    hopf = next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
     assert hopf == pytest.approx(15.4627583986, rel=1e-11)  # physics: by collocation
     for distance, status in ((-1e-4, "straight"), (1e-4, "cycle")):
         assert solve_cycle(replace(rod, F=hopf * (1 + distance)), request(1e-6)).status.name == status

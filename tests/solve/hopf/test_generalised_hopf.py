@@ -302,7 +302,7 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
             x = 0.5 + np.copysign(np.sqrt((0.8 - z) / 2), x - 0.5)
         v = np.array([x, 0.5, 0.8 - 2 * (x - 0.5) ** 2, h])
         point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
-        return bautin_curves._Place(v, point)
+        return bautin_curves._CurvePoint(v, point)
 
     monkeypatch.setattr(BautinSpace, "solved", on_parabola)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
@@ -330,7 +330,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
         x, z = (np.copysign(other, x), z) if held == 2 else (x, np.copysign(other, z))
         v = np.array([0.5 + x, 0.5, 0.5 + z, guess[3]])
         point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
-        return bautin_curves._Place(v, point)
+        return bautin_curves._CurvePoint(v, point)
 
     monkeypatch.setattr(BautinSpace, "solved", on_circle)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))

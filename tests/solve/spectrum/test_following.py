@@ -11,7 +11,7 @@ from surveyed import RODS
 
 from rodsweep.determinant import moving_line
 from rodsweep.determinant.certificate.winding_number import count_right_of, stepped_change
-from rodsweep.determinant.moving_line import End, free_of_zeros, none_crosses
+from rodsweep.determinant.moving_line import IntervalEnd, free_of_zeros, none_crosses
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum import stretch as stretch_of
@@ -78,7 +78,7 @@ def random_strips(count: int):
             rod = whole.rod(int(at))
             w = eigenvalues(rod)
             at_line = float(w[gap - 1].real + w[gap].real) / 2
-            ends.append(End(float(whole.coordinates[at]), rod.coefficients, at_line))
+            ends.append(IntervalEnd(float(whole.coordinates[at]), rod.coefficients, at_line))
             counts.append(count_right_of(at_line, rod).number if math.isfinite(at_line) else None)
         if None not in counts and max(end.line for end in ends) < 0 and ends[0].p != ends[1].p:
             count -= 1
@@ -127,7 +127,7 @@ def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
 @pytest.mark.parametrize("half", [(-1.0, 1.0), (1.0, -1.0), (0.0, 1.0), (1.0, math.nan)])
 def test_rectangles_without_an_inside_are_refused(half):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
-    at = End(30.0, rod.coefficients, -20.0)
+    at = IntervalEnd(30.0, rod.coefficients, -20.0)
     with pytest.raises(ValueError, match="half-widths of a rectangle must be above 0"):
         free_of_zeros(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
 
@@ -140,7 +140,7 @@ def test_what_is_proved_has_no_zero_inside():
         p, at_line, y = rng.uniform(5, 60), -(10 ** rng.uniform(0, 5)), 10 ** rng.uniform(0, 5)
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
-        at = End(p, path.at(p).coefficients, at_line)
+        at = IntervalEnd(p, path.at(p).coefficients, at_line)
         if free_of_zeros(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):

@@ -15,7 +15,7 @@ from ....results.file.view import View
 from ..layout.fitting import fit
 from ..style import FIRST, SECOND
 from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
-from .selection import SHAPES, Selection, StoredCycle, chosen_cycles
+from .selection import SHAPES, CycleSelection, StoredCycle, chosen_cycles
 
 FILMS = (".gif", ".mp4")
 """Suffixes of animations."""
@@ -52,7 +52,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     return f"one period in {frames} frames" + selection.left_out
 
 
-def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
+def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
     """Figure of an animation in its final layout, with the arms at the start of their periods."""
     cycles = selection.cycles
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")

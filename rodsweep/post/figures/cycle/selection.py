@@ -93,7 +93,7 @@ def in_tex(number: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class CycleSelection:
     """Cycles of a figure."""
 
     cycles: list[StoredCycle]
@@ -103,7 +103,7 @@ class Selection:
     """Clause of the message on cycles without room; empty if all are shown."""
 
 
-def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
+def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> CycleSelection:
     """Cycles at the points chosen by the user, else the first cycles; InputError where the file has none."""
     _refuse_missing(view, needs)
     words = view.outcomes
@@ -115,7 +115,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Se
     return _selection(view, points, words == "cycle", "cycle")
 
 
-def chosen_traces(view: View, points: Sequence[int]) -> Selection:
+def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
     """Motions of the points chosen by the user, else the first stored ones; InputError without a motion."""
     _refuse_missing(view, TRACE)
     _refuse_bad_points(view, points)
@@ -134,7 +134,7 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
 
 
-def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> Selection:
+def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> CycleSelection:
     """Selection of points by number, else of the first drawable ones; drawable: shape (points,)."""
     available = np.flatnonzero(drawable)
     words = view.outcomes
@@ -156,7 +156,7 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     left_out = ""
     if not points and available.size > len(cycles):
         left_out = f", the first {len(cycles)} of {available.size} {what}s (--point chooses others)"
-    return Selection(cycles, heading(view, shared), left_out)
+    return CycleSelection(cycles, heading(view, shared), left_out)
 
 
 def _refuse_bad_points(view: View, points: Sequence[int]) -> None:

@@ -20,10 +20,10 @@ from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
 from ...layouts import INCREASES
-from ...layouts.variables import Increase, Layout
+from ...layouts.variables import IncreaseRule, Layout
 from ..creation import Plan
 from ..points import stored_points
-from ..validation import Header
+from ..validation import ResultHeader
 from .identity import config_difference
 
 SAME_VALUE = 4 * np.finfo(float).eps
@@ -33,7 +33,7 @@ Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class StoredPlaces:
     """Places of the stored points among the new points: on each axis of a grid, or in a list."""
 
     shape: tuple[int, ...]
@@ -57,8 +57,8 @@ class Extension:
     path: Path
     old: Layout
     new: Layout
-    places: Places
-    grown: tuple[tuple[Increase, Any], ...]
+    places: StoredPlaces
+    grown: tuple[tuple[IncreaseRule, Any], ...]
     """(option, former value) for every increased option."""
     nothing_stays: bool
     """Whether every stored point is computed again."""
@@ -89,7 +89,7 @@ class Extension:
         return found
 
 
-def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
+def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
     """Extension of a stored file with the given points to a larger plan.
 
     Raises InputError, naming the difference, if the plan lacks anything that the file was made for.
@@ -121,7 +121,7 @@ def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
     return Extension(header.path, header.layout, plan.layout, places, tuple(grown), line_grew)
 
 
-def _refuse(header: Header, difference: str) -> None:
+def _refuse(header: ResultHeader, difference: str) -> None:
     """Raises InputError for a difference, which no extension can bridge."""
     if difference:
         raise InputError(
@@ -130,7 +130,7 @@ def _refuse(header: Header, difference: str) -> None:
         )
 
 
-def _places(header: Header, old: Points, plan: Plan) -> Places:
+def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPlaces:
     """Places of the stored points in the plan; raises InputError if a stored point is not in the plan."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
@@ -140,7 +140,7 @@ def _places(header: Header, old: Points, plan: Plan) -> Places:
         ]
         _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))
     if not old.axes:
-        return Places(old.shape, new.shape, (_places_in_list(header, old, new),))
+        return StoredPlaces(old.shape, new.shape, (_places_in_list(header, old, new),))
     places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
@@ -150,10 +150,10 @@ def _places(header: Header, old: Points, plan: Plan) -> Places:
         before = stretches_along_longest_axis(old.shape, old.moved)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
-    return Places(old.shape, new.shape, tuple(places))
+    return StoredPlaces(old.shape, new.shape, tuple(places))
 
 
-def _places_on_axis(header: Header, name: str, old: Array, new: Array) -> Indices:
+def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
     """New place of every old value on an axis, (n,), or -1 where rounding has changed the value.
 
     Raises InputError for an old value that is not on the new axis.
@@ -185,7 +185,7 @@ def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
     return same_length & ~moved[at // STRETCH_POINTS]
 
 
-def _places_in_list(header: Header, old: Points, new: Points) -> Indices:
+def _places_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
     """New place of every old point in the list, (n,); raises InputError for a point not listed."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]

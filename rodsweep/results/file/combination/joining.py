@@ -23,8 +23,8 @@ from ..content import SEAL
 from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
 from ..provenance import LONGEST_ATTRIBUTE, kernels_of
-from ..validation import Header
-from .extension import SAME_VALUE, Places
+from ..validation import ResultHeader
+from .extension import SAME_VALUE, StoredPlaces
 from .identity import config_difference
 
 OF_ONE_FILE = (
@@ -42,10 +42,10 @@ class JoinedFile:
     """Plan of the joined file, and the places of the points of each source."""
 
     plan: Plan
-    sources: Sequence[Header]
-    places: Sequence[Places]
+    sources: Sequence[ResultHeader]
+    places: Sequence[StoredPlaces]
 
-    def write(self, path: Path) -> list[Header]:
+    def write(self, path: Path) -> list[ResultHeader]:
         """Writes the points of all sources into a file of the plan; returns the sources that gave points.
 
         Raises InputError if two sources disagree about a point.
@@ -78,7 +78,9 @@ class JoinedFile:
                     both = " and ".join(str(source.path) for source in pair)
                     raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
 
-    def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
+    def _is_rounding(
+        self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
+    ) -> bool:
         """Whether two values differ by rounding only, as results of different BLAS kernels or of different
         stretches do.
         """
@@ -98,7 +100,7 @@ def _place(points: Points, index: int) -> str:
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
-def joined_file_of(sources: Sequence[Header], planner: Planner) -> JoinedFile:
+def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedFile:
     """Joined file of sources with different points; raises InputError if they cannot be joined."""
     first, *others = sources
     meant = config_of(first.config).meaning
@@ -127,7 +129,7 @@ def joined_file_of(sources: Sequence[Header], planner: Planner) -> JoinedFile:
     return JoinedFile(_with_attributes(plan, first, config), sources, places)
 
 
-def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
+def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     """(grid of all values on every axis, places of each grid in it)."""
     axes = []
     for name in grids[0].names:
@@ -145,7 +147,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
     for grid in grids:
         each = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
         covered[np.ix_(*each)] = True
-        places.append(Places(grid.shape, whole.shape, tuple(each)))
+        places.append(StoredPlaces(grid.shape, whole.shape, tuple(each)))
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
@@ -155,7 +157,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
     return whole, places
 
 
-def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[Places]]:
+def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPlaces]]:
     """(points of all lists, each point once, list by list; places of each list in the joined list)."""
     known: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
@@ -165,10 +167,10 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[Places]]:
         whole[place] = each
     joined = Points(lists[0].names, tuple(np.ascontiguousarray(whole.T)), is_grid=False)
     shapes = (points.shape for points in lists)
-    return joined, [Places(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)]
+    return joined, [StoredPlaces(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)]
 
 
-def _joined_config(first: Header, meant: dict[str, Any], points: Points) -> Config:
+def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
     """Config of the first file with the axes of the joined points; options are stored by their meaning."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
@@ -193,7 +195,7 @@ def _axis(own: Axis, values: Array) -> Axis:
     return Axis(values=tuple(values.tolist()))
 
 
-def _refuse_broken_chains(sources: Sequence[Header], grids: Sequence[Points], plan: Plan) -> None:
+def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: Plan) -> None:
     """Raises InputError if chains of the joined file would consist of pieces from several files."""
     if not plan.chains:
         return
@@ -206,7 +208,7 @@ def _refuse_broken_chains(sources: Sequence[Header], grids: Sequence[Points], pl
             )
 
 
-def _with_attributes(plan: Plan, first: Header, config: Config) -> Plan:
+def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     """The plan with the attributes and status flags of the first file, and the text of the joined config."""
     text = text_of(config)
     resolved = canonical(config)

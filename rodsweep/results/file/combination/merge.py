@@ -15,10 +15,10 @@ from ....errors import InputError
 from ....sweep.points.ranges import total
 from ...run.journal import JOURNALS, journal_directory
 from ..creation import Plan, add_variables, create_file
-from ..exchange import Exchange, disk_refusals
+from ..exchange import FileReplacement, disk_refusals
 from ..points import missing_ranges, parameters_of, points_to_add, write_points
 from ..provenance import KERNELS, kernels_sentence, merged_history, now
-from ..validation import Header, read_header
+from ..validation import ResultHeader, read_header
 from .joining import JoinedFile, Planner, joined_file_of
 
 
@@ -43,7 +43,7 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
     """
     sources = _opened(paths)
     with disk_refusals(output):
-        exchange = Exchange(output)
+        exchange = FileReplacement(output)
     try:
         with disk_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # the file may have appeared while another run held the lock
@@ -55,7 +55,7 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
         exchange.close()
 
 
-def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> MergeResult:
+def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: Planner) -> MergeResult:
     """Replaces the output by the first source with the additional points of all sources."""
     first = sources[0]
     plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
@@ -67,7 +67,7 @@ def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> M
         return _finished(copy, plan, gave)
 
 
-def _join(exchange: Exchange, joint: JoinedFile) -> MergeResult:
+def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
     """Replaces the output by a joined file with the points of all sources."""
     with exchange.replacing(None) as copy:
         create_file(copy, joint.plan)
@@ -75,7 +75,7 @@ def _join(exchange: Exchange, joint: JoinedFile) -> MergeResult:
         return _finished(copy, joint.plan, gave or joint.sources[:1])
 
 
-def _finished(copy: Path, plan: Plan, gave: Sequence[Header]) -> MergeResult:
+def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
     """Stores the history of the points in the merged file, and completes a file without missing points."""
     left = missing_ranges(copy)
     finished = not left and not plan.layout.needs_all_points
@@ -89,7 +89,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[Header]) -> MergeResult:
     return MergeResult(points - total(left), total(left), finished, kernels_sentence(history[KERNELS]))
 
 
-def _opened(paths: Sequence[Path]) -> list[Header]:
+def _opened(paths: Sequence[Path]) -> list[ResultHeader]:
     """Headers of the sources; raises InputError for a file with points in its journal."""
     files = []
     for path in paths:
@@ -101,7 +101,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
     return files
 
 
-def _is_continued(first: Header, other: Header) -> bool:
+def _is_continued(first: ResultHeader, other: ResultHeader) -> bool:
     """Whether two files have the same fingerprint; raises InputError if only the layouts differ."""
     if first.fingerprint != other.fingerprint:
         return False

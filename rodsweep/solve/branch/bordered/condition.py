@@ -11,7 +11,7 @@ import numpy as np
 from ....arrays import Array
 from ....watch import report
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import ORBIT_NEWTON, Converged, relative_change
+from ...orbit.newton import ORBIT_NEWTON, ConvergedOrbit, relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...point import Unsolvable
@@ -20,7 +20,7 @@ from .scale import Scale
 
 
 @dataclass(frozen=True, eq=False)
-class Condition:
+class BorderCondition:
     """The equation that closes the system: border . place, (3,), in a scale, has a prescribed value."""
 
     scale: Scale
@@ -28,7 +28,7 @@ class Condition:
     value: float
 
     @classmethod
-    def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "Condition":
+    def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "BorderCondition":
         """Condition at an arc length along a border, (3,), from an orbit."""
         return cls(scale, border, float(border @ scale.place(orbit)) + length)
 
@@ -38,7 +38,7 @@ class Condition:
 
     def solved(
         self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf
-    ) -> Converged:
+    ) -> ConvergedOrbit:
         """The cycle near an orbit; raises Unsolvable.
 
         tolerance: relative error of the orbit. workspace: memory of the matrices. distance: largest relative
@@ -59,7 +59,7 @@ class Condition:
             # The next step would be smaller by the contraction; it is predicted instead of made.
             settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON.new_matrix_ratio
             if (settled or change <= tolerance) and off <= distance:
-                return Converged(orbit, matrix, off)
+                return ConvergedOrbit(orbit, matrix, off)
             if settled or change <= tolerance or (off > change and rate > ORBIT_NEWTON.new_matrix_ratio):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 off = 0.0
@@ -70,7 +70,9 @@ class Condition:
                 last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; last step {change:.0e}")
 
-    def on(self, mesh: OrbitMesh, found: Converged, tolerance: float, distance: float = np.inf) -> Converged:
+    def on(
+        self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
+    ) -> ConvergedOrbit:
         """A known cycle solved on another mesh; raises Unsolvable. Other arguments as in `solved`."""
         return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 

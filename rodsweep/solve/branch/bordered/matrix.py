@@ -19,7 +19,7 @@ from ...orbit.matrix.phase import phase, phase_change, phase_row
 from ...orbit.matrix.right_sides import right_sides
 from ...orbit.matrix.substitution import substitute
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
-from ...orbit.newton import Converged
+from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from .scale import Scale, deflection_row
 
@@ -171,7 +171,7 @@ class BorderedMatrix:
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 
-def bordered(found: Converged) -> BorderedMatrix:
+def bordered(found: ConvergedOrbit) -> BorderedMatrix:
     """The bordered matrix of an orbit solved on a branch; TypeError if the orbit has another matrix."""
     if not isinstance(found.matrix, BorderedMatrix):
         raise TypeError("the orbit was solved without the parameter as an unknown")

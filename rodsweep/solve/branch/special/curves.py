@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....watch import SolvePosition, report
 from ....wording import counted
-from ...continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
+from ...continuation.follower import Curve, CurveStop, StepControl, StepResult, follow, zero_along
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
@@ -107,7 +107,7 @@ class CurveLimits:
             lambda: SolvePosition(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
         )
 
-    def step(self, behind: Sequence[OnCurve], length: float) -> Stepped[OnCurve]:
+    def step(self, behind: Sequence[OnCurve], length: float) -> StepResult[OnCurve]:
         """The point a step ahead; raises Unsolvable."""
         last = behind[-1]
         if len(behind) == 1:
@@ -128,10 +128,10 @@ class CurveLimits:
         # Prediction and point must live on one mesh to be compared.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
-            return Stepped(point, min(off, CURVE_STEPS.far), 1.0)
+            return StepResult(point, min(off, CURVE_STEPS.far), 1.0)
         one = last.step_from(behind[-2])
         other = point.step_from(last)
-        return Stepped(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
+        return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: OnCurve) -> CycleFamily:
         return CycleFamily.about(self.kind, self.rows, point, self.workspace)

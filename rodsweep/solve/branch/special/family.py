@@ -22,12 +22,12 @@ from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
-from ..bordered.condition import Condition, moved
+from ..bordered.condition import BorderCondition, moved
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
 from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
 from .augmented.nearby_cycles import NearbyCycles
-from .on_curve import ACROSS_CURVE, Across, CurveErrors, OnCurve, with_parameters
+from .on_curve import ACROSS_CURVE, CurveErrors, NormalDerivatives, OnCurve, with_parameters
 from .point import SpecialKind
 
 
@@ -74,7 +74,12 @@ class CycleFamily:
         return TorusFunction(matrix)
 
     def nearest(
-        self, start: Orbit, place: float, across: Array, rates: Across | None = None, same: bool = False
+        self,
+        start: Orbit,
+        place: float,
+        across: Array,
+        rates: NormalDerivatives | None = None,
+        same: bool = False,
     ) -> OnCurve:
         """The point of the curve near an orbit, searched across the curve in a direction, (2,). Raises
         Unsolvable.
@@ -97,7 +102,7 @@ class CycleFamily:
         place: float,
         across: Array,
         slope: float = 0.0,
-        rates: Across | None = None,
+        rates: NormalDerivatives | None = None,
         before: OnCurve | None = None,
     ) -> OnCurve:
         """`nearest` with an error estimate, on a finer mesh if necessary; raises Unsolvable.
@@ -136,7 +141,7 @@ class _SecantAcross:
         start: Orbit,
         place: float,
         direction: Array,
-        rates: Across | None,
+        rates: NormalDerivatives | None,
         same: bool,
     ) -> None:
         self.family = family
@@ -186,11 +191,11 @@ class _SecantAcross:
         self.orbit = family.placed(self.orbit, self.place + self.at * float(self.direction[1]))
         slope = abs(rates.test) if rates else 1.0
         enough = AUGMENTED.tolerance if rates else AUGMENTED.function_share * ACROSS_CURVE.first_secant
-        condition = Condition(family.scale, family.border, length)
+        condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
         return _CycleAcross(self.orbit, self.near.function.vectors, test, self.at)
 
-    def _rates_since(self, present: _CycleAcross) -> Across | None:
+    def _rates_since(self, present: _CycleAcross) -> NormalDerivatives | None:
         """Derivatives across the curve from the last two cycles; None for a single cycle or too small a
         distance."""
         before = self.before
@@ -206,13 +211,15 @@ class _SecantAcross:
         other = present.orbit
         change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
         orbit = np.append(other.values - one.values, change) / span
-        return Across(self.direction, (present.test - before.test) / span, orbit, mesh_of(one), abs(span))
+        return NormalDerivatives(
+            self.direction, (present.test - before.test) / span, orbit, mesh_of(one), abs(span)
+        )
 
-    def _moved(self, step: float, rates: Across) -> Orbit:
+    def _moved(self, step: float, rates: NormalDerivatives) -> Orbit:
         """The last cycle moved by a step across the curve."""
         return moved(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
 
-    def _point(self, step: float, rates: Across) -> OnCurve:
+    def _point(self, step: float, rates: NormalDerivatives) -> OnCurve:
         """The point of the curve at a short step across from the last cycle."""
         family = self.family
         matrix = self.near.matrix

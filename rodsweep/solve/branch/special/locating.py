@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ...continuation.follower import zero_along
 from ...orbit.measures import CyclePath
-from ...orbit.newton import Converged
+from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ...point import Unsolvable
@@ -24,7 +24,7 @@ from ..bordered.scale import Scale
 from .augmented.functions import TorusFunction, correct_fully
 from .least_stretch import least_stretch
 from .point import LOCATING, SpecialKind, SpecialPoint
-from .segment import Segment
+from .segment import BranchSegment
 
 
 def through_minus_one(orbit: Orbit) -> SpecialKind:
@@ -32,7 +32,7 @@ def through_minus_one(orbit: Orbit) -> SpecialKind:
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
 
 
-def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> float:
+def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
     """The test function of a kind, zero at its special points, at the cycle just found; raises Unsolvable."""
     if kind == SpecialKind.fold:
         return segment.rises()
@@ -75,7 +75,7 @@ def located(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) 
     of the two cycles."""
     aim = min(accuracy, LOCATING.accuracy)
     try:
-        segment = Segment(start, end)
+        segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _enclosed(kind, segment)
         mesh = end.calibration.planned_for_parameter(LOCATING.first_mesh_share * aim)
@@ -164,7 +164,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
     )
 
 
-def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
+def _enclosed(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
     """(approximate zero of the test function, its slope), bracketed by the ends of the segment.
 
     Raises Unsolvable.
@@ -186,7 +186,9 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
     return at - values[at] / slope, slope
 
 
-def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Orbit, float]:
+def _zero(
+    kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
+) -> tuple[float, Orbit, float]:
     """(zero of the test function near a guess, the cycle there, the slope of the test function).
 
     slope: approximate, as on a coarser mesh. Raises Unsolvable.

@@ -61,7 +61,7 @@ ACROSS_CURVE = AcrossCurveSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Across:
+class NormalDerivatives:
     """Derivatives of a family's cycles by the length across its curve.
 
     direction: unit direction across, (along the branch, along the rows), (2,). test: derivative of the test
@@ -134,7 +134,7 @@ class OnCurve:
     row: float
     error: float = nan
     errors: CurveErrors | None = None
-    rates: Across | None = None
+    rates: NormalDerivatives | None = None
 
     @property
     def tip_y_max(self) -> float:

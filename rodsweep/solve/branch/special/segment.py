@@ -1,7 +1,7 @@
 """The part of a branch between two of its cycles, on which a special point is located."""
 
 from ....arrays import Array
-from ...orbit.newton import Converged
+from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ..arc import ArcPoint, arc_between
@@ -11,7 +11,7 @@ from .augmented.functions import FoldFunction, correct_fully
 from .point import LOCATING
 
 
-class Segment:
+class BranchSegment:
     """The part of a branch from one cycle to the next, solved on any mesh."""
 
     def __init__(self, start: ArcPoint, end: ArcPoint) -> None:
@@ -32,7 +32,7 @@ class Segment:
         self.mesh = mesh
         self._known = None
 
-    def at(self, length: float) -> Converged:
+    def at(self, length: float) -> ConvergedOrbit:
         """The cycle at a length from `start`, with a matrix nearby; raises Unsolvable."""
         if self._known is None:
             start = self.mesh.carry(self.predicted(length))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....arrays import Complex
 from ...orbit.measures import CyclePath, Measures
-from ...orbit.newton import Converged
+from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ..status import CycleStatus
 from .calibration import Calibration
@@ -22,7 +22,7 @@ class RefinedCycle:
     modulus. trivial_error: distance of the trivial multiplier from 1.
     """
 
-    fine: Converged
+    fine: ConvergedOrbit
     calibration: Calibration
     path: CyclePath
     measures: Measures

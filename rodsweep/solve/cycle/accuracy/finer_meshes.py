@@ -12,7 +12,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
-from ...orbit.newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
+from ...orbit.newton import ConvergedOrbit, at_orbit, multiplier_change, multipliers_of, newton
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import path_differences
 from .calibration import Calibration, calibration_of
@@ -44,7 +44,7 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
 
 
-def calibrated(found: Converged, accuracy: float, before: Calibration | None) -> Calibration:
+def calibrated(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
     """Calibration of the mesh of an orbit; raises Unsolvable.
 
     before: calibration at a nearby orbit, on any mesh, with the rates at which errors fall; None to take the
@@ -66,7 +66,7 @@ def calibrated(found: Converged, accuracy: float, before: Calibration | None) ->
 class ComparedCycle:
     """Quantities of a cycle that are compared between meshes."""
 
-    def __init__(self, found: Converged) -> None:
+    def __init__(self, found: ConvergedOrbit) -> None:
         self._found = found
         self.orbit = found.orbit
         self.path = CyclePath(found.orbit)

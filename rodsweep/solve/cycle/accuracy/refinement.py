@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, measures_of
-from ...orbit.newton import ORBIT_NEWTON, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.newton import ORBIT_NEWTON, ConvergedOrbit, at_orbit, linearised, multipliers_of, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
@@ -25,7 +25,7 @@ from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
 from .refinement_settings import REFINEMENT
 
 
-def with_calibrated_errors(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
+def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
     """A cycle with the errors of its calibrated mesh."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
@@ -121,7 +121,7 @@ def _predicted_cycle(
 
 
 def calibrated_cycle(
-    found: Converged, before: Calibration | None, accuracy: float, parameter: str | None
+    found: ConvergedOrbit, before: Calibration | None, accuracy: float, parameter: str | None
 ) -> RefinedCycle:
     """A cycle with measured errors, on finer meshes if necessary; raises Unsolvable.
 
@@ -146,7 +146,7 @@ def calibrated_cycle(
     return best
 
 
-def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
+def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None) -> ConvergedOrbit:
     """The orbit on another mesh, and a matrix made at this orbit, with multipliers exact to rounding."""
     # `linearised` makes one more step
     # The last step is quadratic, so half of the digits suffice before it.
@@ -155,7 +155,7 @@ def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | Non
     return linearised(of_same_size(solution, found.orbit.size), parameter)
 
 
-def of_same_size(found: Converged, size: float) -> Converged:
+def of_same_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solution, if near in size to the start's `size`; raises Unsolvable otherwise."""
     if not REFINEMENT.min_size * size < found.orbit.size < REFINEMENT.max_size * size:
         raise Unsolvable("Newton's method converged to another motion than the one at its start")

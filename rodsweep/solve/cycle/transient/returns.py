@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.beam import Beam
 from ....wording import counted
-from ...motion.integrator import Ending, RunLimit, Trajectory
+from ...motion.integrator import RunEnding, RunLimit, Trajectory
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,16 +67,16 @@ class EarlyEnd(NamedTuple):
 
 def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     """The early end of a run, `returns` returns after the start; None if the run is complete."""
-    if run.ending in (Ending.reached, Ending.stopped):
+    if run.ending in (RunEnding.reached, RunEnding.stopped):
         return None
-    if run.ending == Ending.left_the_model:
+    if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
         return EarlyEnd(True, f"h1 = {h1:.3g} somewhere, {returns} returns from the start")
     end = run.states[-1]
     if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
         why = f"the energy of a section is not convex, {returns} returns from the start"
         return EarlyEnd(True, why)
-    why = "too many steps" if run.ending == Ending.too_many_steps else "no step succeeds"
+    why = "too many steps" if run.ending == RunEnding.too_many_steps else "no step succeeds"
     return EarlyEnd(False, run.message or why)
 
 

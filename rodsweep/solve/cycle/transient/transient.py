@@ -17,7 +17,7 @@ from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
 from ....watch import SolvePosition, report
 from ....wording import counted
-from ...motion.integrator import INTEGRATOR, Ending, Trajectory, integrator, relaxed
+from ...motion.integrator import INTEGRATOR, RunEnding, Trajectory, integrator, relaxed
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import Unsolvable
@@ -225,7 +225,7 @@ class Transient:
         # The run is shorter than the period to be cut from it: several returns may make one period.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
-            if run.ending != Ending.reached:
+            if run.ending != RunEnding.reached:
                 return None
         orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
         try:

@@ -17,7 +17,7 @@ from .elimination import eliminate
 from .inversion import INVERSION, invert
 from .multipliers import nonzero_eigenvalues
 from .phase import phase, phase_change, phase_row
-from .right_sides import Along, residuals, right_sides, variation_sides
+from .right_sides import ParameterDerivatives, residuals, right_sides, variation_sides
 from .substitution import reduce, substitute, to_end
 from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
@@ -35,7 +35,11 @@ class Linearisation:
         self._memory = MatrixMemory(workspace, orbit.intervals, orbit.stages, orbit.form.unknowns)
         p = orbit.semidiscrete
         factors = self._memory.factors
-        along = Along(NO_CHANGE, p.mass) if parameter is None else change_along(orbit.form, parameter)
+        along = (
+            ParameterDerivatives(NO_CHANGE, p.mass)
+            if parameter is None
+            else change_along(orbit.form, parameter)
+        )
         count = 2 if parameter is None else 3
         steps, self._by_period = linearise(orbit.values, count, along, p, factors)
         self.step = steps[0]
@@ -66,15 +70,15 @@ NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_SIDE_CHANGE)
 """Placeholder for no change of the rod, which compiled code never reads."""
 
 
-def change_along(form: StressForm, name: str) -> Along:
+def change_along(form: StressForm, name: str) -> ParameterDerivatives:
     """Change of a rod and of its mass, (n,), with the coordinate of a parameter."""
     change = form.change(name)
-    return Along(change, form.mass_of(change))
+    return ParameterDerivatives(change, form.mass_of(change))
 
 
 @compiled_for_vectors
 def linearise(
-    values: Array, count: int, along: Along, p: Semidiscrete, factors: Factors
+    values: Array, count: int, along: ParameterDerivatives, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at an orbit, values (N,), into the factors.
 
@@ -180,7 +184,12 @@ def reduced_residuals(
 
 @compiled_for_vectors
 def reduced_variations(
-    values: Array, rod: Semidiscrete, along: Along, variations: Array, p: Semidiscrete, factors: Factors
+    values: Array,
+    rod: Semidiscrete,
+    along: ParameterDerivatives,
+    variations: Array,
+    p: Semidiscrete,
+    factors: Factors,
 ) -> tuple[Array, Array]:
     """`variation_sides` of an orbit's values for a rod, reduced by the matrix of a nearby rod p.
 

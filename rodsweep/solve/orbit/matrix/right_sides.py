@@ -13,7 +13,7 @@ from ..semidiscrete import Semidiscrete
 from .substitution import add_products
 
 
-class Along(NamedTuple):
+class ParameterDerivatives(NamedTuple):
     """Derivatives of the rod's arrays and of its mass, (n,), with respect to a parameter."""
 
     change: NodalChange
@@ -75,7 +75,7 @@ def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> No
 
 @compiled_for_vectors
 def right_sides(
-    points: Array, duration: float, p: Semidiscrete, along: Along, V: Array, columns: Array
+    points: Array, duration: float, p: Semidiscrete, along: ParameterDerivatives, V: Array, columns: Array
 ) -> None:
     """Right sides of Newton's system, (K, s, columns, n), and V of the stages, (K, s, 3, nodes + 1).
 
@@ -105,7 +105,9 @@ def right_sides(
 
 
 @compiled_for_vectors
-def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Array, columns: Array) -> None:
+def variation_sides(
+    values: Array, p: Semidiscrete, along: ParameterDerivatives, variations: Array, columns: Array
+) -> None:
     """Derivatives of an orbit's `residuals` along variations, into columns, (K, s, columns, n).
 
     values: values of the orbit, (N,). variations: variations of the values and of the parameter of `along`,

@@ -12,7 +12,7 @@ from ....orbit.matrix.workspace import NewtonWorkspace
 from ....orbit.newton import ORBIT_NEWTON, relative_change
 from ....orbit.orbit import Orbit
 from ....point import Unsolvable
-from ...bordered.condition import Condition, moved
+from ...bordered.condition import BorderCondition, moved
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import Scale
 from .functions import AUGMENTED, FoldFunction, TorusFunction
@@ -62,7 +62,9 @@ class NearbyCycles:
         starts."""
         self.function.start_from(vectors)
 
-    def solved(self, orbit: Orbit, condition: Condition, slope: float, enough: float) -> tuple[Orbit, float]:
+    def solved(
+        self, orbit: Orbit, condition: BorderCondition, slope: float, enough: float
+    ) -> tuple[Orbit, float]:
         """(the cycle near an orbit, its test function); raises Unsolvable.
 
         slope: approximate modulus of the test function's derivative across the curve. enough: relative
@@ -94,7 +96,7 @@ class NearbyCycles:
             last = off
         raise Unsolvable(f"the corrections of a cycle do not converge; last step {change:.0e}")
 
-    def _corrected(self, orbit: Orbit, condition: Condition) -> tuple[Orbit, float]:
+    def _corrected(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction, relative change); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
