@@ -19,7 +19,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     REFERENCE_INTERVALS,
     REFERENCE_STAGES,
     SETTLED_WITHIN,
-    asked,
+    cycle_request,
     orbit_of,
 )
 from rodsweep.bench.study import Measurement, TimedRuns, failsafe, race, table
@@ -101,7 +101,7 @@ def compared(program: Path, point: Rod, settings: Sequence[AutoSetting], rounds:
 
 def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
     """AUTO's first cycle on one element of each order."""
-    near = orbit_of(solve_cycle(point, asked(SETTLED_WITHIN), along="F"))
+    near = orbit_of(solve_cycle(point, cycle_request(SETTLED_WITHIN), along="F"))
     orders = {setting.order for setting in settings}
     moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
     return {order: newton(orbit, EXACT, NewtonWorkspace()).orbit for order, orbit in moved.items()}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..config.arm.axes import ALONG
+from ..config.arm.axes import STORED_ALONG
 from ..config.document.call_arguments import in_sentences
 from ..config.values import short
 from ..errors import InputError
@@ -65,8 +65,8 @@ def _opened(path: Path) -> xr.Dataset:
 
 def selectable(data: xr.Dataset) -> xr.Dataset:
     """Makes the quantities of an arm selectable along an axis, such as F by pressure."""
-    for name in ALONG:
-        if name in data.coords and data[name].dims == (ALONG[name],) and name not in data.xindexes:
+    for name in STORED_ALONG:
+        if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
             data = data.set_xindex(name)
     return data
 

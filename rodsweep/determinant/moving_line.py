@@ -18,7 +18,7 @@ from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 from .certificate.box import BOX, box_of, squared_amplification_between
-from .certificate.covering import costs, distance, mean_rates, remainder
+from .certificate.covering import box_costs, distance_bound, mean_rates, remainder_fits
 from .certificate.discs import DISCS, centre_at
 from .parameter_path import changes, determinant_along
 
@@ -84,7 +84,7 @@ def free_of_zeros(
 ) -> tuple[bool, float, float]:
     """(whether D is proved to have no zero on the rectangle about l(p) + i y, cost in y, cost in p).
 
-    half: half-widths in y and p. tilt: dl/dp. Costs are those of `covering.examine`. Raises ValueError for
+    half: half-widths in y and p. tilt: dl/dp. Costs as in `covering.examine_box`. Raises ValueError for
     half-widths that are not positive.
     """
     half_y, half_p = half
@@ -96,16 +96,18 @@ def free_of_zeros(
     centre = centre_at(w, at.coefficients, changes(at.coefficients, direction), S)
     radii = (math.hypot(half_y, tilt * half_p), half_p)
     if abs(D) > 2 * rounding:
-        if remainder(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
+        if remainder_fits(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
             return True, 0.0, 0.0
         mean = mean_rates(centre)
         in_w = D_w - mean[0] * D
         in_p = D_p - mean[1] * D
-        room = DISCS.clearance * distance(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p) - rounding
-        if room > 0 and remainder(centre, mean, radii, room, 1):
+        room = (
+            DISCS.clearance * distance_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p) - rounding
+        )
+        if room > 0 and remainder_fits(centre, mean, radii, room, 1):
             return True, 0.0, 0.0
-    cost_y, cost_p = costs(centre, half)
-    return False, cost_y, max(cost_p, costs(centre, (abs(tilt) * half_p, half_p))[0])
+    cost_y, cost_p = box_costs(centre, half)
+    return False, cost_y, max(cost_p, box_costs(centre, (abs(tilt) * half_p, half_p))[0])
 
 
 @compiled

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.compiled.compilation import compiled
-from ..model.material.jump import Unknowns, before_jump, behind_jump
+from ..model.material.jump import Unknowns, unknowns_before_jump, unknowns_behind_jump
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
@@ -33,8 +33,8 @@ def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> N
     (m,)."""
     for i in range(len(q1)):
         q = Unknowns(q1[i], q3[i])
-        a = before_jump(law, sides, q)
-        b = behind_jump(sides, q, a)
+        a = unknowns_before_jump(law, sides, q)
+        b = unknowns_behind_jump(sides, q, a)
         out[0, i] = a.q1
         out[1, i] = a.q3
         out[2, i] = b.q1
@@ -66,7 +66,7 @@ def by_elements(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     return fields
 
 
-def carried(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
+def carried_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
     """S at all nodes of another mesh, (3, ..., nodes there + 1), from S, (3, ..., nodes + 1): a linear map.
 
     The unknown of a jump is no value of the polynomials beside it: these come from the other nodes of their

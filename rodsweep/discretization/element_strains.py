@@ -10,7 +10,13 @@ Arrays at the nodes of every element hold one element after the other, `Elements
 
 from ..arrays import Array
 from ..model.compiled.compilation import compiled, compiled_for_vectors
-from ..model.material.jump import SHEAR, Unknowns, before_jump, behind_jump, changes_beside_jump
+from ..model.material.jump import (
+    SHEAR,
+    Unknowns,
+    changes_beside_jump,
+    unknowns_before_jump,
+    unknowns_behind_jump,
+)
 from .nodal_rod import NodalRod
 
 
@@ -37,8 +43,8 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
         before = place_before(node, order)
         for k in range(S.shape[1]):
             q = Unknowns(S[0, k, node], S[2, k, node])
-            first = before_jump(rod.law, sides, q)
-            beside = first, behind_jump(sides, q, first)
+            first = unknowns_before_jump(rod.law, sides, q)
+            beside = first, unknowns_behind_jump(sides, q, first)
             for side in range(2):
                 out[0, k, before + side] = sides[side, 0] + sides[side, 1] * beside[side].q1
                 out[1, k, before + side] = sides[side, SHEAR] * S[1, k, node]

@@ -17,7 +17,7 @@ from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on, material_on
-from .at_jumps import carried, stresses_beside_jumps
+from .at_jumps import carried_stress, stresses_beside_jumps
 from .element_strains import write_element_rates, write_element_strains
 from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
@@ -132,7 +132,7 @@ class RodOnMesh(ABC):
 
     def stresses_on(self, grid: Mesh, x: Array) -> Array:
         """S of states x at all nodes of another mesh, shape (3, ..., nodes there + 1)."""
-        return carried(self.rod, self.stresses(x), self.mesh, grid)
+        return carried_stress(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
         """Minimum of h1 over all nodes and states; the model is valid while the minimum is positive.

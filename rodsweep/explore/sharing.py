@@ -20,7 +20,7 @@ from .stored import state_of
 SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Code of the browser that writes the state into the address."""
 SAVE = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
-GIVE_FILM = """
+DOWNLOAD_FILM = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
@@ -72,7 +72,7 @@ class Sharing:
             button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY.format(name)))
         self.film = Div(name="film", tags=[""], visible=False)
         self.film.js_on_change(
-            "tags", CustomJS(args={"film": self.film}, code=read("download.js") + GIVE_FILM)
+            "tags", CustomJS(args={"film": self.film}, code=read("download.js") + DOWNLOAD_FILM)
         )
         self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=SHOW_ADDRESS))
         self.root = Column(

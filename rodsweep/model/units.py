@@ -43,7 +43,7 @@ def registry() -> "UnitRegistry":
     return UnitRegistry()
 
 
-def split(given: str) -> tuple[float, str]:
+def split_quantity(given: str) -> tuple[float, str]:
     """(number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a number."""
     found = NUMBER_AND_UNIT.fullmatch(given)
     if not found:
@@ -60,7 +60,7 @@ def in_si(name: str, given: Given, unit: str, example: str) -> float:
     if not isinstance(given, str):
         value = _number(name, given, unit, allowed)
     else:
-        number, written = split(given)
+        number, written = split_quantity(given)
         if math.isnan(number):
             raise InputError(f"{name} = '{given}' is not {allowed}")
         if not written:
@@ -134,7 +134,7 @@ def _suggestion(written: str, unit: str) -> str:
 
 def unit_of(given: Given, default: str) -> str:
     """The unit of a quantity in the user's notation; `default` for a number without a unit."""
-    return (split(given)[1] or default) if isinstance(given, str) else default
+    return (split_quantity(given)[1] or default) if isinstance(given, str) else default
 
 
 def written_in(value: float, unit: str, si: str) -> float:

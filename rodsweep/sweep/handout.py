@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from .points.ranges import IndexRange, total
+from .points.ranges import IndexRange, index_count
 
 CHUNK_SECONDS = 0.1
 """Planned time of a chunk, in s: long compared with a message, short compared with a run."""
@@ -57,7 +57,7 @@ class Handout:
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
-        self.left = total(todo)
+        self.left = index_count(todo)
         self.ranks = ranks
         self.held: Counter[int] = Counter()
         """Number of chunks that each rank holds and has not reported on."""

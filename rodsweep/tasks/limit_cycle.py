@@ -29,7 +29,7 @@ from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import arms_line, count_of, each_point, material_parts, rod_parts
-from .protocol import InOrder, Part, Solver, Task, alone
+from .protocol import InOrder, Part, Solver, Task, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
@@ -72,7 +72,7 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
+    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
         """Hopf points of the lines through the points."""
         lines = hopf_lines_of(self.points)
         if lines:

@@ -94,7 +94,7 @@ class Solver:
         return replace(self, solve=solve, chained=chained, stretched=stretched, **changed)
 
 
-def alone(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
+def on_this_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
     """Applies the work to all items on this rank."""
     return [work(item) for item in items]
 
@@ -121,7 +121,7 @@ class Task(ABC):
         """Coordinates of extra dimensions of the layout, shape (extent,), by name."""
         return {}
 
-    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
+    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
         """Variables that depend on no point. in_order: shares slow work among ranks."""
         return ()
 

@@ -24,7 +24,7 @@ from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
-from .protocol import InOrder, Part, Solver, alone
+from .protocol import InOrder, Part, Solver, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
@@ -58,7 +58,7 @@ class SpectrumTask(ProvedTask):
         """Material coordinates of the vectors' nodes, shape (nodes,); empty without vectors."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
+    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
         """Longitudinal growth rates, if requested: along the parameters on which they depend."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:

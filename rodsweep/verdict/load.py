@@ -4,7 +4,7 @@ from math import floor, log10
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
-from ..model.units import compact, split, unit_of, written_in
+from ..model.units import compact, split_quantity, unit_of, written_in
 from .flutter import Span
 
 FLUTTER_ABOUT = 36.0
@@ -67,4 +67,4 @@ def _short(given: object, value: float, si: str) -> str:
     number = given.split()[0]
     if len(number) <= LONGEST_GIVEN:
         return given.strip()
-    return f"{split(given)[0]:.4g} {split(given)[1]}"
+    return f"{split_quantity(given)[0]:.4g} {split_quantity(given)[1]}"

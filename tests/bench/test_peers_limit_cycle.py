@@ -24,7 +24,7 @@ from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, ExactCycle
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,
-    asked,
+    cycle_request,
     judged_run,
     on_cycle,
     orbit_of,
@@ -114,7 +114,7 @@ def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
 @cache
 def soft_rod():
     """A cycle of the first rod as the task finds it."""
-    return orbit_of(solve_cycle(RODS[0], asked(ACCURACY), along="F"))
+    return orbit_of(solve_cycle(RODS[0], cycle_request(ACCURACY), along="F"))
 
 
 @cache

@@ -6,7 +6,12 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.completeness import COMPLETENESS, none_is_missing, remainder, right_of_hull
+from rodsweep.determinant.arm.completeness import (
+    COMPLETENESS,
+    none_is_missing,
+    remainder_of_sum,
+    right_of_hull,
+)
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull import hull_of
 from rodsweep.determinant.arm.newton import refined
@@ -62,7 +67,7 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     none, level = np.empty(0, complex), ArmDeterminant(rod).level(points[-1])
-    least = remainder(line, none, np.empty(0), hull, points, level).least
+    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).least
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real
     assert least <= contribution[right].min() * (1 + 1e-12)

@@ -12,7 +12,7 @@ from rodsweep.determinant.certificate.box import (
     squared_amplification,
     squared_amplification_over,
 )
-from rodsweep.determinant.certificate.covering import cover, distance, examine
+from rodsweep.determinant.certificate.covering import cover, distance_bound, examine_box
 from rodsweep.determinant.certificate.discs import bound_on_bidisc, centre_at
 from rodsweep.determinant.certificate.first_boxes import first_boxes, slabs
 from rodsweep.determinant.newton import eigenvalue_newton
@@ -109,14 +109,14 @@ def complex_determinant(w, path, p):
 
 def test_distance_of_a_parallelogram_from_zero():
     """Exact along its sides, never too large, zero where it holds zero."""
-    assert distance(5 + 0j, 1 + 0j, 1j) == pytest.approx(4.0)
-    assert distance(0.5 + 0.5j, 1 + 0j, 1j) == 0.0
+    assert distance_bound(5 + 0j, 1 + 0j, 1j) == pytest.approx(4.0)
+    assert distance_bound(0.5 + 0.5j, 1 + 0j, 1j) == 0.0
     rng = np.random.default_rng(8)
     for _ in range(200):
         value, a, b = rng.normal(size=3) + 1j * rng.normal(size=3)
         grid = np.linspace(-1, 1, 41)
         nearest = np.abs(value + grid[:, None] * a + grid[None, :] * b).min()
-        assert distance(value, a, b) <= nearest + 1e-12
+        assert distance_bound(value, a, b) <= nearest + 1e-12
 
 
 @pytest.mark.parametrize("path", PATHS)
@@ -134,7 +134,7 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
             at = eta + half[0] * rng.uniform(-1, 1), p + half[1] * rng.uniform(-1, 1)
             if at[0] <= half[0]:
                 continue
-            kind = examine(
+            kind = examine_box(
                 complex(0, at[0]), coefficients_at(at[1], path.origin, path.direction), path.direction, half
             )[0]
             assert kind != 0

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.periodic import (
-    coefficients,
-    derivative,
+    fourier_coefficients,
     hermite_coefficients,
     hermite_columns,
     maxima,
@@ -14,6 +13,7 @@ from rodsweep.discretization.elements.periodic import (
     rise_through_mean,
     sampled_at,
     samples_of,
+    time_derivative,
 )
 
 SAMPLES = pytest.mark.parametrize("n", [31, 32])
@@ -28,11 +28,11 @@ def wave(t):
 def test_a_smooth_period_is_interpolated_and_differentiated(n):
     t = np.arange(n) / n
     samples = wave(t)[:, None]
-    assert maxima(coefficients(samples), samples)[0] == pytest.approx(np.e, rel=1e-12)
+    assert maxima(fourier_coefficients(samples), samples)[0] == pytest.approx(np.e, rel=1e-12)
     at = np.array([0.01, 0.373, 0.9, 1.9])
     assert resampled(wave(t), at) == pytest.approx(wave(at), rel=1e-12)
     slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * wave(t)
-    assert derivative(wave(t)) == pytest.approx(slope, abs=1e-10)
+    assert time_derivative(wave(t)) == pytest.approx(slope, abs=1e-10)
 
 
 @SAMPLES
@@ -40,7 +40,7 @@ def test_every_column_is_a_function_of_its_own(n):
     t, at = np.arange(n) / n, np.array([0.2, 0.7])
     both = np.stack([wave(t), np.cos(2 * np.pi * t)], axis=1)
     assert resampled(both, at)[:, 0] == pytest.approx(resampled(both[:, 0], at), rel=1e-13)
-    assert derivative(both)[:, 1] == pytest.approx(-2 * np.pi * np.sin(2 * np.pi * t), abs=1e-10)
+    assert time_derivative(both)[:, 1] == pytest.approx(-2 * np.pi * np.sin(2 * np.pi * t), abs=1e-10)
 
 
 @SAMPLES
@@ -54,7 +54,7 @@ def test_the_rise_through_the_mean_is_found_between_samples(n, shift):
 def test_the_highest_harmonic_of_an_even_number_of_samples_is_a_cosine():
     alternating = np.array([1.0, -1.0, 1.0, -1.0])
     assert resampled(alternating, np.array([0.125])) == pytest.approx(0.0, abs=1e-14)
-    assert derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
+    assert time_derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
 
 
 @pytest.mark.parametrize("m", [9, 64, 65])

@@ -9,7 +9,7 @@ import numpy as np
 
 from rodsweep.discretization.element_strains import write_element_strains
 from rodsweep.discretization.elements.mesh import configuration
-from rodsweep.discretization.elements.periodic import coefficients, maxima
+from rodsweep.discretization.elements.periodic import fourier_coefficients, maxima
 from rodsweep.discretization.plane import balance
 from rodsweep.discretization.straight.mixed_form import MixedForm
 
@@ -67,4 +67,4 @@ def period_and_largest_y(orbit, phases):
     write_element_strains(np.ascontiguousarray(S), orbit.form.nodal, form.mesh.order, E)
     y = configuration(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
-    return 2 * np.pi / frequency, float(maxima(coefficients(whole), whole)[0])
+    return 2 * np.pi / frequency, float(maxima(fourier_coefficients(whole), whole)[0])

@@ -18,7 +18,7 @@ from surveyed import few
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import ArcPoint, next_point
-from rodsweep.solve.branch.beginning import beginning, hopf_point
+from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.settling import measurement_due, settled
 from rodsweep.solve.changes.along_path import pair_crossings
@@ -81,7 +81,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
     crossings = pair_crossings(Path(rod, "F"), 0.0, case.stop).crossings
     if not crossings:
         return
-    here = last = beginning(
+    here = last = first_cycle(
         hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy, NewtonWorkspace()
     )
     yield last

@@ -14,7 +14,7 @@ from matplotlib.text import Annotation
 from PIL import Image
 from surveyed import few
 
-from rodsweep.discretization.elements.periodic import derivative, resampled
+from rodsweep.discretization.elements.periodic import resampled, time_derivative
 from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
@@ -47,7 +47,7 @@ def test_interpolant_and_derivative_are_exact_for_harmonics(n):
     samples = np.arange(n) / n
     assert resampled(f(samples), t) == pytest.approx(f(t), abs=1e-12)
     exact = -2 * np.pi * np.sin(2 * np.pi * samples) - 30 * np.pi * np.cos(10 * np.pi * samples)
-    assert derivative(f(samples)) == pytest.approx(exact, abs=1e-10)
+    assert time_derivative(f(samples)) == pytest.approx(exact, abs=1e-10)
 
 
 @pytest.mark.parametrize("stored", [1, 8, 12, 16, 25, 48, 500])

@@ -13,7 +13,7 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.results.file.view import read_view
-from rodsweep.sweep.points.ranges import IndexSet, total
+from rodsweep.sweep.points.ranges import IndexSet, index_count
 from rodsweep.sweep.points.stretches import (
     SHORTEST_AXIS,
     STRETCH_POINTS,
@@ -67,7 +67,7 @@ def test_stretches_to_do_are_those_that_miss_a_point(shape):
     expected = [n for n in range(stretches.count) if lacks[stretches.indices(n)].any()]
     todo = stretches.todo(missing)
     assert [n for ends in todo for n in range(*ends)] == expected
-    assert stretches.missing_in(todo, missing) == total(missing)
+    assert stretches.missing_in(todo, missing) == index_count(missing)
 
 
 def test_of_a_stretch_only_missing_points_are_kept():

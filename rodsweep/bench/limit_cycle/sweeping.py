@@ -23,7 +23,7 @@ from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ...solve.orbit.orbit_mesh import mesh_of
 from ..study import Contender, JudgedCase, Measurement, grouped, middle, table, tournament
-from .tracking import EXACT, asked, orbit_of
+from .tracking import EXACT, cycle_request, orbit_of
 
 RODS = (
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
@@ -108,9 +108,9 @@ def swept(point: Rod, accuracy: float) -> SweptRod:
         before: Neighbour | None = None
         for k in range(BEFORE, 0, -1):
             there = beyond(point, axis, k + STRETCH - 1)
-            before = settled(solve_cycle(there, asked(accuracy), before, axis, workspace)).neighbour
+            before = settled(solve_cycle(there, cycle_request(accuracy), before, axis, workspace)).neighbour
         neighbours[axis] = before
-    here = solve_cycle(point, asked(accuracy), along=SWEPT[0])
+    here = solve_cycle(point, cycle_request(accuracy), along=SWEPT[0])
     return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours, workspace)
 
 
@@ -124,14 +124,16 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     start = rod.neighbours[axis]
     for k in range(STRETCH - 1, -1, -1):
         there = beyond(rod.point, axis, k)
-        cycle = settled(solve_cycle(there, asked(accuracy), start, axis, rod.workspace))
+        cycle = settled(solve_cycle(there, cycle_request(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the rod without a neighbour."""
-    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start), workspace=rod.workspace))
+    return settled(
+        solve_cycle(rod.point, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
+    )
 
 
 def settled(cycle: Cycle) -> Cycle:
@@ -141,7 +143,7 @@ def settled(cycle: Cycle) -> Cycle:
     return cycle
 
 
-def ways(accuracy: float) -> list[Contender]:
+def cycle_contenders(accuracy: float) -> list[Contender]:
     """All starts of a point, as contenders."""
     setting = f"{accuracy:.0e}"
     warm = [
@@ -158,7 +160,7 @@ def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
     """All starts of all points, timed in turn."""
     rods = [swept(point, ACCURACY) for point in points]
     entries = [JudgedCase(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
-    return tournament(entries, ways(ACCURACY), rounds)
+    return tournament(entries, cycle_contenders(ACCURACY), rounds)
 
 
 def name_of(point: Rod) -> str:

@@ -72,14 +72,14 @@ class ReferenceCycle:
     tip_y_max: float
 
 
-def asked(accuracy: float) -> CycleRequest:
+def cycle_request(accuracy: float) -> CycleRequest:
     """Request for a cycle at an accuracy, without stored samples or shapes."""
     return CycleRequest(accuracy, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS)
 
 
 def cycle_at(force: float) -> Cycle:
     """The rod's cycle as found by the task limit_cycle."""
-    return solve_cycle(FIG5_ROD.changed(F=force), asked(SETTLED_WITHIN), along="F")
+    return solve_cycle(FIG5_ROD.changed(F=force), cycle_request(SETTLED_WITHIN), along="F")
 
 
 def orbit_of(cycle: Cycle) -> Orbit:

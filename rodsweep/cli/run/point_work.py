@@ -16,7 +16,7 @@ from ...results.run.journal import Journal, journal_directory, kept_sentence
 from ...sweep.handout import Handout
 from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
-from ...sweep.points.ranges import IndexRange, IndexSet, Shard, total
+from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
 from ...sweep.points.stretches import StretchResult, StretchSolver
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import StopRequest
@@ -51,7 +51,7 @@ class PointWork:
             return units, stretches.missing_in(units, missing)
         if self.solver.chained is None:
             units = self.shard.part(missing, self.job.points.count)
-            return units, total(units)
+            return units, index_count(units)
         lacks = IndexSet(missing)
         chains = self.solver.chained.chains
         units = self.shard.part(chains.todo(lacks), chains.count)

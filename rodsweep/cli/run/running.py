@@ -13,7 +13,7 @@ from ...results.file.store import Store
 from ...results.file.view import read_view
 from ...solve.backend.availability import require_directory, require_solvers
 from ...sweep.loop import RankWork
-from ...sweep.points.ranges import IndexRange, total
+from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.running.failures import parameters_in_words
@@ -104,8 +104,8 @@ class _RankRun:
         if self.team.first:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
-            kept = f", {points - total(missing)} kept" if points > total(missing) else ""
-            if self.joint and self._lacks_curves(total(missing) - count):
+            kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
+            if self.joint and self._lacks_curves(index_count(missing) - count):
                 kept += ", then curves through all"
             self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[Contribution] = []
@@ -131,7 +131,7 @@ class _RankRun:
             history = history_of(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.started, "stopped": self.stop.name}
             self.store.fold(of_the_last_run(self.plan) | history | started)
-        if not self._lacks_curves(total(self.store.missing())):
+        if not self._lacks_curves(index_count(self.store.missing())):
             return JointDue(False)
         if not self.joint:
             return JointDue(True)
@@ -217,7 +217,7 @@ class _RankRun:
             ranks=self.team.size,
             asked=count,
             left=left,
-            kept=self.job.points.count - total(missing),
+            kept=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.began - self.seconds,
             in_the_middle=sum(contribution.share.ended for contribution in contributions),

@@ -19,9 +19,9 @@ LOAD_AXES = (*LOADS, *RELATIVE)
 """Keys of the load. An arm has at most one load."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """The affected parameter, by name of each quantity that affects exactly one parameter."""
-MOVES = AXIS_OF | dict.fromkeys(RELATIVE, "F")
+CHANGED_PARAMETER = AXIS_OF | dict.fromkeys(RELATIVE, "F")
 """The parameter changed by an axis, in a grid over an arm's quantities."""
-ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
+STORED_ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
 """The parameter along whose axis a quantity or unit with several values is stored."""
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
@@ -55,14 +55,14 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
     """
     given = (name for name in (*SECTION, *LOAD_AXES) if name in sizes)
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE]
-    if all(name in (ALONG if in_diagram else AXIS_OF) for name in quantities):
+    if all(name in (STORED_ALONG if in_diagram else AXIS_OF) for name in quantities):
         return ()
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))
 
 
 def parameter_of_axis(axis: str) -> str:
     """The only parameter that an axis of an arm's grid changes; "" for several parameters or none."""
-    return axis if axis in PARAMETERS else MOVES.get(axis, "")
+    return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
 
 
 UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}

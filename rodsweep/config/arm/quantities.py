@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from ...errors import InputError
 from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
 from ...model.arm.quantities import RELATIVE, UNITS
-from ...model.units import in_si, share_of_flutter, split, written_in
+from ...model.units import in_si, share_of_flutter, split_quantity, written_in
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
 ENDS = ("start", "stop")
@@ -107,7 +107,7 @@ def drags_written(values: list[float]) -> list[str]:
 
 def typed_unit(name: str, axis: Axis) -> str:
     """Unit typed by the user, the first of several; the SI unit if none was typed."""
-    units = [split(value)[1] for value in _each(axis.written) if isinstance(value, str)]
+    units = [split_quantity(value)[1] for value in _each(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
 

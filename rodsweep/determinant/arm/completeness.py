@@ -94,9 +94,11 @@ def none_is_missing(
     for k, farthest in COMPLETENESS.tried():
         points = right_of_hull(line, hull.a, hull.c, k)
         if _last(points) <= farthest * largest:
-            found = remainder(line, known[pairs], error[pairs], hull, points, determinant.level(points[-1]))
+            found = remainder_of_sum(
+                line, known[pairs], error[pairs], hull, points, determinant.level(points[-1])
+            )
             examined += k
-            if proves(found):
+            if proves_completeness(found):
                 return True, examined
     return False, examined
 
@@ -138,7 +140,7 @@ def _last(points: Array) -> float:
 
 
 @compiled
-def proves(found: Remainder) -> bool:
+def proves_completeness(found: Remainder) -> bool:
     """Whether no unknown eigenvalue lies right of the line. R far below 0 would mean that a known eigenvalue
     is not a root of D.
     """
@@ -180,7 +182,7 @@ def _turn_of_hull(points: Array, a: float, c: float) -> float:
 
 
 @compiled
-def remainder(
+def remainder_of_sum(
     line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
     """R with its rounding error and the least contribution right of the line.

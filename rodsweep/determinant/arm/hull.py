@@ -33,7 +33,7 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
 from .region import HULL, UNKNOWN, Hull, PathHulls
-from .weights import constants, largest_integrals, least_square, squares_following
+from .weights import clamp_integrals, constant_weight_norm, constant_weights, varying_weight_norms
 
 
 def hull_of(rod: Rod) -> Hull:
@@ -131,22 +131,22 @@ def _smallest(
     push = 0.0
     for arm in range(len(F)):
         push = max(push, (F[arm] * F[arm] * c3[arm] / gamma2[arm]).max())
-    alphas = constants(local)
+    alphas = constant_weights(local)
     best = (inf, 0.0)
     if not (c2 > 0).any():  # then g = nu
         best = (sqrt(push), 0.0)
     elif (gamma3 > 0).all():
-        best = (sqrt(least_square(alphas, local.reshape(6, -1), push)), 0.0)
+        best = (sqrt(constant_weight_norm(alphas, local.reshape(6, -1), push)), 0.0)
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
-        for square in squares_following(F, lengths, local, chebyshev.derivative):
+        for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):
             best = _smaller(best, (sqrt(square), 0.0), largest)
     for trial in range(averaged.shape[1]):
         c = (1 + HULL.margin) * averaged[:, trial, 1].max()
         best = _smaller(best, (averaged[:, trial, 0].max(), c), largest)
     if not (c2 > 0).all():
         alphas = np.ones(1)
-    integrals = largest_integrals(alphas, F, lengths, local, chebyshev.integral)
+    integrals = clamp_integrals(alphas, F, lengths, local, chebyshev.integral)
     for k in range(len(alphas)):
         c = (1 + HULL.margin) * sqrt(integrals[k]) / 2
         best = _smaller(best, (sqrt(alphas[k] * push), c), largest)

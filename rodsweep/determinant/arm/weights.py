@@ -11,7 +11,7 @@ from .region import HULL
 
 
 @compiled
-def least_square(alphas: Array, local: Array, push: float) -> float:
+def constant_weight_norm(alphas: Array, local: Array, push: float) -> float:
     """The least squared norm of the matrix for a constant alpha, of those to try, (n,).
 
     local: coefficients at all points, (6, points). push: the largest F^2 c3/gamma2.
@@ -32,7 +32,7 @@ def least_square(alphas: Array, local: Array, push: float) -> float:
 
 
 @compiled
-def constants(local: Array) -> Array:
+def constant_weights(local: Array) -> Array:
     """Constant alpha that are tried, (HULL.weights + 1,): between the extremes of g/nu along arms, and 1."""
     ratio = np.abs(local[5] / local[0])
     start = log(max(ratio.min(), HULL.least_ratio))
@@ -44,7 +44,7 @@ def constants(local: Array) -> Array:
 
 
 @compiled
-def squares_following(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
+def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
     """The largest squared norm of the matrix along arms for each of `HULL.middles`.
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points).
@@ -72,7 +72,7 @@ def squares_following(F: Array, lengths: Array, local: Array, derivative: Array)
 
 
 @compiled
-def largest_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
+def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
     """The largest 4 c^2 of arms for each constant alpha, (alphas,), by theta(0) = 0, which needs no drag.
 
     local: coefficients, (6, n, pieces, points). integral: from `ChebyshevMatrices`.

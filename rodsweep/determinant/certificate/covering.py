@@ -78,7 +78,7 @@ class Box(NamedTuple):
 
 
 @compiled
-def distance(value: complex, a: complex, b: complex) -> float:
+def distance_bound(value: complex, a: complex, b: complex) -> float:
     """A lower bound of |value + x a + y b| over |x|, |y| <= 1; 0 if no positive bound is found."""
     best = 0.0
     # The set is a parallelogram; a separating line is parallel to a side, or across the value.
@@ -105,7 +105,9 @@ def mean_rates(centre: BidiscCentre) -> Pair:
 
 
 @compiled
-def remainder(centre: BidiscCentre, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
+def remainder_fits(
+    centre: BidiscCentre, rates: Pair, half: tuple[float, float], room: float, power: int
+) -> bool:
     """Whether M t^2/(1 - t)^power < room for a trial share t; half: half-widths of the box."""
     t = BOX_PROOF.largest_radius_share
     last = math.inf
@@ -123,7 +125,7 @@ def remainder(centre: BidiscCentre, rates: Pair, half: tuple[float, float], room
 
 
 @compiled
-def examine(
+def examine_box(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
     """(EMPTY, REGULAR or UNDECIDED, cost in eta, cost in p) of the box about w with half-widths `half`.
@@ -139,8 +141,8 @@ def examine(
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            room = DISCS.clearance * distance(D, a, b) - rounding
-            if room > 0 and remainder(centre, rates, half, room, 1):
+            room = DISCS.clearance * distance_bound(D, a, b) - rounding
+            if room > 0 and remainder_fits(centre, rates, half, room, 1):
                 return EMPTY, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
     a = 2j * (D_w - mean[0] * D) * half[0]
@@ -151,14 +153,14 @@ def examine(
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         room = (DISCS.clearance * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
-        if room > 0 and remainder(centre, mean, double, room, 2):
+        if room > 0 and remainder_fits(centre, mean, double, room, 2):
             return REGULAR, 0.0, 0.0
-    in_eta, in_p = costs(centre, half)
+    in_eta, in_p = box_costs(centre, half)
     return UNDECIDED, in_eta, in_p
 
 
 @compiled
-def costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
+def box_costs(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
     """Changes of the exponents over a box in eta and in p; half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
@@ -191,7 +193,7 @@ def cover(
         half = (box.eta_to - box.eta_from) / 2, (box.p_to - box.p_from) / 2
         examined += 1
         coefficients = coefficients_at(p, origin, direction)
-        kind, cost_w, cost_p = examine(complex(0.0, eta), coefficients, direction, half)
+        kind, cost_w, cost_p = examine_box(complex(0.0, eta), coefficients, direction, half)
         if kind == EMPTY:
             continue
         if kind == REGULAR:

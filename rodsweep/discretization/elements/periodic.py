@@ -32,7 +32,7 @@ class MaximumSettings(CompiledSettings):
 MAXIMA = MaximumSettings()
 
 
-def coefficients(samples: Array) -> Complex:
+def fourier_coefficients(samples: Array) -> Complex:
     """c, shape (N // 2 + 1, ...), with Re sum_k c_k exp(2 pi i k t) through the samples, shape (N, ...)."""
     n = len(samples)
     c: Complex = np.fft.rfft(samples, axis=0) / n
@@ -160,7 +160,7 @@ def sampled_columns(c: Complex, count: int) -> Array:
 
 def resampled(samples: Array, at: NDArray[np.floating]) -> Array:
     """The interpolant of samples, (N, ...), at the times `at` in periods, (m,): shape (m, ...)."""
-    return sampled_at(coefficients(samples), at)
+    return sampled_at(fourier_coefficients(samples), at)
 
 
 def sampled_at(c: Complex, at: NDArray[np.floating]) -> Array:
@@ -169,7 +169,7 @@ def sampled_at(c: Complex, at: NDArray[np.floating]) -> Array:
     return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
 
 
-def derivative(samples: Array) -> Array:
+def time_derivative(samples: Array) -> Array:
     """Derivative of the interpolant with respect to time in periods, at the samples; both (N, ...)."""
     n = len(samples)
     k = 2j * np.pi * np.arange(n // 2 + 1)
@@ -234,7 +234,7 @@ def rise_through_mean(samples: Array) -> float:
     deviation = samples - samples.mean()
     after = (int(np.argmin(deviation)) + np.arange(n + 1)) % n
     k = int(np.argmax(deviation[after] >= 0))
-    return float(_rise(coefficients(deviation), (after[k] - 1) / n, after[k] / n))
+    return float(_rise(fourier_coefficients(deviation), (after[k] - 1) / n, after[k] / n))
 
 
 @compiled_for_vectors

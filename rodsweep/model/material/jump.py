@@ -64,7 +64,7 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 
 @compiled
-def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
+def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
     """a of the mean unknowns q, by Newton's method; sides: (2, 7)."""
     if law == LINEAR_LAW:
         return q
@@ -75,7 +75,7 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
     for _ in range(MOST_ITERATIONS):
-        b = behind_jump(sides, q, a)
+        b = unknowns_behind_jump(sides, q, a)
         s = stress(law, one, a.q1, a.q3)
         t = stress(law, other, b.q1, b.q3)
         S = tangent(law, one, a.q1, a.q3)
@@ -92,7 +92,7 @@ def before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 
 @compiled
-def behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
+def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
     """b of the mean unknowns q and of a; sides: (2, 7)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
@@ -100,7 +100,7 @@ def behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     """The stresses beyond those at rest; sides: (2, 7)."""
-    a = before_jump(law, sides, Unknowns(q1, q3))
+    a = unknowns_before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
 
@@ -123,8 +123,8 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 @compiled
 def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
     """Changes of a and b with a change of the mean unknowns q; sides: (2, 7)."""
-    a = before_jump(law, sides, q)
-    b = behind_jump(sides, q, a)
+    a = unknowns_before_jump(law, sides, q)
+    b = unknowns_behind_jump(sides, q, a)
     stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
@@ -135,8 +135,8 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses by the mean unknowns; sides: (2, 7)."""
     q = Unknowns(q1, q3)
-    a = before_jump(law, sides, q)
-    Z = _compliance_at_jump(law, sides, a, behind_jump(sides, q, a))
+    a = unknowns_before_jump(law, sides, q)
+    Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
     determinant = Z.N1 * Z.M3 - Z.N3 * Z.M1
     return Tangent(Z.M3 / determinant, -Z.N3 / determinant, -Z.M1 / determinant, Z.N1 / determinant)
 
@@ -148,8 +148,8 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     The shares do not change: a parameter moves the compliances of both sides by one factor.
     """
     q = Unknowns(q1, q3)
-    a = before_jump(law, sides, q)
-    b = behind_jump(sides, q, a)
+    a = unknowns_before_jump(law, sides, q)
+    b = unknowns_behind_jump(sides, q, a)
     moved1 = 0.0
     moved3 = 0.0
     for i in range(2):

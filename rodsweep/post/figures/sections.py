@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...config.arm.axes import ALONG
+from ...config.arm.axes import STORED_ALONG
 from ...config.document.refusals import nearest
 from ...errors import InputError
 from ...model.arm.drag import DRAGS
@@ -80,7 +80,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     names = view.over or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
-    along = {name, *(quantity for quantity, moved in ALONG.items() if moved == name)}
+    along = {name, *(quantity for quantity, moved in STORED_ALONG.items() if moved == name)}
     variables = {}
     for key, data in view.variables.items():
         if key in along and np.ndim(data):

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm.axes import ALONG
+from ...config.arm.axes import STORED_ALONG
 from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
-from ...results.layouts.arm import converted, si_name_of, si_unit_of
+from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, tells_of_items
 
@@ -88,14 +88,14 @@ def si_columns(
         si = si_unit_of(variable, "force" in view.quantities)
         known = {*si.factors, *si.divisors} <= at.keys()
         if si.unit and known and si_name_of(variable.name, si.unit) not in view.variables:
-            si_variable, values = converted(variable, column.values, at)
-            yield replace(column_of(si_variable, values), absent=column.absent)
+            in_si, values = si_variable(variable, column.values, at)
+            yield replace(column_of(in_si, values), absent=column.absent)
 
 
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
     """Yields quantities of an arm along the rows of a diagram, such as the pressure for F."""
     for name, values in view.quantities.items():
-        if values.size > 1 and view.is_grid and ALONG.get(name, "") not in view.parameters:
+        if values.size > 1 and view.is_grid and STORED_ALONG.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
 
 
@@ -120,7 +120,7 @@ def quantities_at_points(view: View) -> dict[str, NDArray]:
     count = view.variables["status"].size
     found = {}
     for name, values in view.quantities.items():
-        along = ALONG.get(name, "")
+        along = STORED_ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:
             found[name] = np.broadcast_to(values, count)
         elif along in view.parameters:

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from ...sweep.points.points import Points
-from ...sweep.points.ranges import IndexRange, joined
+from ...sweep.points.ranges import IndexRange, merged_ranges
 from ..layouts.variables import MISSING, Layout
 
 POINTS_AT_ONCE = 1 << 16
@@ -43,7 +43,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
     for start, status in statuses(path):
         edges = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
         ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
-    return joined(ranges)
+    return merged_ranges(ranges)
 
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from ...errors import EnvironmentIncomplete, InputError
-from ...sweep.points.ranges import total
+from ...sweep.points.ranges import index_count
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals, read_reasons
 from .exchange import FileReplacement, disk_refusals, identity
@@ -96,7 +96,7 @@ def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
         write_points(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
             file.attrs.update(journalled_reasons(header) | {SNAPSHOT: now()})
-        missing = total(missing_ranges(copy))
+        missing = index_count(missing_ranges(copy))
     return header.points - missing, header.points
 
 

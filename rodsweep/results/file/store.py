@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from ...errors import EnvironmentIncomplete, InputError
-from ...sweep.points.ranges import IndexRange, total
+from ...sweep.points.ranges import IndexRange, index_count
 from ..layouts.variables import MISSING, Filled, Layout
 from ..run.checkpoints import CHECKPOINTS
 from ..run.journal import (
@@ -104,12 +104,12 @@ class Store:
         require_room(self.path, self.plan)
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
         self._fold_blocks(blocks, header.layout, header.fingerprint, {})
-        done = header.points - total(self.missing())
+        done = header.points - index_count(self.missing())
         history = merged_history([header.attributes])
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
             any_kept = write_points(copy, extension.kept(), self.plan.layout)
-            anew = done - (self.plan.points.count - total(missing_ranges(copy)))
+            anew = done - (self.plan.points.count - index_count(missing_ranges(copy)))
             if any_kept:
                 with h5py.File(copy, "r+") as file:
                     file.attrs.update(history)

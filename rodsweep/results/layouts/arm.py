@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import ALONG, names_over
+from ...config.arm.axes import STORED_ALONG, names_over
 from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmSection
 from ...config.axes import Axes
@@ -153,7 +153,7 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
     return SI_UNITS.get(variable.units, NO_UNIT)
 
 
-def converted(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
+def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
     """A variable and its values, (n,), in SI units; quantities: the arm's, each of shape () or (n,)."""
     si = si_unit_of(variable, "force" in quantities)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
@@ -179,7 +179,7 @@ def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
         return ()
     if not points.over:
         return tuple(
-            _filled(arm, name, values, (ALONG[name],) if np.ndim(values) else ())
+            _filled(arm, name, values, (STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
     numbers = {name: axis.array()[0] for name, axis in arm.given.items() if name not in points.over}

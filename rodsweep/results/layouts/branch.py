@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
-from .rods import confirmed
+from .rods import with_certified_meaning
 from .variables import (
     NEEDS_NEW_SOLVE,
     SECONDS,
@@ -11,7 +11,7 @@ from .variables import (
     IncreaseRule,
     Layout,
     Variable,
-    along,
+    along_dimension,
     boolean,
     integer,
     real,
@@ -49,7 +49,7 @@ ERRORS = (
 def followed_variables(parameter: str) -> tuple[Variable, ...]:
     """Variables of the cycles of all branches, branch by branch."""
     unit = PARAMETERS[parameter].unit
-    return along(
+    return along_dimension(
         ALONG,
         integer("branch", "number of the branch, from 1"),
         real(f"branch_{parameter}", unit, f"{parameter} of the cycle"),
@@ -77,7 +77,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
 def special_variables(parameter: str) -> tuple[Variable, ...]:
     """Variables of the special points of all branches, branch by branch."""
     unit = PARAMETERS[parameter].unit
-    return along(
+    return along_dimension(
         SPECIAL,
         word("special_kind", "kind of the special point", SPECIAL_KINDS),
         real("special_at", unit, f"{parameter} at the special point"),
@@ -139,5 +139,5 @@ def layout(config: dict[str, Any]) -> Layout:
         STATUS,
     )
     parameters = all_but(parameter, NONLINEAR_PARAMETERS)
-    variables = confirmed(variables, config, "Hopf points")
+    variables = with_certified_meaning(variables, config, "Hopf points")
     return Layout(variables, {ALONG: options["cycles"], SPECIAL: options["special"]}, parameters)

@@ -4,9 +4,9 @@ from math import nan
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
-from .rods import confirmed
-from .thresholds import CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, along, integer, real
+from .rods import with_certified_meaning
+from .thresholds import MORE_CROSSINGS, search_variables
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"
@@ -30,7 +30,7 @@ def criticality_variable(name: str, decided_by: str) -> Variable:
     return Variable(name, "<f8", nan, "1", meaning, flags=SIDES)
 
 
-NORMAL_FORM = along(
+NORMAL_FORM = along_dimension(
     ALONG,
     real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency"),
     real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the Hopf point"),
@@ -57,7 +57,7 @@ NORMAL_FORM = along(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
+INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -68,5 +68,7 @@ def layout(config: dict[str, Any]) -> Layout:
         real("F_end", FORCE, "largest F of the search"),
         integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
-    variables = confirmed((*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points")
+    variables = with_certified_meaning(
+        (*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points"
+    )
     return Layout(variables, {ALONG: config["criticality"]["crossings"]}, all_but("F", NONLINEAR_PARAMETERS))

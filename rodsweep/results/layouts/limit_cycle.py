@@ -18,7 +18,7 @@ from .variables import (
     IncreaseRule,
     Layout,
     Variable,
-    along,
+    along_dimension,
     integer,
     real,
     word,
@@ -65,7 +65,7 @@ CYCLE = (
     real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
     real("multiplier_error", "1", "estimate of the absolute error of multiplier"),
     real("trivial_multiplier_error", "1", "distance of the trivial Floquet multiplier from 1"),
-    *along(
+    *along_dimension(
         "multiplier_number",
         real("multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"),
         real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
@@ -108,7 +108,7 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
     at = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
     return (
-        *along(
+        *along_dimension(
             HOPF,
             word(
                 "hopf_along",

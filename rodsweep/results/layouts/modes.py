@@ -3,7 +3,7 @@
 from typing import Any
 
 from .spectrum import EACH_MODE, EACH_POINT, VECTORS, complex_pair
-from .variables import NEEDS_NEW_SOLVE, Layout, along, real
+from .variables import NEEDS_NEW_SOLVE, Layout, along_dimension, real
 
 MODE_FIELDS = (
     *VECTORS,
@@ -12,7 +12,7 @@ MODE_FIELDS = (
     *complex_pair("adjoint_Y", "1", "the adjoint mode's deflection, scaled to adjoint_Y(1) = 1"),
     *complex_pair("adjoint_Theta", "1", "the adjoint mode's angle, with the scale of adjoint_Y"),
 )
-MODE_NUMBERS = along(
+MODE_NUMBERS = along_dimension(
     "mode",
     real(
         "mode_error",

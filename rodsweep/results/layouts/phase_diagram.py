@@ -6,10 +6,20 @@ from typing import Any
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
 from .criticality import LANDAU, SLOPE, criticality_variable
-from .rods import confirmed
+from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
-from .thresholds import CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, NEEDS_NO_SOLVE, Layout, Variable, along, integer, real, word
+from .thresholds import MORE_CROSSINGS, search_variables
+from .variables import (
+    ANGULAR,
+    NEEDS_NEW_SOLVE,
+    NEEDS_NO_SOLVE,
+    Layout,
+    Variable,
+    along_dimension,
+    integer,
+    real,
+    word,
+)
 
 CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
 """Behaviour of the rod at a point of a phase diagram."""
@@ -46,7 +56,7 @@ CYCLE_CURVE_ENDS = {
 }
 """Reasons for the end of a curve of folds of cycles or torus points; the file stores the index."""
 INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
-    "crossings": CROSSINGS,
+    "crossings": MORE_CROSSINGS,
     "curves": NEEDS_NO_SOLVE,
 }
 
@@ -83,7 +93,7 @@ def layout(config: dict[str, Any]) -> Layout:
     if options["cycles"]:
         variables += cycle_variables(line)
         extents[CYCLE_SPECIAL] = MAX_CYCLE_SPECIAL
-    variables = confirmed(variables, config, "crossings")
+    variables = with_certified_meaning(variables, config, "crossings")
     return Layout(variables, extents, all_but(line), needs_all_points=options["curves"])
 
 
@@ -95,7 +105,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
     return (
         word("stable_states", "stable states of the rod", STABLE_STATES, line),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
-        *along(
+        *along_dimension(
             CYCLE_SPECIAL,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
             real(f"cycle_special_{line}", unit, f"{line} {at}"),
@@ -130,12 +140,12 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     return {variable.name: variable for variable in variables}
 
 
-def end_variables(curve: str, reasons: Iterable[str], along: str) -> tuple[Variable, Variable]:
+def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> tuple[Variable, Variable]:
     """Variables with the reasons for both ends of a curve, along its points."""
     reasons = tuple(reasons)
     return (
-        word(f"{curve}_start", "why the curve begins at the point", reasons, along),
-        word(f"{curve}_end", "why the curve ends at the point", reasons, along),
+        word(f"{curve}_start", "why the curve begins at the point", reasons, along_dimension),
+        word(f"{curve}_end", "why the curve ends at the point", reasons, along_dimension),
     )
 
 
@@ -174,9 +184,9 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     error = "estimate of the error of bautin_"
     variables = (
-        *along("curve_point", criticality_variable("curve_criticality", "Re c")),
+        *along_dimension("curve_point", criticality_variable("curve_criticality", "Re c")),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
-        *along(
+        *along_dimension(
             "bautin",
             integer("bautin_curve", "number of the curve on which the generalised Hopf point lies"),
             integer(

@@ -37,8 +37,13 @@ def is_linear(config: Mapping[str, Any]) -> bool:
     return all(each.get("law", "linear") == "linear" for each in stated)
 
 
-def confirmed(variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str) -> tuple[Variable, ...]:
-    """The variables; without a covering, `certified` says that counts confirm the list of the noun."""
+def with_certified_meaning(
+    variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str
+) -> tuple[Variable, ...]:
+    """The variables, with a long name of `certified` for lists confirmed by counts instead of a covering.
+
+    noun: name of the listed items, such as "Hopf points".
+    """
     if has_covering(config):
         return variables
     meaning = (

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .rods import confirmed
+from .rods import with_certified_meaning
 from .variables import (
     ANGULAR,
     NEEDS_NEW_SOLVE,
@@ -76,12 +76,12 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
-CROSSINGS = IncreaseRule(lambda records, before: records["crossing_count"] <= before)
+MORE_CROSSINGS = IncreaseRule(lambda records, before: records["crossing_count"] <= before)
 """Increase of the length of the list of crossings; a list with room left is complete already."""
-INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
+INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
-    variables = confirmed(THRESHOLDS + search_variables("F", "crossing_F"), config, "crossings")
+    variables = with_certified_meaning(THRESHOLDS + search_variables("F", "crossing_F"), config, "crossings")
     return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, all_but("F"))

@@ -120,7 +120,7 @@ def boolean(name: str, long_name: str) -> Variable:
     return Variable(name, "|i1", 0, "1", long_name)
 
 
-def along(dimension: str, *variables: Variable) -> tuple[Variable, ...]:
+def along_dimension(dimension: str, *variables: Variable) -> tuple[Variable, ...]:
     """The variables, each with a value for every entry of a dimension."""
     return tuple(replace(v, extra=(dimension,)) for v in variables)
 

@@ -13,7 +13,7 @@ from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, StepResult, advance
 from ..cycle.accuracy.cycle_verdict import RefinedCycle
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
-from ..cycle.along_parameter import carried
+from ..cycle.along_parameter import carried_change
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
@@ -125,7 +125,7 @@ class ArcPoint:
         last = mesh.carry(before.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
-        slope = np.append(carried(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
+        slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
@@ -138,7 +138,7 @@ class ArcPoint:
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def placed(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePlace:
+def cycle_place(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePlace:
     """Place of a cycle on its branch, from a tangent of any length, (N + 1,)."""
     own = Scale.of(found.orbit, scale.name, scale.least)
     ahead = own.moved(found.orbit, tangent)
@@ -195,7 +195,7 @@ def cycle_ahead(
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
     """
     cycle = with_calibrated_errors(start.calibration.known, found, accuracy)
-    place = placed(found, start.scale, tangent)
+    place = cycle_place(found, start.scale, tangent)
     curvature = (place.rate - start.rises) / length
     changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
     return ArcPoint(

@@ -146,7 +146,7 @@ def special_hopf(hopf: HopfBirth) -> SpecialPoint:
     )
 
 
-def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
+def first_cycle(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
     """The first cycle of the branch from a Hopf point; raises Unsolvable.
 
     workspace: memory of the branch's matrices.

@@ -18,7 +18,7 @@ from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
 from ..cycle.accuracy.calibration_settings import CALIBRATION
 from ..cycle.accuracy.cycle_errors import CYCLE_ERRORS, CycleErrors
 from ..cycle.accuracy.finer_meshes import COMPARISON, finer_meshes
-from ..cycle.along_parameter import carried
+from ..cycle.along_parameter import carried_change
 from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
@@ -207,7 +207,7 @@ def _difference(rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, pl
     deflection, _, off = scale.place(orbit) - scale.place(fine.orbit)
     length = place.slide(off)
     target = mesh_of(fine.orbit)
-    along = np.append(carried(orbit, place.tangent[:-1], target), place.tangent[-1])
+    along = np.append(carried_change(orbit, place.tangent[:-1], target), place.tangent[-1])
     # The two cycles differ in the parameter; the finer one is moved along the branch to the same value.
     slid = moved(fine.orbit, scale.name, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(length * place.multiplier_rate)

@@ -12,7 +12,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_between, next_point, point_at
-from .beginning import HopfBirth, beginning, special_hopf
+from .beginning import HopfBirth, first_cycle, special_hopf
 from .branch_curve import BranchCurve, BranchEnd
 from .range_end import cycle_at_range_end, range_end_condition
 from .settling import measurement_due
@@ -48,7 +48,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
     hopf = limits.hopfs[number]
     curve = BranchCurve(hopf=number)
     curve.add(special_hopf(hopf))
-    return _followed(curve, limits, lambda: beginning(hopf, limits.accuracy, limits.workspace))
+    return _followed(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
 
 def follow_without_symmetry(which: int, name: str, limits: BranchLimits) -> BranchCurve:

@@ -11,7 +11,7 @@ from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_
 from ..orbit.newton import ConvergedOrbit, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, placed, tangent_at
+from .arc import ARC_STEPS, ArcPoint, cycle_place, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered
 from .bordered.scale import Scale
@@ -49,7 +49,7 @@ def first_point(found: ConvergedOrbit, scale: Scale, side: Array, born: float, a
     side: direction in which the branch goes on, (3,). born: distance from the point of birth, in the scale;
     parameter and multipliers are quadratic in this distance.
     """
-    place = placed(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
+    place = cycle_place(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
     multipliers = multipliers_of(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # From the Hopf point, where rate and lost multiplier vanish: one is linear in the deflection, the other
@@ -114,7 +114,7 @@ def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accura
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
     known = point.place
     place = replace(
-        placed(found, point.scale, tangent),
+        cycle_place(found, point.scale, tangent),
         curvature=known.curvature,
         multiplier_rate=known.multiplier_rate,
     )

@@ -99,11 +99,11 @@ class CyclePredictor:
         """The predictor, carried to another mesh."""
         if target == mesh_of(self.orbit):
             return self
-        data = [np.append(carried(self.orbit, row[:-1], target), row[-1]) for row in self.data]
+        data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
         return replace(self, orbit=target.carry(self.orbit), data=np.array(data))
 
 
-def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
+def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """A change of an orbit's values, (N,), carried to a target mesh, (N of the target,); a linear map."""
     return target.carry(replace(orbit, values=change)).values
 

@@ -14,7 +14,7 @@ from ...discretization.state_layout import stress_place
 from ...discretization.stress.tip_motion import TipMatrices, tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
-from ...model.material.jump import Unknowns, before_jump, behind_jump
+from ...model.material.jump import Unknowns, unknowns_before_jump, unknowns_behind_jump
 from .semidiscrete import Semidiscrete
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -138,8 +138,8 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
     """The smaller h1 beside a jump; state: (n,), sides: (2, 7)."""
     n = rod.rest.shape[1] - 1
     q = Unknowns(state[stress_place(0, node, n)], state[stress_place(2, node, n)])
-    a = before_jump(rod.law, sides, q)
-    b = behind_jump(sides, q, a)
+    a = unknowns_before_jump(rod.law, sides, q)
+    b = unknowns_behind_jump(sides, q, a)
     return min(sides[0, 0] + sides[0, 1] * a.q1, sides[1, 0] + sides[1, 1] * b.q1)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import COMPLETENESS, proves, remainder, right_of_hull
+from ...determinant.arm.completeness import COMPLETENESS, proves_completeness, remainder_of_sum, right_of_hull
 from ...determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
 from ...determinant.arm.region import Hull, PathHulls, hull_at
 from ...determinant.arm.value import ARM_VALUE, chain_along, chain_value
@@ -116,7 +116,7 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Level
         points = right_of_hull(line, hull.a, hull.c, power)
         if len(points) == 0 or points[-1] > level[0]:
             continue
-        if proves(remainder(line, w, error, hull, points, (level[0], level[1]))):
+        if proves_completeness(remainder_of_sum(line, w, error, hull, points, (level[0], level[1]))):
             return here
     return 0
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ..stop import StopRequest
-from .ranges import IndexRange, IndexSet, indices_along, joined
+from .ranges import IndexRange, IndexSet, indices_along, merged_ranges
 
 Arrays = dict[str, Array]
 
@@ -67,7 +67,7 @@ class Chains:
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the chains with missing points."""
-        return joined((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
+        return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 
 @dataclass(frozen=True, slots=True)

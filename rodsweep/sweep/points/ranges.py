@@ -16,12 +16,12 @@ IndexRange = tuple[int, int]
 """(first index, index after the last)."""
 
 
-def total(ranges: Iterable[IndexRange]) -> int:
+def index_count(ranges: Iterable[IndexRange]) -> int:
     """Number of indices in the ranges."""
     return sum(end - first for first, end in ranges)
 
 
-def joined(ranges: Iterable[IndexRange]) -> list[IndexRange]:
+def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
     """Sorted ranges with adjacent ranges merged."""
     result: list[IndexRange] = []
     for first, end in ranges:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .ranges import IndexRange, IndexSet, indices_along, joined, total
+from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ranges
 
 STRETCH_POINTS = 64
 """Largest number of points in a stretch."""
@@ -79,7 +79,7 @@ class Stretches:
 
     def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
         """Stretches with missing points, as ranges of stretch numbers."""
-        if total(missing) == math.prod(self.shape):
+        if index_count(missing) == math.prod(self.shape):
             return [(0, self.count)]
         missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
@@ -88,7 +88,7 @@ class Stretches:
             incomplete = self.missing_of((first, last), missing_points) > 0
             edges = first + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
-        return joined(ranges)
+        return merged_ranges(ranges)
 
     def missing_in(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
         """Number of missing points in ranges of stretches."""

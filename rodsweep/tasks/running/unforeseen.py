@@ -84,7 +84,7 @@ class _Guard:
         """Outcome of a failed point, with the fill value of every variable."""
         status = next(status for status in self.inner.statuses if status.name == FAILED)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
-        return Outcome(status, described(error), self.layout.empty_point | values)
+        return Outcome(status, describe_unforeseen(error), self.layout.empty_point | values)
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         assert self.inner.stretched is not None
@@ -109,7 +109,7 @@ class _Guard:
         )
 
 
-def described(error: Exception) -> str:
+def describe_unforeseen(error: Exception) -> str:
     """An unforeseen exception in one line: class, message, and the place where it was raised."""
     said = " ".join(str(error).split())
     place = traceback.extract_tb(error.__traceback__)[-1]

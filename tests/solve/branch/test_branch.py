@@ -10,9 +10,9 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch import beginning as begun
 from rodsweep.solve.branch import branches, following
-from rodsweep.solve.branch.beginning import beginning, hopf_point
+from rodsweep.solve.branch import first_cycle as begun
+from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
@@ -295,7 +295,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     monkeypatch.setattr(begun, "first_point", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
-    orbit = beginning(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
+    orbit = first_cycle(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
     assert float(orbit.form.tip(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
 
 

@@ -16,7 +16,7 @@ from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point, point_at
-from rodsweep.solve.branch.beginning import beginning, hopf_point
+from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
 from rodsweep.solve.branch.settling import measurement_due, refined
 from rodsweep.solve.branch.special.point import SpecialKind
@@ -69,7 +69,7 @@ def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
-    here, special = beginning(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
+    here, special = first_cycle(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
     while True:
         there = next_point(here, ACCURACY)
         for point in special_points(here, there, partial(point_at, accuracy=ACCURACY), ACCURACY)[0]:

@@ -9,7 +9,7 @@ import pytest
 from rods import rod_of
 from surveyed import RODS
 
-from rodsweep.discretization.elements.periodic import derivative
+from rodsweep.discretization.elements.periodic import time_derivative
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.marched import solve_by_integration
@@ -131,7 +131,7 @@ def test_the_energy_changes_by_what_is_injected_and_lost_also_at_low_accuracy():
         Rod(F=45.0, k1=2000.0, k2=1000.0, gamma3=1e-5, gamma1=0.57), request(2e-3, samples=48)
     )
     U, injection, dissipation = found.energy
-    rate = derivative(U) / found.measures.period
+    rate = time_derivative(U) / found.measures.period
     assert rate == pytest.approx(injection - dissipation, abs=1e-3 * np.ptp(rate))
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ....arrays import Array
-from ....config.arm.axes import ALONG
+from ....config.arm.axes import STORED_ALONG
 from ....config.arm.shape import OF_MATERIAL
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAGS
@@ -49,7 +49,7 @@ def at_point(view: View, name: str, number: int) -> float:
         return float(values.ravel()[0])
     if view.is_grid:  # the quantity lies along the parameter that it changes
         shape = view.variables["status"].shape
-        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(ALONG[name])]])
+        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(STORED_ALONG[name])]])
     return float(values.ravel()[number - 1])
 
 

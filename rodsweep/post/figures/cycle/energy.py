@@ -55,7 +55,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """Draws the three panels of a cycle."""
-    from ....discretization.elements.periodic import derivative, resampled  # compiled code
+    from ....discretization.elements.periodic import resampled, time_derivative  # compiled code
 
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
@@ -69,7 +69,7 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
     at = np.arange(RATE_MARKS) / RATE_MARKS
-    rate = resampled(derivative(cycle.values["energy"]), at) / cycle.period * cycle.units.power_of_rate
+    rate = resampled(time_derivative(cycle.values["energy"]), at) / cycle.period * cycle.units.power_of_rate
     bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
     bottom.set_xlabel(cycle.units.time_label)
     bottom.set_xlim(0, cycle.period)

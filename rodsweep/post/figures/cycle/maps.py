@@ -18,7 +18,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.arm.axes import MOVES
+from ....config.arm.axes import CHANGED_PARAMETER
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ....sweep.points.points import ParameterLine
@@ -92,7 +92,7 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
     """Parameters that all points share, or quantities if the rod is an arm (in_si)."""
     if not in_si:
         return parameter_text(points.shared)
-    along = {quantity for quantity, moved in MOVES.items() if moved in points.names}
+    along = {quantity for quantity, moved in CHANGED_PARAMETER.items() if moved in points.names}
     numbers = [int(points.at[0, 0]) + 1, int(points.at[-1, -1]) + 1]
     return shared_and_own_of_arms(view, numbers, {*points.names, *along})[0]
 

@@ -12,7 +12,7 @@ import h5py
 
 from ....config.document.reading import config_of
 from ....errors import InputError
-from ....sweep.points.ranges import total
+from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNALS, journal_directory
 from ..creation import Plan, add_variables, create_file
 from ..exchange import FileReplacement, disk_refusals
@@ -86,7 +86,9 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
             file.attrs["finished"] = now()
         file.attrs.update(history)
         points = file["status"].size
-    return MergeResult(points - total(left), total(left), finished, kernels_sentence(history[KERNELS]))
+    return MergeResult(
+        points - index_count(left), index_count(left), finished, kernels_sentence(history[KERNELS])
+    )
 
 
 def _opened(paths: Sequence[Path]) -> list[ResultHeader]:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .....config.arm.axes import MOVES
+from .....config.arm.axes import CHANGED_PARAMETER
 from .....config.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
@@ -134,7 +134,7 @@ def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[st
     """(parameters that all branches share, parameters of each branch), for an arm in typed units."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
-        along = {name, *(quantity for quantity, moved in MOVES.items() if moved == name)}
+        along = {name, *(quantity for quantity, moved in CHANGED_PARAMETER.items() if moved == name)}
         return shared_and_own_of_arms(view, [branch.first for branch in branches], along)
     return shared_and_own([branch.parameters for branch in branches])
 
