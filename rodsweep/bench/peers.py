@@ -38,17 +38,17 @@ Section = Callable[[int], tuple[list[str], list[Measurement]]]
 
 @dataclass(frozen=True, slots=True)
 class Peers:
-    """The peers of one study.
-
-    contenders: by the name of the race, each method's settings from the coarsest to the finest; the study
-    defines the races and their cases. sections: further comparisons. notes: sentences on the contenders, for
-    the introduction. skipped: a sentence for each peer that is not installed.
-    """
+    """The peers of one study."""
 
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
+    """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
+    defines the races and their cases."""
     sections: Sequence[Section] = ()
+    """Further comparisons."""
     notes: Sequence[str] = ()
+    """Sentences on the contenders, for the introduction."""
     skipped: Sequence[str] = ()
+    """A sentence for each peer that is not installed."""
 
     def of(self, race: str) -> list[Contender]:
         """Contenders of one race; empty if no peer takes part."""

@@ -16,19 +16,22 @@ from .state import PageState, number, rod_of
 class ControlScale:
     """Scale of the control of one parameter or quantity.
 
-    label: text above the control, with the unit. low, high: ends of the slider, in the unit of the control.
-    logarithmic: whether the slider is logarithmic. unit: unit of a quantity, empty for a rod's parameter.
-    factor: from SI units to the unit. has_inf: whether the upper end of the slider means inf.
+    low, high: ends of the slider, in the unit of the control.
     """
 
     name: str
     label: str
+    """Text above the control, with the unit."""
     low: float
     high: float
     logarithmic: bool = True
+    """Whether the slider is logarithmic."""
     unit: str = ""
+    """Unit of a quantity, empty for a rod's parameter."""
     factor: float = 1.0
+    """Conversion factor from SI units to the unit."""
     has_inf: bool = False
+    """Whether the upper end of the slider means inf."""
 
     def text(self, value: float) -> str:
         """Text of a value, with unit, in the control."""

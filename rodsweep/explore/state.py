@@ -38,18 +38,20 @@ DEFAULT_F_MAX = "200"
 
 @dataclass(frozen=True, kw_only=True)
 class PageState:
-    """Values of the controls, in the user's notation.
-
-    tab: "rod" or "arm", the tab to solve. rod, arm: texts of each tab by name. law: a key of `LAWS`. across:
-    second parameter of the diagram. F_max: largest force of thresholds, branches and diagram.
-    """
+    """Values of the controls, in the user's notation."""
 
     tab: str = "rod"
+    """The tab to solve: "rod" or "arm"."""
     rod: Mapping[str, str] = field(default_factory=lambda: dict(ROD))
+    """Texts of the tab "rod" by name."""
     arm: Mapping[str, str] = field(default_factory=lambda: dict(ARM))
+    """Texts of the tab "arm" by name."""
     law: str = "linear"
+    """Constitutive law, a key of `LAWS`."""
     across: str = ""
+    """Second parameter of the diagram."""
     F_max: str = DEFAULT_F_MAX
+    """Largest force of thresholds, branches and diagram."""
 
     @property
     def values(self) -> Mapping[str, str]:

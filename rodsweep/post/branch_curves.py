@@ -49,16 +49,16 @@ class StoredSpecialPoint:
 class StoredBranch:
     """Branch of cycles through n vertices: stored cycles and special points.
 
-    at, y, period: parameter, largest tip y and period at the vertices, (n,). cycles: whether a vertex is a
-    stored cycle, (n,). stable: stability of the pieces between the vertices, (n - 1,): 1 stable, 0 unstable,
-    -1 unknown.
+    at, y, period: parameter, largest tip y and period at the vertices, (n,).
     """
 
     at: Array
     y: Array
     period: Array
     stable: NDArray[np.integer]
+    """Stability of the pieces between the vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown."""
     cycles: NDArray[np.bool_]
+    """Whether a vertex is a stored cycle, (n,)."""
     special: tuple[StoredSpecialPoint, ...]
 
     @property

@@ -35,21 +35,22 @@ def chunk_seconds(ranks: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class RankReport:
-    """Report of a rank with a request for the next chunk.
-
-    done: units finished since the last report, in `seconds`. given_back: units of the chunk left undone.
-    points: points stored. ahead: the rank has only begun a chunk, and requests the next chunk in advance.
-    stop: name of the stop signal of the rank, or empty; units given back after a stop are left for another
-    run. results: results of finished units, by unit, where later units depend on results.
-    """
+    """Report of a rank with a request for the next chunk."""
 
     done: int = 0
+    """Units finished since the last report, in `seconds`."""
     seconds: float = 0.0
     given_back: IndexRange = OVER
+    """Units of the chunk left undone."""
     points: int = 0
+    """Number of points stored since the last report."""
     ahead: bool = False
+    """Whether the rank has only begun a chunk, and requests the next chunk in advance."""
     stop: str = ""
+    """Name of the stop signal of the rank, or empty; units given back after a stop are left for another
+    run."""
     results: dict[int, Any] = field(default_factory=dict)
+    """Results of finished units, by unit, where later units depend on results."""
 
 
 class Handout:

@@ -55,18 +55,17 @@ class RankWork:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """Work of every rank on units.
-
-    prepare: runs before the first unit. keep: stores a point durably, on the rank that solved the point,
-    before the next point begins. results: results of the units stored since the last call, by unit, where
-    later units depend on results. name: describes a unit in words.
-    """
+    """Work of every rank on units."""
 
     solve: UnitSolver
     keep: Callable[[Indices, Any], None]
+    """Stores a point durably, on the rank that solved the point, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
+    """Runs before the first unit."""
     results: Callable[[], dict[int, Any]] = dict
+    """Results of the units stored since the last call, by unit, where later units depend on results."""
     name: Callable[[int], str] = lambda unit: ""
+    """Name of a unit in words."""
 
 
 def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> RankWork:

@@ -23,20 +23,24 @@ MOTION_ACCURACY = 1e-5
 
 @dataclass(frozen=True, kw_only=True)
 class ReleasedMotion:
-    """The motion and where it ends.
-
-    status, sentence, message: as of the task limit_cycle. cycle: its variables by name. step: time between
-    two shapes, tau2. x, y: (frames, nodes) in L. is_whole: whether the shapes go on until the end is known.
-    """
+    """Motion of a released rod, and where the motion ends."""
 
     status: str
+    """Status of the task limit_cycle."""
     sentence: str
+    """Sentence of the status."""
     message: str
+    """Message of the task limit_cycle."""
     cycle: Mapping[str, Any]
+    """Variables of the cycle by name."""
     step: float
+    """Time between two shapes, tau2."""
     x: Array
+    """x of the shapes, (frames, nodes), in L."""
     y: Array
+    """y of the shapes, (frames, nodes), in L."""
     is_whole: bool
+    """Whether the shapes go on until the end is known."""
 
 
 @solving

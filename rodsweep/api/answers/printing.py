@@ -26,22 +26,22 @@ BETWEEN = "+-"
 
 @dataclass(frozen=True, slots=True)
 class PrintedAnswer:
-    """Content of a printed answer.
-
-    heading: lines with the answer, the rod and the status. numbers: columns with one row. absent: variables
-    without a value for this rod. lists: columns by the name of the list; the first column numbers the items.
-    named: lists not printed, with their number of rows. totals: number of items of a list, stored or not; of
-    modes the number requested.
-    """
+    """Content of a printed answer."""
 
     rod: OneRod
     heading: tuple[str, ...]
+    """Lines with the answer, the rod and the status."""
     headline: Headline
     numbers: tuple[Column, ...]
+    """Variables with a single value, as columns with one row."""
     absent: tuple[str, ...]
+    """Variables without a value for this rod."""
     lists: Mapping[str, tuple[Column, ...]]
+    """Columns of each printed list, by the name of the list; the first column numbers the items."""
     named: Mapping[str, int]
+    """Number of rows of each list that is not printed, by name."""
     totals: Mapping[str, int]
+    """Number of items of each list, stored or not; of modes the number requested."""
 
     @property
     def closing_lines(self) -> Iterator[str]:

@@ -93,23 +93,24 @@ def uneven_forces(count: int) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandRun:
-    """Time, memory and disk space of a run of the command.
-
-    seconds: the whole command. inside: time stated by the command, without the start of Python and MPI; nan
-    if killed. solving: time in the solver, summed over ranks. memory: peak bytes of the first rank, and the
-    largest peak of the remaining ranks. file, journal: bytes of the result, and of the journals left by a
-    killed run. elsewhere: processors kept busy by foreign programs; nan if unknown. busy: share of the ranks'
-    time spent on points instead of waiting; nan without the real solver.
-    """
+    """Time, memory and disk space of a run of the command."""
 
     seconds: float
+    """Time of the whole command."""
     inside: float
+    """Time stated by the command, without the start of Python and MPI; nan if killed."""
     solving: float
+    """Time in the solver, summed over ranks."""
     memory: tuple[int, ...]
+    """Peak bytes of the first rank, and the largest peak of the remaining ranks."""
     file: int
+    """Bytes of the result."""
     journal: int
+    """Bytes of the journals left by a killed run."""
     elsewhere: float
+    """Processors kept busy by foreign programs; nan if unknown."""
     busy: float
+    """Share of the ranks' time spent on points instead of waiting; nan without the real solver."""
 
 
 def launcher(ranks: int) -> list[str]:

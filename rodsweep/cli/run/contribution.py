@@ -50,23 +50,25 @@ def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunEnd:
-    """Counts and times at the end of a run.
-
-    asked: points to solve. left: points not solved. kept: points in the file. seconds: time of the points.
-    curve_seconds: time of the variables that need all points. in_the_middle: points interrupted
-    by a stop. followed: halves of curves followed in this run, None if no curves were due. halves: halves
-    kept while the curves are incomplete, else None.
-    """
+    """Counts and times at the end of a run."""
 
     ranks: int
     asked: int
+    """Number of points to solve."""
     left: int
+    """Number of points not solved."""
     kept: int
+    """Number of points that the file held before the run."""
     seconds: float
+    """Time spent on the points."""
     curve_seconds: float
+    """Time spent on the variables that need all points, in s."""
     in_the_middle: int
+    """Number of points interrupted by a stop."""
     followed: int | None
+    """Number of halves of curves followed in this run, None if no curves were due."""
     halves: int | None
+    """Number of halves of curves kept for the next run while the curves are incomplete, else None."""
 
     def times(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""

@@ -110,7 +110,6 @@ def _node_inside(
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # No smaller circle reaches farther than half of this one could.
         enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT.between_points, room))
-        last = rho / 2 < smallest
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in ARM_COUNT.directions:
@@ -119,7 +118,7 @@ def _node_inside(
             size = max(size, log - tangent(tried, v, samples).real)
             M = ARM_COUNT.between_points * math.exp(min(size - here, EXPONENTS.largest_exponent))
             reach = _reach_of_circle(rho, M, room)
-            if reach <= best.reach or (reach < ARM_COUNT.given_up * rho and not last):
+            if reach <= best.reach or (reach < ARM_COUNT.given_up * rho and rho / 2 >= smallest):
                 reach = 0.0
                 break
         if reach > best.reach:

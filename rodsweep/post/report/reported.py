@@ -35,22 +35,24 @@ VERSIONS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReportContents:
-    """Contents of the page about one result.
-
-    name: name of the file. title: title of the config, or the file's name. config: as typed. complete: with
-    all defaults. versions: (word, value). pictures: figures.
-    """
+    """Contents of the page about one result."""
 
     name: str
+    """Name of the file."""
     title: str
+    """Title of the config, or the file's name."""
     task: str
     summary: Summary
     statuses: TextTable
     pictures: Pictures
+    """Figures of the result."""
     tables: Sequence[PageTable]
     config: str
+    """Config as typed by the user."""
     complete: str
+    """Config with all defaults."""
     versions: Sequence[tuple[str, str]]
+    """Versions of the software as (name, version)."""
 
 
 def reported(view: View, pictures: Pictures) -> ReportContents:

@@ -11,17 +11,16 @@ from .units import PortraitUnits, units_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DescribedRod:
-    """A rod as a user describes it.
-
-    parameters: values by name; of an arm those that replace the arm's own. material: section `material` of
-    a config, empty for a uniform rod of linear material. arm: section `parameters.arm` of a config without
-    load, empty for a rod. load: the load of the arm, "pressure" or "force".
-    """
+    """A rod as a user describes it."""
 
     parameters: Mapping[str, float] = field(default_factory=dict)
+    """Values by name; for an arm only values that replace the arm's own."""
     material: Mapping[str, Any] = field(default_factory=dict)
+    """Section `material` of a config, empty for a uniform rod of linear material."""
     arm: Mapping[str, Any] = field(default_factory=dict)
+    """Section `parameters.arm` of a config without load, empty for a rod."""
     load: str = "pressure"
+    """The load of the arm, "pressure" or "force"."""
 
     @property
     def kind(self) -> str:
@@ -40,19 +39,19 @@ class DescribedRod:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RodResults:
-    """Results of one rod, each a view of a single point.
-
-    F_max: largest requested force. views: thresholds, and criticality and branch unless missing. modes:
-    (force, modes there) at the first thresholds, by kind. cycles: (force, limit cycle there), increasing.
-    missing: for every task without a result, the reason in a sentence.
-    """
+    """Results of one rod, each a view of a single point."""
 
     rod: DescribedRod
     F_max: float
+    """Largest requested force."""
     views: Mapping[str, View]
+    """Thresholds, and criticality and branch unless missing."""
     modes: Mapping[str, tuple[float, View]]
+    """(force, modes there) at the first thresholds, by kind."""
     cycles: Sequence[tuple[float, View]]
+    """(force, limit cycle there), increasing."""
     missing: Mapping[str, str]
+    """For every task without a result, the reason in a sentence."""
 
     @property
     def units(self) -> PortraitUnits:

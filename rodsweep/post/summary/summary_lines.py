@@ -24,35 +24,38 @@ class TextTable:
 
 @dataclass(frozen=True, slots=True)
 class SummaryLines:
-    """Sentences about a result.
-
-    answer: the results asked for. trust: accuracy and proved completeness. details: further results. of_arm:
-    parts of the answer in the units of an arm. numbers: table below the answer.
-    """
+    """Sentences about a result."""
 
     answer: Sequence[str]
+    """The results asked for."""
     trust: Sequence[str] = ()
+    """Accuracy and proved completeness."""
     details: Sequence[str] = ()
+    """Further results."""
     of_arm: Sequence[str] = ()
+    """Parts of the answer in the units of an arm."""
     numbers: TextTable | None = None
+    """Table below the answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Everything that `rodsweep show` prints about a file, in the order of printing.
-
-    answer: the results asked for. numbers: table below the answer. trust: unfinished work, accuracy and
-    proved completeness. statuses: number of points and meaning of every status. details: further results.
-    axes: ranges of the parameters. origin: computing time, ranks, dates and versions.
-    """
+    """Everything that `rodsweep show` prints about a file, in the order of printing."""
 
     answer: Sequence[str]
+    """The results asked for."""
     trust: Sequence[str]
+    """Unfinished work, accuracy and proved completeness."""
     statuses: TextTable
+    """Number of points and meaning of every status."""
     details: Sequence[str]
+    """Further results."""
     axes: TextTable
+    """Ranges of the parameters."""
     origin: Sequence[str]
+    """Computing time, ranks, dates and versions."""
     numbers: TextTable | None = None
+    """Table below the answer."""
 
 
 def varied(view: View) -> dict[str, np.ndarray]:

@@ -27,7 +27,8 @@ from .variables import (
 POWER = "k3/(L tau2)"
 """Unit of a power."""
 STORED_MULTIPLIERS = 6
-"""Number of stored nontrivial Floquet multipliers; NaN stands for a modulus below 1e-6."""
+"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.number`; NaN stands for a
+modulus below its `min_modulus`."""
 CYCLE_WORDS = ("cycle", "unstable")
 """Statuses of points with a cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))

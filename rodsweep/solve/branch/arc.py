@@ -47,20 +47,20 @@ class PreviousCycle:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ArcPoint:
-    """A cycle of a branch.
-
-    length: length of the next step. before: the previous cycle. calibration: errors of the last measured
-    cycle. unmeasured: number of steps since that measured cycle, 0 if this cycle is measured.
-    arc_since_measured: arc length of the branch from that cycle to this one.
-    """
+    """A cycle of a branch."""
 
     cycle: RefinedCycle
     place: CyclePlace
     length: float
+    """Length of the next step."""
     calibration: BranchCalibration
+    """Errors of the last measured cycle."""
     unmeasured: int = 0
+    """Number of steps since the last measured cycle, 0 for a measured cycle."""
     arc_since_measured: float = 0.0
+    """Arc length of the branch since the last measured cycle."""
     before: PreviousCycle | None = None
+    """The previous cycle."""
 
     @property
     def scale(self) -> Scale:

@@ -56,20 +56,19 @@ DEFLECTION = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBirth:
-    """A Hopf point along a parameter, with the normal form of the cycles born there.
-
-    coordinate: coordinate of the parameter at the Hopf point. slope: dw/d(coordinate). normal: normal form on
-    a mesh fine enough to start a branch. coefficients: coefficients of the normal form from a finer mesh,
-    with errors.
-    """
+    """A Hopf point along a parameter, with the normal form of the cycles born there."""
 
     crossing: Crossing
     rod: Rod
     name: str
     coordinate: float
+    """Coordinate of the parameter at the Hopf point."""
     slope: complex
+    """Derivative dw/d(coordinate) of the eigenvalue at the Hopf point."""
     normal: NormalForm
+    """Normal form on a mesh fine enough to start a branch."""
     coefficients: HopfCoefficients
+    """Coefficients of the normal form from a finer mesh, with errors."""
 
     @property
     def period(self) -> float:

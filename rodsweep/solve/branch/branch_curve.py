@@ -16,19 +16,19 @@ from .symmetry import SymmetryBreaking
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchPoint:
-    """Numbers of one cycle of a branch.
-
-    at: value of the parameter. at_error: relative error of the parameter at an equal deflection. errors: at
-    an equal parameter. multiplier: modulus of the largest nontrivial Floquet multiplier. unstable: number of
-    multipliers outside the unit circle, -1 if one lies on the circle within its error.
-    """
+    """Numbers of one cycle of a branch."""
 
     at: float
+    """Value of the parameter."""
     at_error: float
+    """Relative error of the parameter at an equal deflection."""
     measures: Measures
     errors: CycleErrors
+    """Errors at an equal parameter."""
     multiplier: float
+    """Modulus of the largest nontrivial Floquet multiplier."""
     unstable: int
+    """Number of multipliers outside the unit circle, -1 if one lies on the circle within its error."""
 
     @classmethod
     def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
@@ -79,24 +79,24 @@ class BranchEnd:
 
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
-    """A branch: its cycles and its special points, each in order along the branch.
-
-    hopf: number of the Hopf point where it is born, or -1. end_hopf: number of the Hopf point where it ends,
-    or -1. breaking: symmetry breaking where a branch without symmetry is born. end_breaking: symmetry
-    breaking where it ends. complete: whether it was followed to a true end. full: whether it ends because the
-    limit on the number of cycles is reached. explained: whether the special points account for all
-    multipliers that cross the unit circle.
-    """
+    """A branch: its cycles and its special points, each in order along the branch."""
 
     hopf: int
+    """Number of the Hopf point where the branch starts, or -1."""
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
+    """Number of the Hopf point where the branch ends, or -1."""
     breaking: SymmetryBreaking | None = None
+    """Symmetry breaking where a branch without symmetry starts."""
     end_breaking: SymmetryBreaking | None = None
+    """Symmetry breaking where a branch without symmetry ends."""
     complete: bool = False
+    """Whether the branch was followed to a true end."""
     full: bool = False
+    """Whether the branch ends because the limit on the number of cycles is reached."""
     explained: bool = True
+    """Whether the special points account for all multipliers that cross the unit circle."""
 
     def add(self, special: SpecialPoint) -> None:
         """Adds a special point behind the last cycle."""

@@ -55,18 +55,17 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 @dataclass(frozen=True, eq=False)
 class CyclePlace:
-    """Place of a cycle on its branch.
-
-    tangent: of unit length in the scale, (N + 1,). ahead: the tangent as a direction of `Scale.place`, (3,).
-    curvature: second derivative of the parameter along the branch, in the scale's units. multiplier_rate:
-    derivative of the largest multiplier along the branch.
-    """
+    """Place of a cycle on its branch."""
 
     scale: Scale
     tangent: Array
+    """Tangent of the branch, of unit length in the scale, (N + 1,)."""
     ahead: Array
+    """The tangent as a direction of `Scale.place`, (3,)."""
     curvature: float
+    """Second derivative of the parameter along the branch, in the scale's units."""
     multiplier_rate: float
+    """Derivative of the largest multiplier along the branch."""
 
     @property
     def rate(self) -> float:

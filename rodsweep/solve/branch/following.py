@@ -27,20 +27,21 @@ from .work import share_done
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits within which branches are followed, and known points where they may end.
-
-    hopfs: Hopf points of the rod. ends: coordinates of the parameter at which branches end. reasons: why they
-    end there. max_cycles: number of stored cycles. workspace: memory of all matrices. breakings: known
-    symmetry breakings of the rod.
-    """
+    """Limits within which branches are followed, and known points where they may end."""
 
     hopfs: Sequence[HopfBirth]
+    """Hopf points of the rod."""
     ends: tuple[float, float]
+    """Coordinates of the parameter at which branches end."""
     reasons: tuple[EndReason, EndReason]
+    """Why branches end at each of the two coordinates."""
     accuracy: float
     max_cycles: int
+    """Maximum number of stored cycles of a branch."""
     workspace: NewtonWorkspace
+    """Memory of all matrices."""
     breakings: Sequence[SymmetryBreaking] = ()
+    """Known symmetry breakings of the rod."""
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:

@@ -19,7 +19,7 @@ from .arm_path import ArmPath, path_problem
 from .leading_eigenvalue import Tracer
 from .path_problem import PathProblem
 from .search_range import SearchEnd
-from .unstable_modes import ChangeKind, Crossing, UnstableModeCounter
+from .unstable_modes import ChangeKind, Crossing, ModeCounter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,27 +38,28 @@ TRANSITIONS = TransitionSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transitions:
-    """All changes along a path, in increasing order of its parameter.
-
-    searched: interval of the parameter to which all other fields refer. ended_early: whether this interval is
-    smaller than requested, because a place beyond its end could not be solved. open_range: smallest interval
-    that contains all places where two further crossings are possible; nan if there is no such place.
-    oscillates_at_start: whether a pair leads there. proved: whether the covering is complete, every count
-    agrees, and no eigenvalue lies right of a leading eigenvalue. boxes: evaluations of D by the covering.
-    solves: number of eigenproblems. why_not: reasons why the list is not proved or the search ended early.
-    """
+    """All changes along a path, in increasing order of its parameter."""
 
     crossings: tuple[Crossing, ...] = ()
     searched: tuple[float, float] = (math.nan, math.nan)
+    """Interval of the parameter to which all other fields refer."""
     ended_early: bool = False
+    """Whether `searched` is smaller than requested, because a place beyond its end could not be solved."""
     open_range: tuple[float, float] = (math.nan, math.nan)
+    """Smallest interval around all places where two further crossings are possible; nan without a place."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
+    """Whether a complex pair leads at the start of the path."""
     proved: bool
+    """Whether the covering is complete, every count agrees, and no eigenvalue lies right of a leading
+    eigenvalue."""
     boxes: int = 0
+    """Evaluations of D by the covering."""
     solves: int = 0
+    """Number of eigenproblems."""
     why_not: str = ""
+    """Reasons why the list is not proved or the search ended early."""
 
     @property
     def proved_to_the_end(self) -> bool:
@@ -114,7 +115,7 @@ def transitions(
         changes, reach = tracer.changes([*(p for p in edges if p < found.reach.p), found.reach.p])
         found = found.up_to(reach) if reach.reason else found
         ends = found.searched(start, stop)
-        counts = UnstableModeCounter(problem, found.gaps, certify)
+        counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: nothing is unstable, and no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, found.crossings)
         oscillates = tracer.anchor(path.variable(ends[0])).oscillates
@@ -145,7 +146,7 @@ def pair_crossings(
     low, high = sorted((path.variable(start), path.variable(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
-    counts = UnstableModeCounter(problem, found.gaps, certify)
+    counts = ModeCounter(problem, found.gaps, certify)
     ends = found.searched(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(*ends, ordered)
@@ -153,9 +154,7 @@ def pair_crossings(
     return _with_range(_counted(counts, unstable, crossings, at_end), found, (start, stop))
 
 
-def _counted(
-    counts: UnstableModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int
-) -> Transitions:
+def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
     """The counted crossings as `Transitions`, without the leading eigenvalue at the start.
 
     unstable, at_end: number of unstable modes at the two ends of the searched interval.

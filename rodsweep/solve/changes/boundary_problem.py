@@ -45,6 +45,8 @@ class ChangeCurveSettings:
 
 
 CHANGE_CURVES = ChangeCurveSettings()
+CRUSHED_MARGIN = 4
+"""Index of the margin that is negative for a crushed rod, behind the four edges of the plane."""
 
 
 class BoundaryEnd(IntEnum):
@@ -145,7 +147,3 @@ class ChangeCurveProblem:
         beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.shortest * tangent, tangent)
         is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
         return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed
-
-
-CRUSHED_MARGIN = 4
-"""Index of the margin that is negative for a crushed rod."""

@@ -79,7 +79,7 @@ class Crossing:
     frequency_error: float = math.nan
 
 
-class UnstableModeCounter:
+class ModeCounter:
     """Number of unstable modes along a path, carried from crossing to crossing and confirmed by counts.
 
     gaps: intervals of the parameter that may contain crossings missing from the list. doubts: statements that

@@ -51,29 +51,33 @@ class CurveProblem(Protocol[Solution]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """Control of the step lengths along a curve.
-
-    first, longest, shortest: lengths; the curve ends if a step fails whose half is below `shortest`. aim:
-    prediction error for which the next step is chosen. far: prediction error beyond which the solution may
-    belong to another curve. order: order of the prediction, whose error grows as length**order; limited by
-    the number of solutions behind. turn: angle in radians for which the next step is chosen. sharpest:
-    largest angle of a step. growth, shrinkage: largest and smallest ratio of successive lengths. most:
-    maximum number of solutions; no curve has more. min_measured: smallest prediction error, or angle,
-    distinguished from 0. Raises ValueError unless steps may grow.
-    """
+    """Control of the step lengths along a curve. Raises ValueError unless steps may grow."""
 
     first: float
+    """First step length."""
     longest: float
+    """Longest step length."""
     shortest: float
+    """Shortest step length: the curve ends if a step fails whose half would be shorter."""
     aim: float = inf
+    """Prediction error for which the next step is chosen."""
     far: float = inf
+    """Prediction error beyond which the solution may belong to another curve."""
     order: int = 1
+    """Order of the prediction, whose error grows as length**order; limited by the number of solutions
+    behind."""
     turn: float = inf
+    """Angle in radians for which the next step is chosen."""
     sharpest: float
+    """Largest angle of a step."""
     growth: float
+    """Largest ratio of successive lengths."""
     shrinkage: float = 0.5
+    """Smallest ratio of successive lengths."""
     most: int = 5000
+    """Maximum number of solutions; no curve has more."""
     min_measured: float = 1e-9
+    """Smallest prediction error, or angle, distinguished from 0."""
 
     def __post_init__(self) -> None:
         if not self.growth > 1:

@@ -28,26 +28,28 @@ class MotionShapes:
 
 @dataclass(frozen=True, slots=True)
 class CycleRequest:
-    """Request for each rod.
-
-    accuracy: relative accuracy of period and extrema. amplitude: tip's y of the start in the leading mode, in
-    L. start: "mode" for the leading mode; "neighbour" for the neighbour's cycle, and the leading mode where
-    there is no neighbour; "hopf" for the branch from the Hopf point. harmonics: number of harmonics. samples:
-    times per period of the tip and the energy, 0 for none. shapes, nodes: shapes per period, 0 for none, and
-    Lobatto nodes of each shape. most_periods: maximum number of returns of the tip. transient: stored times
-    of the tip's path from the start, 0 for none. For a stored path the motion is always integrated, and
-    without jumps.
-    """
+    """Request for the cycle of a rod."""
 
     accuracy: float
+    """Relative accuracy of period and extrema."""
     amplitude: float
+    """Tip's y of the start in the leading mode, in L."""
     harmonics: int
+    """Number of harmonics of the tip's y to store."""
     samples: int
+    """Times per period at which the tip and the energy are stored, 0 for none."""
     shapes: int
+    """Shapes per period, 0 for none."""
     nodes: int
+    """Lobatto nodes of each shape."""
     most_periods: int
+    """Maximum number of returns of the tip."""
     start: str = "mode"
+    """Start of the search: "mode" for the leading mode; "neighbour" for the neighbour's cycle, or the leading
+    mode without a neighbour; "hopf" for the branch from the Hopf point."""
     transient: int = 0
+    """Number of times at which the tip's path from the start is stored, 0 for none. For a stored path the
+    motion is always integrated, and without jumps."""
     tip: tuple[float, float] | None = None
     frames: int = 0
 
@@ -61,41 +63,46 @@ class CycleRequest:
 class Cycle:
     """Outcome for one rod, with the numbers of its cycle; NaN or None where a number is not known.
 
-    linear_growth_rate, linear_frequency: leading mode of the straight rod, in 1/tau2. periods: returns of the
-    tip in the integrated motion. second_state: a SecondState; subcritical_F: force of the Hopf point that
-    makes a second state possible. multiplier: modulus of the largest nontrivial Floquet multiplier;
-    multipliers: the largest multipliers, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance
-    of the trivial multiplier from 1. On a torus only the multipliers are known; they belong to the unstable
-    cycle inside the torus.
-
-    tip: x, y, theta at equidistant times, (3, samples). energy: U in k3/L, injection, dissipation, (3,
-    samples). shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
-    transient: time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4,
-    transient); None if no motion was integrated. motion: shapes from the start, if requested. neighbour: data
-    from which the next point of a chain starts.
+    On a torus only the multipliers are known; they belong to the unstable cycle inside the torus. In stored
+    arrays time starts where the tip's y rises through its mean.
     """
 
     status: PointStatus
     message: str = ""
     seconds: float = 0.0
     linear_growth_rate: float = nan
+    """Growth rate of the leading mode of the straight rod, in 1/tau2."""
     linear_frequency: float = nan
+    """Frequency of the leading mode of the straight rod, in 1/tau2."""
     periods: int = 0
+    """Returns of the tip in the integrated motion."""
     second_state: int = SecondState.not_known
+    """A `SecondState`: whether another stable state is known."""
     subcritical_F: float = nan
+    """Force of the Hopf point that makes a second state possible."""
     elements: int = 0
     order: int = 0
     measures: Measures = Measures()
     errors: CycleErrors = UNKNOWN_ERRORS
     multiplier: float = nan
+    """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
+    """The largest multipliers, complex, (MULTIPLIER_LIST.number,)."""
     trivial_multiplier_error: float = nan
+    """Distance of the trivial multiplier from 1."""
     tip: Array | None = None
+    """x, y, theta of the tip at equidistant times, (3, samples)."""
     energy: Array | None = None
+    """Energy U in k3/L, injected and dissipated power, at equidistant times, (3, samples)."""
     shape: Array | None = None
+    """x, y, theta at equidistant times, (3, shapes, nodes)."""
     transient: Array | None = None
+    """Time in tau2 and x, y, theta of the tip, from the start to the end of the integration, (4, transient);
+    None if no motion was integrated."""
     motion: MotionShapes | None = None
+    """Shapes from the start, if requested."""
     neighbour: Neighbour | None = None
+    """Data from which the next point of a chain starts."""
 
 
 def measured(

@@ -9,7 +9,7 @@ decay slowly, two successive peaks of the motion may agree although no cycle exi
 """
 
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
@@ -38,12 +38,20 @@ from .transient.transient_outcome import TransientOutcome
 
 __all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle"]
 
-STORED_MULTIPLIERS = 6
-"""Number of stored Floquet multipliers."""
-MIN_STORED_MULTIPLIER = 1e-6
-"""Smallest modulus of a stored multiplier."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MultiplierListSettings:
+    """Floquet multipliers of a cycle that are stored."""
+
+    number: int = 6
+    """Number of stored multipliers: the length of their list in a file."""
+    min_modulus: float = 1e-6
+    """Smallest modulus of a stored multiplier; a perturbation with a smaller one is over after a period."""
+
+
+MULTIPLIER_LIST = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Stored for multipliers below MIN_STORED_MULTIPLIER."""
+"""Stored for multipliers below `MULTIPLIER_LIST.min_modulus`."""
 
 
 def solve_cycle(
@@ -213,8 +221,8 @@ def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> C
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome with the stored multipliers of a cycle and their error."""
-    mu = padded(found.multipliers, STORED_MULTIPLIERS, NO_MULTIPLIER)
-    mu[np.abs(mu) < MIN_STORED_MULTIPLIER] = NO_MULTIPLIER
+    mu = padded(found.multipliers, MULTIPLIER_LIST.number, NO_MULTIPLIER)
+    mu[np.abs(mu) < MULTIPLIER_LIST.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,
         multiplier=found.largest_multiplier,

@@ -108,7 +108,7 @@ class _MarchedMotion:
                 if errors.largest <= enough:
                     break
             if in_limit:
-                errors = self._errors_of_the_limit(settled, path, errors)
+                errors = self._limit_errors(settled, path, errors)
         except _NoCycle as end:
             return replace(straight, status=end.status, message=end.why, periods=self.waited)
         return self._measured(straight, path, errors)
@@ -219,9 +219,7 @@ class _MarchedMotion:
             Orbit.of(form, NONE, period, stressed(self.beam, form, states), MARCHING.measured_stages)
         )
 
-    def _errors_of_the_limit(
-        self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors
-    ) -> CycleErrors:
+    def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """The errors plus the effect of integrating a rod near the limit, not in it; raises _NoCycle."""
         known = path.orbit.form.rod
         limit = self.limit

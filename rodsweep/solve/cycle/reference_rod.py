@@ -13,8 +13,6 @@ from .status import CycleStatus
 KNOWN_PERIOD = 0.04204870
 """Period in tau2 of the rod F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1, confirmed by an independent
 displacement-form code."""
-KNOWN_WITHIN = 1e-3
-"""Relative deviation from this period that `warm_up` accepts."""
 
 
 def warm_up() -> None:
@@ -28,7 +26,7 @@ def warm_up() -> None:
     if cycle.neighbour is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
     deviation = abs(cycle.measures.period / KNOWN_PERIOD - 1)
-    reproduced = cycle.status == CycleStatus.cycle and deviation < KNOWN_WITHIN
+    reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
     given = options(CYCLE_PREFIX)
     if given and not reproduced:
         outcome = f"{cycle.status.name} {cycle.message}".strip()

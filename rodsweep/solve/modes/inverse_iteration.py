@@ -35,29 +35,30 @@ MODE_ITERATION = ModeIterationSettings()
 class ModeVectors:
     """Modes on one mesh, at given points.
 
-    right: (Y, Theta) with Y(1) = 1; left: (Y+, Theta+) with Y+(1) = 1; both in L and rad for a tip deflection
-    L. deformation: (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 = c2 s is exactly 0 in
-    an unshearable rod; behind a jump of a stiffness. All three complex, (2, modes, points), NaN if the tip
-    does not move.
-
-    pairing: (psi_n, xi_n) in the Gamma inner product, complex, (modes,). condition: |psi| |xi|/|(psi, xi)| >=
-    1, (modes,): factor by which a perturbation of L, in the Gamma norm, moves the eigenvalue; inf at the
-    onset F*. For gamma3 = 0 the angle theta is no part of the state, and the norm is the norm of y.
-
-    rounding: rounding error of an eigenvalue of the mesh, from (A - w B) x, in 1/tau2, (modes,). mode_error:
-    largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value, (modes,).
-    condition_error: relative, (modes,). Both errors are NaN until another mesh is compared.
+    right, deformation and left are complex, (2, modes, points), NaN if the tip does not move.
     """
 
     resolution: Resolution
     right: Complex
+    """Right modes (Y, Theta) with Y(1) = 1, in L and rad for a tip deflection L."""
     deformation: Complex
+    """(h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 = c2 s is exactly 0 in an
+    unshearable rod. At a jump of a stiffness: the value behind the jump."""
     left: Complex
+    """Left modes (Y+, Theta+) with Y+(1) = 1, in L and rad for a tip deflection L."""
     pairing: Complex
+    """(psi_n, xi_n) in the Gamma inner product, complex, (modes,)."""
     condition: Array
+    """|psi| |xi|/|(psi, xi)| >= 1, (modes,): factor by which a perturbation of L, in the Gamma norm, moves
+    the eigenvalue; inf at the onset F*. For gamma3 = 0 the angle theta is no part of the state, and the norm
+    is the norm of y."""
     rounding: Array
+    """Rounding error of an eigenvalue of the mesh, from (A - w B) x, in 1/tau2, (modes,)."""
     mode_error: Array
+    """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value, (modes,)."""
     condition_error: Array
+    """Relative error of `condition`, (modes,). This error and `mode_error` are NaN until another mesh is
+    compared."""
 
     def errors(self) -> dict[str, float]:
         """Largest relative error of each quantity; inf if unknown."""

@@ -51,20 +51,20 @@ GROWTH = GrowthSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Growth:
-    """Transient growth of a perturbation before its decay; NaN if not requested.
-
-    transient_growth: sup_t |exp(L t)| in the Gamma norm; transient_time: its time, in tau2. They are 1 at 0
-    if the growth exceeds 1 by at most growth_error, inf at inf for an unstable rod, NaN if stability is
-    undecided. growth_error: relative. The time is only as accurate as a flat maximum allows.
-    numerical_abscissa: sup Re (xi, L xi)/(xi, xi), the growth rate at t = 0+, in 1/tau2; abscissa_error:
-    absolute.
-    """
+    """Transient growth of a perturbation before its decay; NaN if not requested."""
 
     transient_growth: float = nan
+    """Largest growth sup_t |exp(L t)| in the Gamma norm. For an unstable rod the growth is inf, at the time
+    inf; if stability is undecided both are NaN."""
     transient_time: float = nan
+    """Time of the largest growth, in tau2, only as accurate as a flat maximum allows; 0 if the growth exceeds
+    1 by at most `growth_error`, and is then stated as 1."""
     growth_error: float = nan
+    """Relative error of `transient_growth`."""
     numerical_abscissa: float = nan
+    """Growth rate at t = 0+, sup Re (xi, L xi)/(xi, xi), in 1/tau2."""
     abscissa_error: float = nan
+    """Absolute error of `numerical_abscissa`."""
 
     def errors(self, rate: float) -> dict[str, float]:
         """Relative errors by quantity; the abscissa relative to `rate` if `rate` is larger."""

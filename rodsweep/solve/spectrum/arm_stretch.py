@@ -59,7 +59,7 @@ class ArmStretchSettings:
 ARM_STRETCH = ArmStretchSettings()
 
 
-class FollowedInterval(NamedTuple):
+class ArmInterval(NamedTuple):
     """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`.
 
     arms: number of points inside the family, of which `p` are followed. further: modes beyond those wanted.
@@ -91,14 +91,14 @@ def followed_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoi
 
 
 def interval_of(
-    path: Path, p: Array, request: SpectrumRequest, before: FollowedInterval | None = None
-) -> FollowedInterval | None:
+    path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
+) -> ArmInterval | None:
     """The points of p, (n,), that are reached with one family of arms; None if following fails at the first.
 
     If too few points are proved, more eigenvalues are followed. before: the previous interval of the path,
     whose family serves again where it contains enough of the points.
     """
-    best: FollowedInterval | None = None
+    best: ArmInterval | None = None
     for further in (
         number for number in ARM_STRETCH.further_modes if before is None or number >= before.further
     ):
@@ -113,20 +113,20 @@ def interval_of(
     return best
 
 
-def _too_few(found: FollowedInterval) -> bool:
+def _too_few(found: ArmInterval) -> bool:
     """Whether more modes grow somewhere than a search for crossings could prove to be all that grow."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
     return bool(growing + ARM_STRETCH.modes_beyond_growing > found.track.w.shape[1])
 
 
-def _is_better(found: FollowedInterval, other: FollowedInterval, modes: int) -> bool:
+def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
     """Whether more points are proved, or as many with enough modes in place of too few."""
     here = found.proved(modes)
     there = other.proved(modes)
     return here > there or (here == there and _too_few(other))
 
 
-def _proves_more(path: Path, found: FollowedInterval, request: SpectrumRequest, further: int) -> bool:
+def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
     """Whether `further` known modes would prove the middle one of the points that are not proved."""
     left = np.flatnonzero(found.known < request.modes)
     p = float(found.p[left[len(left) // 2]])
@@ -142,10 +142,10 @@ def _proves_more(path: Path, found: FollowedInterval, request: SpectrumRequest, 
 
 
 def _followed(
-    path: Path, p: Array, request: SpectrumRequest, further: int, before: FollowedInterval | None
-) -> FollowedInterval | None:
+    path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
+) -> ArmInterval | None:
     """`interval_of` with `further` modes in addition to the wanted modes."""
-    first = _carried_on(before, float(p[0]), request, further)
+    first = _carried(before, float(p[0]), request, further)
     if first is None:
         first = first_eigenvalues(path, float(p[0]), request, further)
     n = len(p)
@@ -173,7 +173,7 @@ def _followed(
     if reached == 0:
         return None
     arms = before.arms if before is not None and family is before.family else n
-    return FollowedInterval(
+    return ArmInterval(
         p[:reached], part_of_track(track, 0, reached), known[:reached], family, hulls, arms, further
     )
 
@@ -203,9 +203,7 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
     return None if family is None else (family, hulls)
 
 
-def _carried_on(
-    before: FollowedInterval | None, p: float, request: SpectrumRequest, further: int
-) -> Complex | None:
+def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
     """Eigenvalues, (m,), at the end p of an interval proved throughout, for the next one; else None."""
     if before is None or before.further != further or before.p[-1] != p:
         return None
@@ -233,7 +231,7 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     return None if search.best is None else search.best.found.roots
 
 
-def counted(path: Path, found: FollowedInterval, p: float, modes: int, here: Track) -> int:
+def counted(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
     """Number of eigenvalues at p that a count confirms to be all eigenvalues right of a line; 0 if
     unconfirmed.
 

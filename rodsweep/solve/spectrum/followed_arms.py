@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...determinant.arm.family import ArmFamily
 from ...determinant.parameter_path import Path
 from .arm_following import follow_arms
-from .arm_stretch import ARM_STRETCH, FollowedInterval, counted, interval_of
+from .arm_stretch import ARM_STRETCH, ArmInterval, counted, interval_of
 from .carried_count import judge_points, leading
 from .prediction import KnownRoots, Track, part_of_track, track_from
 from .spectrum import Spectrum, SpectrumRequest
@@ -28,7 +28,7 @@ class FollowedArms:
         """p: points in order, (n,); modes: number of leading eigenvalues to prove complete at each point."""
         self.path = path
         self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
-        self.intervals: list[FollowedInterval] = []
+        self.intervals: list[ArmInterval] = []
         self._judged: dict[float, list[JudgedPlace]] = {}
         self._p = p
         self._place = 0
@@ -104,7 +104,7 @@ class FollowedArms:
             if known >= modes:
                 return
 
-    def _from_nearest(self, one: FollowedInterval, p: float, modes: int) -> tuple[Track | None, int]:
+    def _from_nearest(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
         """(eigenvalues at p followed from the nearest point, how many are proved complete there).
 
         The track is of p alone, None where following fails.

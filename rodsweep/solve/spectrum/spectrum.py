@@ -48,26 +48,27 @@ EachRod = Any
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """Leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,).
-
-    eigenvalues: complex, (modes,), in 1/tau2, in the order defined in `rodsweep.model`. error_estimate:
-    |D/D'|, (modes,): at least a tenth of the error, and at most ten times the error or the effect of rounding
-    of the force or of w. unstable_count: number of eigenvalues with Re w > 0, -1 if unknown; proved if
-    requested. certified: whether the winding number proves that no eigenvalue right of the last mode is
-    missing. elements, order: numbers of the mesh, 0 without a mesh. seconds: time of the solve, for several
-    rods the mean. vectors: (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
-    """
+    """Leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,)."""
 
     status: EachRod
     """A `SpectrumStatus`."""
     eigenvalues: Complex
+    """Eigenvalues w, complex, (modes,), in 1/tau2, in the order defined in `rodsweep.model`."""
     error_estimate: Array
+    """Error estimates |D/D'|, (modes,): at least a tenth of the error, and at most ten times the error or the
+    effect of rounding of the force or of w."""
     unstable_count: EachRod = -1
+    """Number of eigenvalues with Re w > 0, -1 if unknown; proved if requested."""
     certified: EachRod = False
+    """Whether the winding number proves that no eigenvalue right of the last mode is missing."""
     elements: EachRod = 0
+    """Number of elements of the mesh, 0 without a mesh."""
     order: EachRod = 0
+    """Order of the elements, 0 without a mesh."""
     seconds: EachRod = 0.0
+    """Time of the solve, for several rods the mean."""
     vectors: Complex | None = None
+    """Eigenmodes (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; None if not requested."""
     message: EachRod = ""
 
     @property

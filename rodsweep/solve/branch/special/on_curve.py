@@ -62,20 +62,20 @@ ACROSS_CURVE = AcrossCurveSettings()
 
 @dataclass(frozen=True, eq=False)
 class NormalDerivatives:
-    """Derivatives of a family's cycles by the length across its curve.
-
-    direction: unit direction across, (along the branch, along the rows), (2,). test: derivative of the test
-    function. orbit: derivative of the orbit's values and the line's coordinate, (N + 1,). mesh: mesh of the
-    orbit. span: length between the two cycles of the difference quotient. contraction: contraction of
-    corrections, as in `NearbyCycles`.
-    """
+    """Derivatives of a family's cycles with respect to the length normal to its curve."""
 
     direction: Array
+    """Unit direction normal to the curve: its components along the branch and along the rows, (2,)."""
     test: float
+    """Derivative of the test function."""
     orbit: Array
+    """Derivative of the orbit's values and the line's coordinate, (N + 1,)."""
     mesh: OrbitMesh
+    """Mesh of the orbit."""
     span: float
+    """Length between the two cycles of the difference quotient."""
     contraction: float = inf
+    """Contraction of corrections, as in `NearbyCycles`."""
 
     def on(self, orbit: Orbit) -> Array:
         """Derivative of an orbit across its curve, on the orbit's own mesh, (N + 1,)."""
@@ -119,22 +119,24 @@ class CurveErrors:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OnCurve:
-    """A point of a curve: a cycle with its values of the line's and the rows' parameter.
-
-    ahead: direction of its branch in `Scale.place`, (3,). place: scaled, on the rows' axis. at: the line's
-    parameter; row: the rows' parameter. error: absolute, of `at`. errors: measured error that applies. rates:
-    derivatives across the curve, if known.
-    """
+    """A point of a curve: a cycle with its values of the line's and the rows' parameter."""
 
     orbit: Orbit
     scale: Scale
     ahead: Array
+    """Direction of the cycle's branch in the coordinates of `Scale.place`, (3,)."""
     place: float
+    """Coordinate of the rows' parameter on its axis, scaled to [0, 1]."""
     at: float
+    """Value of the line's parameter."""
     row: float
+    """Value of the rows' parameter."""
     error: float = nan
+    """Absolute error of `at`."""
     errors: CurveErrors | None = None
+    """Errors measured at an earlier point, which still apply here."""
     rates: NormalDerivatives | None = None
+    """Derivatives across the curve, if known."""
 
     @property
     def tip_y_max(self) -> float:
@@ -142,7 +144,7 @@ class OnCurve:
         return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
 
     def step_from(self, other: "OnCurve") -> Array:
-        """Difference from another point: `Scale.place` and place on the rows' axis, (4,)."""
+        """Step from another point to this one, (4,): three coordinates of `Scale.place`, then `place`."""
         moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
         return np.append(moved, self.place - other.place)
 

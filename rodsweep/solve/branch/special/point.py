@@ -94,25 +94,26 @@ class EndReason(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpecialPoint:
-    """A special point: value of the parameter, period in tau2 and largest tip y in L of its cycle.
-
-    error: absolute, of the parameter. period_error, size_error: relative, of the period and the largest tip y
-    at the special point itself. after: index of the last cycle before it on its branch, -1 for none. reason:
-    for an end. message: why no cycle was found, or why the error is large. orbit: the cycle of a located
-    point.
-    """
+    """A special point: value of the parameter, period in tau2 and largest tip y in L of its cycle."""
 
     kind: SpecialKind
     at: float
     period: float
     tip_y_max: float
     error: float
+    """Absolute error of the parameter."""
     period_error: float = nan
+    """Relative error of the period at the special point itself."""
     size_error: float = nan
+    """Relative error of the largest tip y at the special point itself."""
     after: int = -1
+    """Index of the last cycle of the branch before the special point, -1 for none."""
     reason: EndReason | None = None
+    """Why the branch ends here; None unless the point is an end."""
     message: str = ""
+    """Why no cycle was found, or why the error is large."""
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
+    """The cycle of a located point."""
     amplitude_coefficient: float = nan
     """Largest tip y in L over the square root of the relative distance of the parameter from a Hopf point, as
     in `HopfBirth`."""

@@ -31,20 +31,22 @@ PARTS = 5
 class Calibration:
     """Errors of a mesh in space and in time, (5,) each: `path_differences` and the largest multiplier's.
 
-    fall: decay of errors in space per order, natural logarithm, (5,). power: order of errors in time, (5,).
-    tails: `lasting_tails` and the orbit's size at the calibration, (3,). reach: relative change of the
-    parameter since the calibration. growth: growth of both errors to a later orbit, (2,). All errors are
-    relative, but the multiplier's is absolute.
+    All errors are relative, but the multiplier's is absolute.
     """
 
     mesh: OrbitMesh
     space: Array
     time: Array
     fall: Array
+    """Decay of errors in space per order, natural logarithm, (5,)."""
     power: Array
+    """Order of errors in time, (5,)."""
     tails: Array
+    """`lasting_tails` and the orbit's size at the calibration, (3,)."""
     reach: float
+    """Relative change of the parameter since the calibration."""
     growth: Array = field(default_factory=lambda: np.ones(2))
+    """Factors by which the errors in space and in time have grown to a later orbit, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
         """Named arrays: errors and rates (5,), tails (3,), reach and mesh; growth belongs to one orbit."""

@@ -21,6 +21,9 @@ from .right_sides import ParameterDerivatives, residuals, right_sides, variation
 from .substitution import reduce, substitute, to_end
 from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
+NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_SIDE_CHANGE)
+"""Placeholder for no change of the rod, which compiled code never reads."""
+
 
 class Linearisation:
     """Newton's matrix at an orbit. It corrects nearby orbits until another matrix is made in its workspace.
@@ -64,10 +67,6 @@ def over_period(partial: Complex, orbit: Orbit) -> Complex:
     """Floquet multipliers by descending modulus, from the multipliers over the solved part, (rank,) each."""
     values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
-
-
-NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_SIDE_CHANGE)
-"""Placeholder for no change of the rod, which compiled code never reads."""
 
 
 def change_along(form: StressForm, name: str) -> ParameterDerivatives:

@@ -17,23 +17,26 @@ from .square_root import SquareRootLaw, square_root_laws
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Points that differ in a single parameter, in the order of the file; amplitudes are NaN where unknown.
+    """Points that differ in a single parameter, in the order of the file.
 
-    parameters: the remaining parameters, by name. power: mean power of the force over a period. units: units
-    of all quantities. words: words of the status. hopf: Hopf points along the branch, empty unless over F.
-    All arrays have the shape (points,).
+    All arrays have the shape (points,). Amplitudes are NaN where unknown.
     """
 
     view: View
     parameters: dict[str, float]
+    """The remaining parameters, by name."""
     x: Array
     amplitude_x: Array
     amplitude_y: Array
     period: Array
     power: Array
+    """Mean power of the force over a period."""
     words: NDArray[np.str_]
+    """Words of the status."""
     hopf: list[LocatedChange]
+    """Hopf points along the branch, empty unless over F."""
     units: CycleUnits
+    """Units of all quantities."""
     first: int
     """Number of the first point in the file, from 1."""
 
