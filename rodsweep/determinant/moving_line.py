@@ -54,9 +54,10 @@ class IntervalEnd(NamedTuple):
 
 
 class Strip(NamedTuple):
-    """An unproved part of the strip, unbounded upwards.
+    """A part of the strip beside the line, unbounded upwards, that is not yet proved to be free of zeros.
 
-    start, stop: ends, as fractions of the interval of p. y: lower edge. half_y: half-height to try next.
+    start, stop: ends, as fractions of the interval of p. y: lower edge. half_y: half-height of the rectangle
+    to try next.
     """
 
     start: float

@@ -39,7 +39,9 @@ class NodalRod(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """`jumps` and `sides` of a `NodalRod`."""
+    """Nodes at which the material jumps, and both sides of each: the fields `jumps` and `sides` of a
+    `NodalRod`.
+    """
 
     nodes: Integers
     sides: Array

@@ -73,7 +73,10 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
 
 
 def _across(tab: str, axes: Mapping[str, np.ndarray]) -> str:
-    """The axis with most values, (values,) each, that a diagram of a tab can be over; "" without one."""
+    """Name of the second parameter of a tab's diagram: the possible axis with most values; "" without one.
+
+    Values: (values,) each.
+    """
     several = [name for name in ACROSS[tab] if name in axes and len(axes[name]) > 1]
     return max(several, key=lambda name: len(axes[name]), default="")
 

@@ -44,7 +44,7 @@ class FlutterForces:
         return bool(before) and before[-1] != 0
 
     def up_to(self, end: float) -> "FlutterForces":
-        """The same without the changes beyond the force `end`."""
+        """The thresholds without the changes beyond the force `end`."""
         found = self.thresholds
         crossings = tuple(c for c in found.crossings if c.at <= end)
         cut = replace(found, transitions=replace(found.transitions, crossings=crossings), end=end)
@@ -53,7 +53,10 @@ class FlutterForces:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Smallest and largest value of a quantity over the range of drag; always: whether every drag has one."""
+    """Smallest and largest value of a quantity over the range of drag.
+
+    always: whether the quantity exists for every drag.
+    """
 
     low: float
     high: float

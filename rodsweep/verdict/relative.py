@@ -49,10 +49,10 @@ def turned(arm: A) -> A:
 def plane_rods(
     arm: SlenderArm, build: Build | None = None, taper: float | None = None
 ) -> list[tuple[Rod, float]]:
-    """(rod in a plane with the likeliest drag, its k3/L^2 in units of the arm's) for each plane of an arm.
+    """(rod, k3/L^2 of the rod in units of the arm's) for each plane of motion, with the likeliest drag and
+    without load.
 
-    The rods have no load. build, taper: law and profile, and tip radius over base radius, in place of the
-    arm's.
+    build, taper: law and profile, and tip radius over base radius, in place of the arm's.
     """
     planes = [(_in_its_plane(arm, build, taper), 1.0)]
     if not arm.isotropic:

@@ -64,7 +64,7 @@ def _where(plane: PlaneOfMotion, flutter: Span) -> str:
 
 
 def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
-    """Sentence that compares the load with the range of the flutter load."""
+    """Sentence on whether the arm beats under its load, compared with the range of the flutter load."""
     F = plane.arm.F
     found = plane.found
     where = _where(plane, flutter)
@@ -128,7 +128,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
 
 
 def _until(plane: PlaneOfMotion, load: Load) -> str:
-    """Largest load of the search, or the load that crushes the arm."""
+    """Clause on where the search ends: at a load, or at the load that crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"

@@ -169,7 +169,7 @@ def height_near(beam: Beam, run: Trajectory, k: int) -> float:
 
 
 def _again(beam: Beam, z: Array, duration: float) -> Trajectory:
-    """Equal small steps from a state of a run."""
+    """The run repeated from a state z with equal small steps over a duration."""
     limit = RunLimit(max_steps=SMALL_STEPS + 2)
     return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEPS, limit)
 

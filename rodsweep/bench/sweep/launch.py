@@ -58,7 +58,10 @@ class SweepCase:
 
 
 def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
-    """A grid over two k1, F and k2; from 200 points on, the number is rounded down to hundreds."""
+    """A sweep of spectra over two values of k1, and over F and k2; writes its config.
+
+    points: approximate number of points, rounded down to hundreds from 200 on. kind: kind of solver.
+    """
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
     directory.mkdir()

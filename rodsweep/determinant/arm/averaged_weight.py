@@ -54,10 +54,10 @@ class GridPlaces(NamedTuple):
 
 @compiled
 def averaged_regions(u: Array, local: Array, F: float) -> Array:
-    """(a, c) of each trial, (trials, 2), inf where it gives none.
+    """Constants (a, c) of a region for each trial weight, (trials, 2); inf where a trial gives no bound.
 
-    u: points of an arm from base to tip, (points,), two at a jump. local: the `LocalCoefficients` there, (6,
-    points), with c2 > 0 and g > 0.
+    u: points of an arm from base to tip, (points,), two at a jump. local: the `LocalCoefficients` at the
+    points, (6, points), with c2 > 0 and g > 0.
     """
     regions = np.full((AVERAGED_WEIGHT.trials, 2), math.inf)
     row = 0
@@ -76,7 +76,9 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
 
 @compiled
 def _with_places_beside_jumps(u: Array, h: float) -> Array:
-    """The points u and, on both sides of each place at the distance h from a jump, two more, increasing."""
+    """The points u of an arm and further points, increasing: two at each place whose distance from a jump is
+    h.
+    """
     points = np.empty(5 * len(u))
     count = len(u)
     points[:count] = u
@@ -124,9 +126,10 @@ def _fill(
     window: tuple[GridPlaces, GridPlaces],
     trial: tuple[float, float, float],
 ) -> None:
-    """The two regions of a trial (F, f, h): (t - alpha) nu bounded by the clamp, and by the drag.
+    """Writes the two regions of a trial (F, f, h): with (t - alpha) nu bounded by the clamp, and bounded by
+    the drag.
 
-    window: the places of u - h and u + h.
+    window: places of u - h and u + h among the points of the arm.
     """
     F, f, h = trial
     count = len(u)

@@ -61,7 +61,9 @@ def modes_beside_axis(determinant: ArmDeterminant, top: float, known: Complex) -
 
 @compiled
 def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSamples) -> Complex:
-    """The known eigenvalues, (n,), and those found from points at heights, (k,)."""
+    """The known eigenvalues, (n,), followed by further ones found by Newton's method from i times each
+    height, (k,).
+    """
     found = np.empty(BESIDE_AXIS.most, np.complex128)
     n = len(known)
     found[:n] = known
@@ -77,7 +79,9 @@ def _modes_from(heights: Array, known: Complex, level: Level, samples: ArmSample
 
 @compiled
 def _mode_near(start: complex, known: Complex, level: Level, samples: ArmSamples) -> complex:
-    """An eigenvalue close to a point that is none of the known ones, (n,); nan if there is none."""
+    """The eigenvalue near a starting point that is not among the known eigenvalues, (n,); nan if no such
+    eigenvalue is close.
+    """
     w = start
     for _ in range(BESIDE_AXIS.max_steps):
         value = chain_value(w, level[0], level[1])

@@ -40,7 +40,7 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 
 
 class IntegrationMatrices(NamedTuple):
-    """Integrals from 0 to each Gauss point of [0, 1], (STAGES, STAGES), and weights, (STAGES,)."""
+    """Integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights, (STAGES,)."""
 
     integrals: Array
     weights: Array
@@ -162,7 +162,7 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def _start(minor: int, start: float, values: Array) -> None:
-    """Adds the start value of a minor, where it is the initial value, to values, (MINORS, STAGES, WIDTH)."""
+    """Adds a minor's start value to values, (MINORS, STAGES, WIDTH), where the minor is the initial value."""
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
             values[minor, i, minor * ARM_ELEMENTS.lanes + lane] += start
@@ -179,7 +179,7 @@ def _start_eliminated(minor: int, start: float, turning: Array, values: Array) -
 
 @compiled_for_vectors
 def _loads_of_w(W: float, local: Array, values: Array, rates: Array) -> None:
-    """Rates of one power of w by the values of the power before, both (MINORS, STAGES, WIDTH)."""
+    """Writes rates proportional to w, from values one power lower, both (MINORS, STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             push = W * local[GAMMA2, i, c]
@@ -202,7 +202,7 @@ def _add_pushes(F: float, start: float, local: Array, values: Array, rates: Arra
 
 @compiled_for_vectors
 def _turns(local: Array, values: Array, rates: Array) -> None:
-    """The rates of theta^m."""
+    """Writes the rates -g theta^s of the minor theta^m."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
@@ -224,7 +224,7 @@ def _add_turns(F: float, start: float, local: Array, values: Array, rates: Array
 
 @compiled_for_vectors
 def _rises(local: Array, values: Array, rates: Array) -> None:
-    """The rates of y^theta."""
+    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]

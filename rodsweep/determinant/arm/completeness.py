@@ -70,8 +70,11 @@ COMPLETENESS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """R of the module's text, its rounding error, and the least term of an unknown eigenvalue right of the
-    line."""
+    """Remainder R of the sum of phi over all eigenvalues, after the known ones are subtracted (see the
+    module).
+
+    blur: rounding error of R. least: smallest contribution to R of an unknown eigenvalue right of the line.
+    """
 
     R: float
     blur: float
@@ -81,9 +84,10 @@ class Remainder(NamedTuple):
 def none_is_missing(
     line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
 ) -> tuple[bool, int]:
-    """(whether it is proved that every eigenvalue with Re w >= line is known, evaluations of D).
+    """(whether every eigenvalue with Re w >= line is proved to be known, number of evaluations of D).
 
-    known, error: eigenvalues, (n,), and how far each may be off. Of pairs both must be known.
+    known, error: known eigenvalues, (n,), and the error of each, (n,). Of each conjugate pair both must be
+    known.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
@@ -104,7 +108,7 @@ def none_is_missing(
 
 
 def has_conjugate(known: Complex) -> Array:
-    """Mask, (n,), of the eigenvalues whose conjugates are known, too; real eigenvalues are their own."""
+    """Mask, (n,), of the known eigenvalues that are real, or whose conjugate is known too."""
     conjugates = set(known.conj().tolist())
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
@@ -117,10 +121,11 @@ def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
 
 
 def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
-    """(how many of the leading eigenvalues to know, largest |w| of a proof with them), at least `modes`.
+    """(number of leading eigenvalues to know, at least `modes`; largest |w| at which D is evaluated) of the
+    cheapest proof.
 
-    known: eigenvalues in their order, (n,). Proofs with smaller |w| need shorter elements. The number is 0 if
-    no proof is tried.
+    known: eigenvalues, (n,), leading first. Proofs with smaller |w| need fewer elements. The number is 0 if
+    no proof is possible.
     """
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
@@ -185,10 +190,11 @@ def _turn_of_hull(points: Array, a: float, c: float) -> float:
 def remainder_of_sum(
     line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """R with its rounding error and the least contribution right of the line.
+    """The remainder R of the sum over all eigenvalues, its rounding error, and the least contribution right
+    of the line.
 
-    known, error: eigenvalues, (n,), closed under conjugation, and how far each may be off.
-    level: (W, propagators) for |w| up to the last point.
+    known, error: known eigenvalues, (n,), closed under conjugation, and the error of each, (n,). points:
+    (k,). level: (W, propagators) for |w| up to the last point.
     """
     k = len(points)
     R = 0.0

@@ -62,8 +62,8 @@ def count_right_of(
 ) -> Count:
     """The number of transverse eigenvalues with Re w > line, for any real line.
 
-    known, error: some of the eigenvalues, (n,), and how far each may be off; with them the count is faster.
-    Raises no error: a failed count is a Count without a number, with the reason.
+    known, error: some eigenvalues, (n,), and the error of each, (n,); known eigenvalues make the count
+    faster. Raises no error: a failed count is a Count without a number, with the reason.
     """
     if not math.isfinite(hull.a):
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
@@ -142,10 +142,10 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
     samples: tuple[ArmSamples, ArmSamples],
     level: Level,
 ) -> BoxWalk:
-    """The walk as far as the level serves its nodes.
+    """Continues a walk along the box over all nodes for which the present elements suffice.
 
-    box: (corners, largest |w| for which elements are known to exist). samples: those of the lengths over
-    which D changes, and those of the dominant wave.
+    box: (corners, largest |w| for which elements are known to exist). level: (W, propagators) of the present
+    elements. samples: of the arm, for the lengths over which D changes and for the dominant wave.
     """
     corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
@@ -190,7 +190,9 @@ def _stride(reach: float, growth: float) -> float:
 
 @compiled
 def _nearer(reach: float, growth: float, ahead: float) -> float:
-    """A smaller distance of the next node than `ahead`, at last within the reach of the present one."""
+    """A shorter distance of the next node than `ahead`; repeated calls end within the reach of the present
+    node.
+    """
     nearer = min(_stride(reach, growth), ARM_COUNT.closer * ahead)
     return nearer if nearer > reach else min(ARM_COUNT.within_reach * reach, ahead / 2)
 

@@ -31,7 +31,9 @@ Level = tuple[float, Array]
 
 
 class ArmSamples(NamedTuple):
-    """F, `LocalCoefficients` at points along an arm, (6, points), and weights of a quadrature, (points,)."""
+    """Samples along one arm: the force F, `LocalCoefficients` at points, (6, points), and quadrature weights,
+    (points,).
+    """
 
     F: float
     local: Array
@@ -39,9 +41,10 @@ class ArmSamples(NamedTuple):
 
 
 class ArmDeterminant:
-    """D(w) of one arm. Methods raise FloatingPointError if `max_elements` do not resolve it.
+    """Characteristic determinant D(w) of one arm; propagators are made for |w| <= W and kept.
 
-    known: a level that is known already.
+    known: (W, propagators) made earlier. Methods raise FloatingPointError if `max_elements` do not resolve
+    the arm.
     """
 
     def __init__(self, rod: Rod, known: Level | None = None):
@@ -58,7 +61,7 @@ class ArmDeterminant:
         return chain_value(complex(w), W, polynomials)
 
     def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
-        """As `value`, with the elements for |w| times a factor of at least 1."""
+        """D and D' at w times exp(-S), with elements that serve |w| times a factor of at least 1."""
         W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
         return chain_value(complex(w), W, polynomials)
 
@@ -108,8 +111,11 @@ class ArmDeterminant:
 
 
 class Samples(NamedTuple):
-    """Points between the breaks of n arms, (points,), the length that each stands for, (points,), and the
-    arms' coefficients there, (n, points)."""
+    """Samples of n arms between the breaks of their profile.
+
+    Points, (points,); the length that each point stands for, (points,); coefficients of each arm, (n,
+    points).
+    """
 
     points: Array
     weights: Array

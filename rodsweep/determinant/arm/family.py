@@ -62,10 +62,10 @@ ARM_FAMILY = ArmFamilySettings()
 
 
 class ArmFamily(NamedTuple):
-    """The arms from p = low to p = high: propagators for |w| <= W.
+    """Propagators of all arms from p = low to p = high, for |w| <= W, as Chebyshev polynomials in p.
 
-    scale: the polynomials are in log(1 + (p - low)/scale), or in p if it is `LINEAR`. coefficients: those of
-    the Chebyshev polynomials, (nodes, elements, terms, ENTRIES).
+    scale: the polynomials are in log(1 + (p - low)/scale), or in p if scale is `LINEAR`. coefficients:
+    Chebyshev coefficients, (nodes, elements, terms, ENTRIES).
     """
 
     low: float
@@ -110,7 +110,7 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
 
 
 def _resolves(samples: Samples) -> bool:
-    """Whether arms resolve the coefficients of all arms between, at the samples along them."""
+    """Whether the Chebyshev series of the coefficients over the arms converges, at all samples."""
     return _converged(np.moveaxis(np.array(samples.local), 1, 0), ARM_FAMILY.resolved * ARM_FAMILY.converged)
 
 
@@ -139,7 +139,7 @@ def chebyshev_points(number: int) -> Array:
 
 @cache
 def _to_series(number: int) -> Array:
-    """Matrix from values at so many points to coefficients of Chebyshev polynomials, (number, number)."""
+    """Matrix from values at `number` Chebyshev points to Chebyshev coefficients, (number, number)."""
     return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(number), number - 1)))
 
 

@@ -42,9 +42,10 @@ def hull_of(rod: Rod) -> Hull:
 
 
 def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
-    """The regions for all arms between places of a path, (k,), from the arms at them.
+    """The regions for all arms between neighbouring places of a path, (k,); rods: the arms at the places.
 
-    Extremes along the path are, as those along an arm, looked up at points, with `HULL.margin` between them.
+    Extremes along the path are evaluated at the places only, like those along an arm at its points;
+    `HULL.margin` allows for the arms between.
     """
     arms = _arms(rods)
     hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
@@ -83,7 +84,7 @@ def _arms(rods: Sequence[Rod]) -> SampledArms:
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
-    """`SampledArms.averaged` of arms with jumps, from their other fields."""
+    """`averaged_regions` of each arm with jumps, (n, trials, 2), inf for an arm without c2 > 0 and g > 0."""
     starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL.inside) * _chebyshev().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
@@ -95,13 +96,18 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
 
 
 def _part(arms: SampledArms, chosen: slice) -> SampledArms:
-    """Some of the arms."""
+    """The arms with the indices `chosen`."""
     local = np.ascontiguousarray(arms.local[:, chosen])
     return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
 
 
 class ChebyshevMatrices(NamedTuple):
-    """Points in [-1, 1], (points,), and matrices of their interpolant: derivative, and integral from -1."""
+    """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate the
+    interpolant.
+
+    derivative, integral: from values at the points to values at the points, (points, points); integrals start
+    at -1.
+    """
 
     points: Array
     derivative: Array
@@ -155,7 +161,10 @@ def _smallest(
 
 @compiled
 def _smaller(best: tuple[float, float], other: tuple[float, float], largest: float) -> tuple[float, float]:
-    """The smaller of two regions (a, c), by a measure; a region with c close to 1 is of no use."""
+    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/wide)^4).
+
+    A region with c above `largest` is never chosen.
+    """
     if not other[1] < largest:
         return best
     here = best[0] ** 2 * (1 + (best[1] / HULL.wide) ** 4)

@@ -98,7 +98,7 @@ def _two_roots(middle: complex, level: Level) -> tuple[complex, complex]:
 
 
 def _level(w: complex, determinant: ArmDeterminant) -> Level:
-    """A level for D and its second derivative at w."""
+    """(W, propagators) for D and its second derivative at w."""
     return determinant.level((1 + DETERMINANT.second_step) * abs(w))
 
 

@@ -34,10 +34,11 @@ from .value import chain_size, chain_value
 
 
 class PhaseNode(NamedTuple):
-    """A point w with the direction of D, L = D'/D, both without known eigenvalues, and where h is valid.
+    """A point w on the contour with a tangent h of log D, and the distance within which h is valid.
 
-    wave: (Phi, dPhi/dw) in h, 0 without. reach: distance within which h is valid. radius: that of the best
-    circle, or 0.
+    direction, L: of D, and D'/D, both after division by the known eigenvalues. wave: (Phi, dPhi/dw) if h
+    contains the dominant wave, else 0. reach: distance within which h is valid. radius: radius of the best
+    circle, 0 without a circle.
     """
 
     w: complex
@@ -50,7 +51,7 @@ class PhaseNode(NamedTuple):
 
 @compiled
 def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
-    """h(v) of a node."""
+    """The tangent h of log D at a node, evaluated at v (see the module)."""
     Phi, slope = node.wave
     ahead = (node.L - slope) * (v - node.w)
     return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
@@ -60,10 +61,10 @@ def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
 def phase_node(
     w: complex, known: Complex, trial: tuple[float, float], hull: Hull, arm: tuple[ArmSamples, Level]
 ) -> PhaseNode:
-    """The node about w.
+    """The node about w, inside or outside the hull.
 
-    trial: (length over which D changes, largest radius). arm: samples, and the level of propagators for
-    |v| <= W, which hold the largest circle about w.
+    known: known eigenvalues, (n,). trial: (length over which D changes, largest radius). arm: samples of the
+    arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = chain_value(w, arm[1][0], arm[1][1])
     if not abs(value.D) > ARM_COUNT.rounding * value.noise:
@@ -91,9 +92,9 @@ def _node_inside(
     trial: tuple[float, float],
     arm: tuple[ArmSamples, Level],
 ) -> PhaseNode:
-    """The node with the largest reach by |f| on circles.
+    """The node at w inside the hull, with the circle on which the bound of |f| gives the largest reach.
 
-    value: D at the node. For the other arguments see `phase_node`.
+    value: D at the node. Further arguments as in `phase_node`.
     """
     w = node.w
     samples, (W, propagators) = arm

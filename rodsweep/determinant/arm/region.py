@@ -38,7 +38,11 @@ HULL = HullSettings()
 
 
 class Hull(NamedTuple):
-    """The region Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2, n >= 0; a = inf if no bound is known."""
+    """Parabolic region that contains all eigenvalues: Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2 for
+    some n >= 0.
+
+    a = inf if no bound is known.
+    """
 
     a: float
     c: float
@@ -83,7 +87,11 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
 
 
 class PathHulls(NamedTuple):
-    """Regions for the arms of a path between places, (k,), increasing: a and c of each interval, (k - 1,)."""
+    """Regions for all arms of a path, one region for each interval between neighbouring places.
+
+    places: increasing values of the path variable, (k,). a, c: constants of `Hull` for each interval, (k -
+    1,).
+    """
 
     places: Array
     a: Array
@@ -92,7 +100,7 @@ class PathHulls(NamedTuple):
 
 @compiled
 def hull_at(hulls: PathHulls, p: float) -> Hull:
-    """The region for the arm at p, from the first place to the last."""
+    """The region for the arm at p, between the first and the last place."""
     i = 0
     while i < len(hulls.a) - 1 and p > hulls.places[i + 1]:
         i += 1

@@ -83,7 +83,7 @@ def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> 
 
 
 def _inside(w: complex, hull: Hull) -> bool:
-    """Whether w lies in the box of all eigenvalues with Re >= Re w."""
+    """Whether w lies in the box that contains all eigenvalues with real parts of at least Re w."""
     if not cmath.isfinite(w):
         return False
     real, imag = hull.box(max(-w.real, 0.0))

@@ -12,9 +12,11 @@ from .region import HULL
 
 @compiled
 def constant_weight_norm(alphas: Array, local: Array, push: float) -> float:
-    """The least squared norm of the matrix for a constant alpha, of those to try, (n,).
+    """The smallest a^2, over the constant weights alpha to try, (n,): the squared norm of the matrix along
+    all arms.
 
-    local: coefficients at all points, (6, points). push: the largest F^2 c3/gamma2.
+    The matrix is given in `rodsweep.determinant.arm.hull`. local: coefficients at all points, (6, points).
+    push: the largest F^2 c3/gamma2.
     """
     least = inf
     for alpha in alphas:
@@ -45,9 +47,11 @@ def constant_weights(local: Array) -> Array:
 
 @compiled
 def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
-    """The largest squared norm of the matrix along arms for each of `HULL.middles`.
+    """The largest a^2 along all arms for each of the weights alpha(u) = g/(nu + middle |F| sqrt(c2 c3
+    gamma3/gamma2)) with a factor of `HULL.middles`.
 
-    F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points).
+    F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
+    from `ChebyshevMatrices`.
     """
     found = np.zeros(len(HULL.middles))
     points = local.shape[3]
@@ -73,9 +77,12 @@ def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Arr
 
 @compiled
 def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
-    """The largest 4 c^2 of arms for each constant alpha, (alphas,), by theta(0) = 0, which needs no drag.
+    """The largest 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du over the arms, for each constant
+    alpha, (alphas,).
 
-    local: coefficients, (6, n, pieces, points). integral: from `ChebyshevMatrices`.
+    c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
+    (`rodsweep.determinant.arm.hull`). local: coefficients, (6, n, pieces, points). integral: from
+    `ChebyshevMatrices`.
     """
     found = np.zeros(len(alphas))
     points = local.shape[3]

@@ -130,14 +130,17 @@ def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float
 
 
 def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
-    """`quiet_radius` for a single rod."""
+    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for a single rod."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
 
 
 def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
-    """The first radius of r, r/2, r/4, ... with |D(i eta) - 1| < 1/2 inside; 0 for underflow."""
+    """The first radius r of largest, largest/2, ...
+
+    with |D(i eta) - 1| < 1/2 for |eta| <= r; 0 for underflow.
+    """
     while _departure(r, T, X, G, pull) >= QUIET.departure:
         r /= 2
     return r

@@ -79,7 +79,7 @@ class Box(NamedTuple):
 
 @compiled
 def distance_bound(value: complex, a: complex, b: complex) -> float:
-    """A lower bound of |value + x a + y b| over |x|, |y| <= 1; 0 if no positive bound is found."""
+    """A lower bound of |value + x a + y b| over real x, y in [-1, 1]; 0 if no positive bound is found."""
     best = 0.0
     # The set is a parallelogram; a separating line is parallel to a side, or across the value.
     for normal in (value, 1j * a, 1j * b):
@@ -108,7 +108,10 @@ def mean_rates(centre: BidiscCentre) -> Pair:
 def remainder_fits(
     centre: BidiscCentre, rates: Pair, half: tuple[float, float], room: float, power: int
 ) -> bool:
-    """Whether M t^2/(1 - t)^power < room for a trial share t; half: half-widths of the box."""
+    """Whether the Taylor remainder M t^2/(1 - t)^power of D over a box is proved below `room`.
+
+    t is a trial ratio of the box to the bidisc on which M bounds D. half: half-widths of the box.
+    """
     t = BOX_PROOF.largest_radius_share
     last = math.inf
     for _ in range(BOX_PROOF.max_radius_shares):

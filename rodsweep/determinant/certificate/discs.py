@@ -46,7 +46,10 @@ Radii = tuple[float, float]
 
 
 class BidiscCentre(NamedTuple):
-    """The centre of a bidisc: w, the rod, S, P, z+ and z-, and slopes (dz/dw, dz/dp) of z+ and z-."""
+    """The centre of a bidisc in (w, p), with the exponents of D there.
+
+    w; the rod and its change; the scale S; P, z+ and z-; slopes (dz/dw, dz/dp) of z+ and of z-.
+    """
 
     w: complex
     coefficients: Coefficients
@@ -119,7 +122,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
 @compiled
 def bound_together(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|, which is sharp for small P."""
+    """`bound_on_bidisc` for nearly equal exponents, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
     w = centre.w
     S = centre.S
     F, nu, c2, gamma3 = centre.coefficients
@@ -152,7 +155,8 @@ def bound_on_bidisc(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
 
 @compiled
 def bound_apart(centre: BidiscCentre, rates: Pair, radii: Radii) -> float:
-    """`bound_on_bidisc` from separate bounds of E(z+) and E(z-); inf if the bidisc is too large.
+    """`bound_on_bidisc` for distinct exponents, from separate bounds of E(z+) and E(z-); inf if the bidisc is
+    too large.
 
     Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with bounds of
     |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e).

@@ -193,7 +193,7 @@ class _InteriorElimination:
         return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
 
     def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
-        """Coupling of interior and ends: (K_ei, K_ii^-1 K_ie), or the same of K^H."""
+        """Coupling of interior and ends: (K_ei, K_ii^-1 K_ie), or for `adjoint` the two matrices of K^H."""
         return (self.leaving.conj().T, self.left) if adjoint else (self.entering, self.right)
 
 

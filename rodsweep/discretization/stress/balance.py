@@ -91,7 +91,10 @@ def forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatri
 
 @UnrolledOverAlgebra
 def strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
-    """Writes the weak form of W D_E V at all nodes into G, from E and V; all (d, nodes + 1)."""
+    """Writes the weighted strain rates W D_E V in weak form at all nodes into G.
+
+    E, V, G: (d, nodes + 1).
+    """
     size = len(m.weights)
     for i in range(size):
         rate = [0.0 for _ in g.components]
@@ -116,9 +119,10 @@ def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
 
 @UnrolledOverAlgebra
 def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes V and G of a state x, (unknowns,), at all nodes into V and G, both (d, nodes + 1).
+    """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
+    V and G, both (d, nodes + 1).
 
-    Components of V that are unknowns come from x.
+    Unknown components of V are copied from x.
     """
     size = len(m.weights)
     E = np.empty((g.dimension, size))

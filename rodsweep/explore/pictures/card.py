@@ -56,7 +56,7 @@ def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSou
 
 
 def columns(**arrays: Array) -> dict[str, list[Any]]:
-    """Columns of a data source as lists, for short arrays: each array takes two messages of its own."""
+    """Columns of a data source, converted to lists: a short array would take two messages of its own."""
     return {name: array.tolist() for name, array in arrays.items()}
 
 

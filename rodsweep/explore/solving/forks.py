@@ -6,6 +6,8 @@ FORKS = get_context("forkserver")
 
 
 def prepare() -> None:
-    """Begins to import in that process, while the page imports its own modules."""
+    """Starts the process from which solver processes are forked, so that it imports while the page imports
+    its own modules.
+    """
     FORKS.set_forkserver_preload([f"{__package__}.worker"])
     forkserver.ensure_running()

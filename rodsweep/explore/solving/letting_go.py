@@ -20,7 +20,7 @@ Tip = tuple[float, float]
 
 
 def bent(state: PageState, tip: Tip | None) -> dict[str, Any]:
-    """x, y: the shape of the arm with its tip at a place, (nodes,) in L; the straight arm for None."""
+    """Shape x, y, (nodes,) in L, of the arm with its tip held at a place; the straight arm for None."""
     x, y = bent_shape(_job(state), tip)
     return {"x": x, "y": y}
 
@@ -39,7 +39,7 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
 
 
 def film_of_motion(state: PageState, tip: Tip) -> dict[str, Any]:
-    """gif: the film of the motion from there."""
+    """Film of the motion after the release of the tip, as bytes of a GIF by the name `gif`."""
     return {"gif": motion_film(filmed(state, motion(state, tip)))}
 
 

@@ -1,4 +1,7 @@
-"""Kinds of questions by when they are asked, and what an answer depends on, so that none is asked twice."""
+"""When each kind of question is asked, and which part of a page's state an answer depends on.
+
+A question whose answer would be the same as the last one is not asked again.
+"""
 
 from dataclasses import replace
 
@@ -21,7 +24,7 @@ OF_TIP = ("bent", "motion")
 
 
 def needs(question: Question) -> Needs:
-    """The state, blank in all fields that do not affect the answer, and the place of the tip."""
+    """The parts of the state that affect the answer, all others blank; and the place of the tip, or None."""
     kind = question.kind
     state = question.state
     if kind in ("spectrum", "cycle", "film", *OF_TIP):

@@ -104,7 +104,9 @@ def cycle(state: PageState) -> Found:
 
 
 def film(state: PageState) -> Found:
-    """gif: the film that `rodsweep plot` makes of the limit cycle; InputError for a rod without a cycle."""
+    """Film that `rodsweep plot` makes of the limit cycle, as bytes by the name `gif`; InputError for a rod
+    without a cycle.
+    """
     answer = state.subject().cycle(shapes=SHAPES, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
@@ -112,7 +114,7 @@ def film(state: PageState) -> Found:
 
 
 def film_of(cycle: Answer | Dataset) -> Found:
-    """gif: the film of a cycle whose shapes are solved."""
+    """Film of a cycle whose shapes are solved, as bytes by the name `gif`."""
     return {"gif": plot(cycle, what="animation").image}
 
 

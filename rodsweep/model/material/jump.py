@@ -30,7 +30,7 @@ LEAST_STRETCH_KEPT = 0.1
 
 
 class Unknowns(NamedTuple):
-    """q1 and q3 of `response`."""
+    """The unknowns q1 (stretching) and q3 (bending) of a law at one point, as in `response`."""
 
     q1: float
     q3: float
@@ -43,7 +43,7 @@ def _section(side: Array) -> LocalSection:
 
 @compiled
 def _solved(T: Tangent, N: float, M: float) -> Unknowns:
-    """x of T x = (N, M)."""
+    """Solution x of the linear system T x = (N, M)."""
     determinant = T.N1 * T.M3 - T.N3 * T.M1
     return Unknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
 
@@ -65,7 +65,9 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """a of the mean unknowns q, by Newton's method; sides: (2, 7)."""
+    """The unknowns a before a jump, from the mean unknowns q, by Newton's method for equal stresses; sides:
+    (2, 7).
+    """
     if law == LINEAR_LAW:
         return q
     one = _section(sides[0])
@@ -93,7 +95,7 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
 
 @compiled
 def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
-    """b of the mean unknowns q and of a; sides: (2, 7)."""
+    """The unknowns b behind a jump, from the mean unknowns q and the unknowns a before it; sides: (2, 7)."""
     return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
@@ -122,7 +124,9 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 @compiled
 def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
-    """Changes of a and b with a change of the mean unknowns q; sides: (2, 7)."""
+    """Changes of the unknowns a before and b behind a jump with a change of the mean unknowns q; sides: (2,
+    7).
+    """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)

@@ -123,7 +123,9 @@ class OneRod:
         return found
 
     def preferred(self, digits: Digits, name: str) -> str:
-        """Name of the SI variable of a variable of an arm, else the variable itself."""
+        """Name under which a variable is printed: its SI variable if the table has one, else the variable
+        itself.
+        """
         return self.si.get(name, name) if self.si.get(name) in digits.columns else name
 
     def column(self, name: str) -> Column | None:

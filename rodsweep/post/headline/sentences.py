@@ -91,7 +91,7 @@ def cycle_sentence(rod: OneRod) -> str:
 
 
 def _end(rod: OneRod) -> str:
-    """Largest load of the search."""
+    """Largest load of the search as text, like "F = 200"; empty if not known."""
     column = rod.column("F_end")
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 

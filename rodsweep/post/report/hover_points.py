@@ -168,7 +168,7 @@ def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
 
 
 def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
-    """Panels in the same column, or for y in the same row, with the same limits of the axis."""
+    """Other panels in the same column (for "x") or row (for "y") that have the same limits on this axis."""
 
     def place(panel: Axes) -> object:
         grid = panel.get_subplotspec()

@@ -58,7 +58,7 @@ def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Absolute errors of a variable, which may warn at infinite values."""
+    """Absolute errors of a variable, in its shape; numpy warns if a value is infinite."""
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))

@@ -153,9 +153,10 @@ def _judged(
 
 @dataclass(frozen=True, slots=True)
 class BranchStretch:
-    """Part of a branch between two special points.
+    """Part of a branch between two neighbouring special points.
 
-    within: parameters surely covered. about: parameters possibly covered. stable: 1 yes, 0 no, -1 unknown.
+    within: range of the parameter surely covered by the part. about: range possibly covered. stable: 1 if its
+    cycles are stable, 0 if unstable, -1 if not known.
     """
 
     within: tuple[float, float]
@@ -198,7 +199,9 @@ def stretches_of(curve: BranchCurve) -> list[BranchStretch]:
 
 
 def _closed(point: SpecialPoint) -> int:
-    """Sign of the error at an end: -1 at an end of the range, where the branch itself has a cycle, else 1."""
+    """Sign of an end's error in the range surely covered: -1 at an end of the parameter's range, where the
+    branch itself has a cycle, else 1.
+    """
     return -1 if point.reason is EndReason.range_end else 1
 
 

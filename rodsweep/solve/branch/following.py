@@ -105,7 +105,7 @@ def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> Solv
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch without cycles, at its beginning."""
+    """The end of a branch that has no cycle, at its first special point."""
     born = curve.special[0]
     return replace(
         born,

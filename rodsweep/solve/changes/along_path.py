@@ -81,7 +81,7 @@ class AxisCrossings:
     boxes: int = 0
 
     def up_to(self, reach: SearchEnd) -> "AxisCrossings":
-        """The part of a search that ended earlier; itself if the search `reach` ended at the same place."""
+        """The crossings and gaps up to an earlier end of the search; self if `reach` is the present end."""
         if reach.p == self.reach.p:
             return self
         crossings = [c for c in self.crossings if self.path.variable(c.at) <= reach.p]
@@ -171,8 +171,7 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
 
 
 def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
-    """The changes with the interval that was searched of the one that was `asked` for, and why it is
-    smaller."""
+    """The changes with the searched part of the interval `asked`, and the reason for an early end."""
     searched = found.searched(*asked)
     reason = found.reach.reason
     end = found.path.parameter.value(found.reach.p)
@@ -215,8 +214,7 @@ def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 def _pairs_missed_as_leaders(
     path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
 ) -> list[float]:
-    """Path variables of crossings whose pair alone is on the axis, hence must lead, but does not in the
-    list."""
+    """Path variables of crossings whose pair must lead, but another eigenvalue leads in the list."""
     missed = []
     for crossing in crossings:
         if crossing.kind.changes_leader:

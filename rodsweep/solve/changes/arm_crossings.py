@@ -170,8 +170,11 @@ class CrossingSearch:
         return []
 
     def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
-        """Newton's method for the p at which eigenvalue i of a place lies on the axis; None without
-        convergence."""
+        """Newton's method for the p at which eigenvalue i of a place lies on the imaginary axis; None without
+        convergence.
+
+        ends: interval of p. grows: whether the pair's growth rate increases with p.
+        """
         p = start.p
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
@@ -194,7 +197,7 @@ class CrossingSearch:
         return None
 
     def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
-        """The crossing; None if the pair crosses in the opposite direction."""
+        """The crossing of the pair w at p; None if its growth rate changes in the opposite direction."""
         # Newton's method may find another pair of the interval, going the other way.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None

@@ -65,7 +65,7 @@ class ArmPath(PathProblem):
         self._along = ArmAlongPath(path, self._family)
 
     def _family(self, p: float) -> ArmFamily | None:
-        """A family of arms that contains p; None if there is none."""
+        """The family of arms whose interval contains p; None without such a family."""
         made = next((one for one in self._families if one.low <= p <= one.high), None)
         if made is None and self._followed is not None and self.expected_growing(p) <= ARM_PATH.most_growing:
             return self._followed.family(p)

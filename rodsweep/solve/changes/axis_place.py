@@ -70,7 +70,7 @@ class AxisPlaces:
     def at(self, p: float, beside: Complex | None = None) -> AxisPlace:
         """The place at p; raises Unsolvable if eigenvalues or count cannot be computed.
 
-        beside: about the modes beside the axis, (n,), one of each pair, if known.
+        beside: approximate eigenvalues beside the axis, (n,), one of each pair, if known.
         """
         if p not in self.known:
             # The neighbour's count tells how many modes are needed: all unstable ones and a pair beyond.

@@ -117,7 +117,7 @@ class Tracer:
         return found, intervals.reach
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
-        """The change of one interval; none if there is none, or if the interval is divided."""
+        """The change between two anchors; None if the interval has no change, or is divided."""
         left = self.anchor(a)
         right = self.anchor(b)
         share = 0.5

@@ -118,8 +118,9 @@ class ModeCounter:
     def along(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
     ) -> tuple[tuple[Crossing, ...], int]:
-        """(crossings with the number of unstable modes after each, the number at the end); resets
-        `doubts`."""
+        """(crossings with the number of unstable modes after each, number at the end), from crossings in
+        order; resets `doubts`.
+        """
         self.doubts = []
         out: list[Crossing] = []
         place = ends[0]

@@ -35,7 +35,7 @@ Level = tuple[float, Array, Array]
 
 @compiled
 def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
-    """One Newton step; a real eigenvalue stays real."""
+    """The eigenvalue of an arm after one Newton step from w; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
 
@@ -44,7 +44,12 @@ def corrected_of_arm(w: complex, level: Level) -> CorrectedEigenvalue:
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, level: Level
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(the last correction, error): Newton's method until the remaining error, crowding step^2, is small."""
+    """(last Newton step, error) of an arm's eigenvalue: steps until `settled_error` is finite; inf without
+    convergence.
+
+    first: result of the first step. crowding, exact: as in `settled_error`. level: (W, propagators) of the
+    arm.
+    """
     here = first
     for _ in range(FOLLOWING.max_corrections):
         error = settled_error(here, crowding, exact)

@@ -60,9 +60,9 @@ ARM_STRETCH = ArmStretchSettings()
 
 
 class ArmInterval(NamedTuple):
-    """Points of a path, (n,), followed with one family of arms: track and `known` of `follow_arms`.
+    """Points of a path, (n,), followed with one family of arms; track and `known` as in `follow_arms`.
 
-    arms: number of points inside the family, of which `p` are followed. further: modes beyond those wanted.
+    arms: number of points inside the family, of which `p` are followed. further: modes beyond the wanted.
     """
 
     p: Array
@@ -114,13 +114,13 @@ def interval_of(
 
 
 def _too_few(found: ArmInterval) -> bool:
-    """Whether more modes grow somewhere than a search for crossings could prove to be all that grow."""
+    """Whether more modes grow somewhere than the followed modes could prove to be all growing modes."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
     return bool(growing + ARM_STRETCH.modes_beyond_growing > found.track.w.shape[1])
 
 
 def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
-    """Whether more points are proved, or as many with enough modes in place of too few."""
+    """Whether `found` has more proved points, or as many and enough modes where `other` has too few."""
     here = found.proved(modes)
     there = other.proved(modes)
     return here > there or (here == there and _too_few(other))
@@ -204,7 +204,7 @@ def arms_between(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmF
 
 
 def _carried(before: ArmInterval | None, p: float, request: SpectrumRequest, further: int) -> Complex | None:
-    """Eigenvalues, (m,), at the end p of an interval proved throughout, for the next one; else None."""
+    """Eigenvalues, (m,), at the end p of the previous interval; None unless all its points are proved."""
     if before is None or before.further != further or before.p[-1] != p:
         return None
     if before.proved(request.modes) < len(before.p):

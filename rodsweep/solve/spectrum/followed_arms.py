@@ -52,7 +52,7 @@ class FollowedArms:
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """(dw/dp, error of w) of an eigenvalue that `spectrum` gave at p; None if it gave none."""
+        """(dw/dp, error of w) of an eigenvalue w returned by `spectrum` at p; None for any other w."""
         for one in self._judged.get(p, []):
             for k in np.flatnonzero(one.here.w[0] == w).tolist():
                 return complex(one.here.slope[0, k]), float(one.here.error[0, k])
@@ -126,7 +126,7 @@ class FollowedArms:
 class JudgedPlace(NamedTuple):
     """Eigenvalues at one place of a path, of which the leading `known` are proved complete.
 
-    asked: the number for which they need not be judged again.
+    asked: largest number of modes for which the eigenvalues were judged.
     """
 
     asked: int

@@ -37,10 +37,11 @@ class Leader(NamedTuple):
 
 
 def followed_leader(rod: Rod, near: Complex, accuracy: float) -> Leader | None:
-    """The leading eigenvalue with its error; None unless it is proved to lead.
+    """The leading eigenvalue of a rod with its error, followed from a neighbouring rod; None unless proved to
+    lead.
 
-    near: eigenvalues of a neighbouring rod with Im >= 0, (n,), the leading one first; others than the leading
-    one help to prove that an arm that varies along its length has no further ones. accuracy: relative.
+    near: eigenvalues of the neighbouring rod with Im >= 0, (n,), the leading one first. For an arm that
+    varies along its length the further eigenvalues help the proof. accuracy: relative.
     """
     if rod.standard:
         return _of_uniform(rod, complex(near[0]), accuracy)

@@ -52,7 +52,7 @@ class CorrectedEigenvalue(NamedTuple):
 
 @compiled
 def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> CorrectedEigenvalue:
-    """One Newton step; a real eigenvalue stays real."""
+    """The eigenvalue after one Newton step from w; a real eigenvalue stays real."""
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
 
@@ -73,7 +73,7 @@ def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: fl
 
 @compiled
 def crowding_of(w: Complex, k: int) -> float:
-    """Upper estimate of |D''/(2 D')| at the k-th of the known roots, (m,)."""
+    """Upper estimate of |D''/(2 D')| at root k, from its distances to the other known roots, (m,)."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
@@ -83,7 +83,12 @@ def crowding_of(w: Complex, k: int) -> float:
 
 @compiled
 def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
-    """Error of an eigenvalue, with the remainder crowding step^2; inf until that is small enough."""
+    """Error of an eigenvalue after a Newton step, once the remainder crowding step^2 is small enough; inf
+    before.
+
+    crowding: upper estimate of |D''/(2 D')| at the eigenvalue, from its distance to other roots. exact:
+    whether the remainder must be below rounding, instead of `FOLLOWING.accuracy`.
+    """
     left = crowding * here.step * here.step
     allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
     if left <= allowed or here.step <= FOLLOWING.rounding_step * here.blur:
@@ -115,7 +120,11 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _settled(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last correction, error): Newton steps until the estimated remainder, crowding step^2, is small."""
+    """(last Newton step, error) of an eigenvalue: steps until `settled_error` is finite; the error is inf
+    without convergence.
+
+    first: result of the first step. crowding, exact: as in `settled_error`.
+    """
     here = first
     for _ in range(FOLLOWING.max_corrections):
         error = settled_error(here, crowding, exact)

@@ -163,11 +163,11 @@ class ShiftInvertSolver(ABC):
         """(y, theta) at all nodes, (nodes + 1, k) each, from vectors of the last solve, (unknowns, k)."""
 
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
-        """At least `wanted` eigenvalues nearest the shift if they converge, unsorted, complex, (k,), in
+        """Eigenvalues nearest the shift, at least `wanted` if they converge, unsorted, complex, (k,), in
         1/tau2.
 
-        tight: whether they converge to the last digit of the mesh, or only enough for a start. Raises
-        PETSc.Error.
+        tight: whether the eigenvalues converge to the last digit of the mesh, instead of the digits needed to
+        start Newton's method. Raises PETSc.Error.
         """
         report()
         self.loaded = self.load(rod, shift)

@@ -87,7 +87,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 
 def _scale(problem: TransverseProblem) -> float:
-    """Rates to which the matrix is rounded, in 1/tau2."""
+    """Size of the matrix as a rate, in 1/tau2: the eigenvalues have rounding errors relative to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
 
@@ -124,7 +124,7 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
 
 
 def _worst(found: Spectrum) -> float:
-    """Largest relative error."""
+    """Largest relative error estimate of a spectrum."""
     return float((found.error_estimate / np.abs(found.eigenvalues)).max())
 
 

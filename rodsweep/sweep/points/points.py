@@ -113,7 +113,7 @@ class Points:
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """(distinct builds, index of the build of each rod of `of_rods`, (rods,))."""
+        """(distinct laws and profiles, index of the build of each rod of `of_rods`, (rods,))."""
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]

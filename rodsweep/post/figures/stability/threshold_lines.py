@@ -116,7 +116,10 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
 
 
 def _table(view: View, along: str, other: str | None) -> Array:
-    """The three critical forces, (values of the other parameter or 1, 3, values along)."""
+    """The three critical forces over two parameters, shape (values of `other`, 3, values along).
+
+    other: the second parameter; None for a single row.
+    """
     names = list(view.axes)
     kept = [names.index(name) for name in (other, along) if name]
     rest = tuple(place for place in range(len(names)) if place not in kept)

@@ -21,7 +21,9 @@ from .scale import Scale
 
 @dataclass(frozen=True, eq=False)
 class BorderCondition:
-    """The equation that closes the system: border . place, (3,), in a scale, has a prescribed value."""
+    """Equation that closes the bordered system: the component of `Scale.place` along a border, (3,), has a
+    prescribed value.
+    """
 
     scale: Scale
     border: Array
@@ -33,7 +35,7 @@ class BorderCondition:
         return cls(scale, border, float(border @ scale.place(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:
-        """Prescribed value minus an orbit's value."""
+        """Prescribed value of the component along the border, minus its value at an orbit."""
         return self.value - float(self.border @ self.scale.place(orbit))
 
     def solved(

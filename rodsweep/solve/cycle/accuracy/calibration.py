@@ -78,7 +78,7 @@ class Calibration:
 
     @property
     def outdated(self) -> "Calibration":
-        """The calibration for convergence rates only."""
+        """A copy that is used for its convergence rates only: its errors no longer apply."""
         return replace(self, reach=inf)
 
     @property

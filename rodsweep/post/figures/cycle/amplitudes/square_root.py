@@ -89,7 +89,7 @@ def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareR
 
 
 def _at_zero(x: Array, values: Array) -> float:
-    """Value at 0 of the quadratic through values at three places x, both (3,)."""
+    """Value at x = 0 of the parabola through three points (x, value), both (3,)."""
     a, b, c = x
     weights = [b * c / ((a - b) * (a - c)), a * c / ((b - a) * (b - c)), a * b / ((c - a) * (c - b))]
     return float(np.dot(weights, values))
