@@ -18,8 +18,8 @@ from ..newton import ROOT_NEWTON
 from ..root_settings import ROOTS
 from ..roots import Roots
 from .determinant import ArmDeterminant
+from .hull.region import Hull
 from .newton import ARM_ROOTS, refined_root, root_error, second_derivative, two_roots
-from .region import Hull
 
 T = TypeVar("T")
 

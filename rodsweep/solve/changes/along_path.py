@@ -14,8 +14,8 @@ from ...determinant.certificate.first_boxes import first_boxes
 from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable
-from .arm_crossings import CrossingSearch
-from .arm_path import ArmPath, path_problem
+from .arm.crossings import CrossingSearch
+from .arm.path import ArmPath, path_problem
 from .leading_eigenvalue import Tracer
 from .path_problem import PathProblem
 from .search_range import Reach
