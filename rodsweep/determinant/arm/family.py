@@ -20,10 +20,10 @@ from ..exponents import EXPONENTS
 from ..newton import ROOT_NEWTON
 from ..parameter_path import Path
 from ..value import Value
-from .collocation import ENTRIES
 from .determinant import Samples, elements_for, samples_of
-from .element_settings import ARM_ELEMENTS
-from .propagators import element_propagators
+from .elements.minor_rates import ENTRIES
+from .elements.propagators import element_propagators
+from .elements.settings import ARM_ELEMENTS
 from .value import ARM_VALUE, chain_along, chain_value
 
 LINEAR = math.inf

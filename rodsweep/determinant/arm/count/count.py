@@ -20,7 +20,7 @@ from ....model.compiled.compilation import compiled
 from ...certificate.winding_number import COUNT, Count
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, ArmSamples, Level, scales_at
-from ..element_settings import ARM_ELEMENTS
+from ..elements.settings import ARM_ELEMENTS
 from ..hull.region import Hull
 from .phase_node import PhaseNode, phase_node, tangent
 from .settings import ARM_COUNT

@@ -1,8 +1,8 @@
 """Propagators of the transverse problem over elements of a non-uniform arm, as polynomials in w.
 
-Over one element the minors of `rodsweep.determinant.arm.collocation` are multiplied by a matrix C(w), entire
-in w. Its Taylor polynomial comes from collocation at the Gauss points of the element. Coefficients are
-sampled at the Gauss points alone, so every profile and law costs the same.
+Over one element the minors of `rodsweep.determinant.arm.elements.collocation` are multiplied by a matrix
+C(w), entire in w. Its Taylor polynomial comes from collocation at the Gauss points of the element.
+Coefficients are sampled at the Gauss points alone, so every profile and law costs the same.
 """
 
 from collections.abc import Sequence
@@ -10,11 +10,12 @@ from functools import cache
 
 import numpy as np
 
-from ...arrays import Array
-from ...model.material.build import LocalCoefficients
-from ..exponents import EXPONENTS
-from .collocation import ENTRIES, Method, fill_terms
-from .element_settings import ARM_ELEMENTS
+from ....arrays import Array
+from ....model.material.build import LocalCoefficients
+from ...exponents import EXPONENTS
+from .collocation import Method, fill_terms
+from .minor_rates import ENTRIES
+from .settings import ARM_ELEMENTS
 
 
 @cache

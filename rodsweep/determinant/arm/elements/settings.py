@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ...model.compiled.settings import CompiledSettings
+from ....model.compiled.settings import CompiledSettings
 
 MINORS = 5
 """Number of minors of two solutions that are independent."""

@@ -28,15 +28,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...model.compiled.compilation import compiled, compiled_for_vectors
-from .element_settings import ARM_ELEMENTS, MINORS
-
-SM, TS, TM, YT, YM = range(MINORS)
-"""Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
-ENTRIES = MINORS * MINORS
-NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
-"""Places of the `LocalCoefficients`."""
+from ....arrays import Array
+from ....model.compiled.compilation import compiled, compiled_for_vectors
+from .elimination import elimination_matrix
+from .minor_rates import (
+    C3,
+    SM,
+    TM,
+    TS,
+    YM,
+    YT,
+    G,
+    add_eliminated_start_value,
+    add_rates_by_theta_m,
+    add_rates_by_y_theta,
+    add_start_value,
+    add_theta_s_rates,
+    fill_drag_rates,
+    fill_theta_m_rates,
+    fill_y_theta_rates,
+)
+from .settings import ARM_ELEMENTS, MINORS
 
 
 class Method(NamedTuple):
@@ -63,7 +75,7 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: Method, terms: A
             _repeat(coefficients[arm, b], local)
             for lane in range(ARM_ELEMENTS.lanes):
                 own = coefficients[arm, b, :, :, lane]
-                eliminated = _eliminated(F[arm], own[C3], own[G], method.integrals)
+                eliminated = elimination_matrix(F[arm], own[C3], own[G], method.integrals)
                 _put_in_lane(eliminated, lane, turning)
             here = terms[arm, b * ARM_ELEMENTS.lanes : (b + 1) * ARM_ELEMENTS.lanes]
             most = max(most, _fill_batch((F[arm], W), local, (method, turning), (values, rates), here))
@@ -82,7 +94,7 @@ def _repeat(coefficients: Array, local: Array) -> None:
 
 @compiled_for_vectors
 def _put_in_lane(eliminated: Array, lane: int, turning: Array) -> None:
-    """`_eliminated` of one element into its lane of (STAGES, 1 + STAGES, WIDTH), for each initial value."""
+    """Copies `elimination_matrix` of an element into its lane of `turning`, (STAGES, 1 + STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for j in range(1 + ARM_ELEMENTS.stages):
             for k in range(MINORS):
@@ -99,8 +111,8 @@ def _fill_batch(
 ) -> int:
     """Fills the terms of some elements, (LANES, MAX_TERMS, ENTRIES); returns how many are needed.
 
-    load: (F, W). local: (6, STAGES, WIDTH). method: the second is `_eliminated` in lanes. work: values of the
-    minors and their rates, (MINORS, STAGES, WIDTH) each.
+    load: (F, W). local: (6, STAGES, WIDTH). method: the second is `elimination_matrix` in lanes. work: values
+    of the minors and their rates, (MINORS, STAGES, WIDTH) each.
     """
     F, W = load
     (Q, weights), turning = method
@@ -109,25 +121,25 @@ def _fill_batch(
     rates[:] = 0.0
     for n in range(terms.shape[1]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
-        _loads_of_w(W, local, values, rates)
+        fill_drag_rates(W, local, values, rates)
         _integrate(Q, rates[SM], values[SM])
-        _start(SM, start, values)
-        _add_pushes(F, start, local, values, rates)
+        add_start_value(SM, start, values)
+        add_theta_s_rates(F, start, local, values, rates)
         _integrate_eliminated(turning, rates[TS], values[TS])
-        _start_eliminated(TS, start, turning, values)
-        _turns(local, values, rates)
+        add_eliminated_start_value(TS, start, turning, values)
+        fill_theta_m_rates(local, values, rates)
         _integrate(Q, rates[TM], values[TM])
-        _start(TM, start, values)
-        _add_turns(F, start, local, values, rates)
+        add_start_value(TM, start, values)
+        add_rates_by_theta_m(F, start, local, values, rates)
         _integrate(Q, rates[YM], values[YM])  # without the part by y^theta
-        _start(YM, start, values)
-        _rises(local, values, rates)
+        add_start_value(YM, start, values)
+        fill_y_theta_rates(local, values, rates)
         _integrate_eliminated(turning, rates[YT], values[YT])
-        _start_eliminated(YT, start, turning, values)
-        _add_tilts(F, local, values, rates)
+        add_eliminated_start_value(YT, start, turning, values)
+        add_rates_by_y_theta(F, local, values, rates)
         _integrate(Q, rates[YM], values[YM])
-        _start(YM, start, values)
-        _rises(local, values, rates)
+        add_start_value(YM, start, values)
+        fill_y_theta_rates(local, values, rates)
         if _end_values(weights, rates, n, terms):
             return n + 1
     return terms.shape[1] + 1
@@ -158,84 +170,6 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
             for c in range(ARM_ELEMENTS.width):
                 out[i, c] += turning[i, j + 1, c] * rates[j, c] + turning[i, j + 2, c] * rates[j + 1, c]
                 out[i, c] += turning[i, j + 3, c] * rates[j + 2, c] + turning[i, j + 4, c] * rates[j + 3, c]
-
-
-@compiled_for_vectors
-def _start(minor: int, start: float, values: Array) -> None:
-    """Adds the start value of a minor, where it is the initial value, to values, (MINORS, STAGES, WIDTH)."""
-    for i in range(ARM_ELEMENTS.stages):
-        for lane in range(ARM_ELEMENTS.lanes):
-            values[minor, i, minor * ARM_ELEMENTS.lanes + lane] += start
-
-
-@compiled_for_vectors
-def _start_eliminated(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`_start` of theta^s or y^theta, from whose equation another minor is eliminated."""
-    for i in range(ARM_ELEMENTS.stages):
-        for lane in range(ARM_ELEMENTS.lanes):
-            c = minor * ARM_ELEMENTS.lanes + lane
-            values[minor, i, c] += start * turning[i, 0, c]
-
-
-@compiled_for_vectors
-def _loads_of_w(W: float, local: Array, values: Array, rates: Array) -> None:
-    """Rates of one power of w by the values of the power before, both (MINORS, STAGES, WIDTH)."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
-            push = W * local[GAMMA2, i, c]
-            turn = W * local[GAMMA3, i, c]
-            rates[SM, i, c] = push * values[YM, i, c] - turn * values[TS, i, c]
-            rates[TS, i, c] = -push * values[YT, i, c]
-            rates[YM, i, c] = turn * values[YT, i, c]
-
-
-@compiled_for_vectors
-def _add_pushes(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s what s^m and the start value of theta^m contribute."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
-            rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENTS.lanes):
-            c = TM * ARM_ELEMENTS.lanes + lane
-            rates[TS, i, c] += F * start * local[C3, i, c]
-
-
-@compiled_for_vectors
-def _turns(local: Array, values: Array, rates: Array) -> None:
-    """The rates of theta^m."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
-            rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
-
-
-@compiled_for_vectors
-def _add_turns(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m what theta^m and s^m contribute."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
-            turn = values[TM, i, c]
-            rates[TS, i, c] += F * local[C3, i, c] * turn
-            rates[YM, i, c] += (local[G, i, c] + local[NU, i, c]) * turn
-            rates[YM, i, c] += local[C2, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENTS.lanes):
-            c = TM * ARM_ELEMENTS.lanes + lane
-            rates[TS, i, c] -= F * start * local[C3, i, c]  # contained in `_add_pushes`
-
-
-@compiled_for_vectors
-def _rises(local: Array, values: Array, rates: Array) -> None:
-    """The rates of y^theta."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
-            rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
-
-
-@compiled_for_vectors
-def _add_tilts(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m what y^theta contributes by the force."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
-            rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]
 
 
 @compiled
@@ -269,57 +203,3 @@ def _add_ends(weights: Array, rates: Array, end: Array) -> None:
             for c in range(ARM_ELEMENTS.width):
                 end[row, c] += p * rates[row, i, c] + q * rates[row, i + 1, c]
                 end[row, c] += r * rates[row, i + 2, c] + s * rates[row, i + 3, c]
-
-
-@compiled
-def _eliminated(F: float, c3: Array, g: Array, Q: Array) -> Array:
-    """M 1 and M Q, (STAGES, 1 + STAGES), with the inverse M of 1 + F Q c3 Q g.
-
-    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta, and M 1 belongs to a start
-    value of 1. Q: integrals. c3, g: coefficients times the length of the element.
-    """
-    system = np.zeros((ARM_ELEMENTS.stages, ARM_ELEMENTS.stages))
-    right = np.ones((ARM_ELEMENTS.stages, 1 + ARM_ELEMENTS.stages))
-    right[:, 1:] = Q
-    _add_twice_integrated(F, c3, g, Q, system)
-    _solve(system, right)
-    return right
-
-
-@compiled_for_vectors
-def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array) -> None:
-    """Adds 1 + F Q c3 Q g to a matrix, (STAGES, STAGES)."""
-    for i in range(ARM_ELEMENTS.stages):
-        system[i, i] += 1.0
-        for k in range(ARM_ELEMENTS.stages):
-            factor = F * Q[i, k] * c3[k]
-            for j in range(ARM_ELEMENTS.stages):
-                system[i, j] += factor * Q[k, j] * g[j]
-
-
-@compiled_for_vectors
-def _solve(A: Array, right: Array) -> None:
-    """Solves A x = right, (STAGES, columns), in place, by elimination with pivoting, which destroys A."""
-    columns = right.shape[1]
-    for column in range(ARM_ELEMENTS.stages):
-        pivot = column
-        for i in range(column + 1, ARM_ELEMENTS.stages):
-            if abs(A[i, column]) > abs(A[pivot, column]):
-                pivot = i
-        if pivot != column:
-            for j in range(ARM_ELEMENTS.stages):
-                A[column, j], A[pivot, j] = A[pivot, j], A[column, j]
-            for j in range(columns):
-                right[column, j], right[pivot, j] = right[pivot, j], right[column, j]
-        scale = 1 / A[column, column]
-        for j in range(ARM_ELEMENTS.stages):
-            A[column, j] *= scale
-        for j in range(columns):
-            right[column, j] *= scale
-        for i in range(ARM_ELEMENTS.stages):
-            if i != column:
-                factor = A[i, column]
-                for j in range(ARM_ELEMENTS.stages):
-                    A[i, j] -= factor * A[column, j]
-                for j in range(columns):
-                    right[i, j] -= factor * right[column, j]
