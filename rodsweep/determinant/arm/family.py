@@ -17,8 +17,8 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS
-from ..newton import ROOT_NEWTON
 from ..parameter_path import Path
+from ..roots.newton import ROOT_NEWTON
 from ..value import Value
 from .determinant import Samples, elements_for, samples_of
 from .elements.minor_rates import ENTRIES

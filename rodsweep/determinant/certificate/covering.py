@@ -28,8 +28,8 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..newton import FAILED, Zero, crossing_newton
 from ..parameter_path import changes, coefficients_at, determinant_along
+from ..roots.newton import FAILED, Zero, crossing_newton
 from .discs import DISCS, Centre, Pair, bound_on_bidisc, centre_at
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover
 from ...determinant.certificate.first_boxes import first_boxes
-from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
+from ...determinant.roots.newton import Zero
 from ..point import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem

@@ -21,7 +21,7 @@ from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
 from ...determinant.certificate.winding_number import Count, count_right_of
-from ...determinant.roots import Roots, roots
+from ...determinant.roots.roots import Roots, roots
 from ...discretization.elements.resolution import Resolution, expected_wave_number, finer, resolution_for
 from ...discretization.straight.arm_pencil import ArmMesh
 from ...discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh

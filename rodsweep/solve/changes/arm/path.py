@@ -13,8 +13,8 @@ from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.family import ArmFamily, family_of
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import Count
-from ....determinant.newton import Zero
 from ....determinant.parameter_path import Path
+from ....determinant.roots.newton import Zero
 from ....model.dispersion import sampled
 from ...spectrum.path.followed_arms import FollowedArms
 from ...spectrum.path.prediction import KnownRoots

@@ -14,7 +14,7 @@ from ....determinant.arm.completeness import COMPLETENESS, proves, remainder, ri
 from ....determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
 from ....determinant.arm.hull.region import Hull, Hulls, hull_at
 from ....determinant.arm.value import ARM_VALUE, chain_along, chain_value
-from ....determinant.roots import roots_of_parabola, sort_descending
+from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT, second_difference
 from ....model.compiled.compilation import compiled
 from ..candidates import CANDIDATES

@@ -19,7 +19,7 @@ from ....determinant.arm.family import ArmFamily, family_of, is_smooth, level_at
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import Hulls, hull_at
 from ....determinant.parameter_path import Path
-from ....determinant.roots import Roots
+from ....determinant.roots.roots import Roots
 from ...backend.kept import forget_all
 from ...point import FAILURES
 from ..candidates import line_of_proof, lines_of_count

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
 from ....determinant.moving_line import End, none_crosses
-from ....determinant.root_settings import ROOTS
+from ....determinant.roots.settings import ROOTS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
 from ....model.rod import Coefficients

@@ -17,8 +17,8 @@ from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.arm.newton import refined_root
 from ....determinant.certificate.winding_number import count_right_of
-from ....determinant.newton import refined
-from ....determinant.roots import root_error
+from ....determinant.roots.newton import refined
+from ....determinant.roots.roots import root_error
 from ....model.rod import Rod
 from ..candidates import CANDIDATES, line_of_proof
 from .following import distinct_roots

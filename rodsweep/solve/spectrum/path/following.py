@@ -12,10 +12,10 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.exponents import ROUND_OFF
-from ....determinant.newton import ROOT_NEWTON
 from ....determinant.parameter_path import determinant_along
-from ....determinant.root_settings import ROOTS
-from ....determinant.roots import sort_descending, two_roots
+from ....determinant.roots.newton import ROOT_NEWTON
+from ....determinant.roots.roots import sort_descending, two_roots
+from ....determinant.roots.settings import ROOTS
 from ....determinant.value import DETERMINANT
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..model.compiled.settings import CompiledSettings
+from ...model.compiled.settings import CompiledSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

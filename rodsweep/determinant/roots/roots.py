@@ -13,13 +13,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Complex
-from ..model.compiled.compilation import compiled
-from ..model.rod import Coefficients
-from .certificate.box import box_of
+from ...arrays import Array, Complex
+from ...model.compiled.compilation import compiled
+from ...model.rod import Coefficients
+from ..certificate.box import box_of
+from ..value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
 from .newton import ROOT_NEWTON, refined
-from .root_settings import ROOTS
-from .value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
+from .settings import ROOTS
 
 
 class Roots(NamedTuple):

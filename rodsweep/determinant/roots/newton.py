@@ -9,12 +9,12 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ..model.compiled.compilation import compiled
-from ..model.compiled.settings import CompiledSettings
-from ..model.rod import Coefficients
-from .exponents import EXPONENTS, ROUND_OFF
-from .parameter_path import coefficients_at, determinant_along
-from .value import scaled_determinant
+from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
+from ...model.rod import Coefficients
+from ..exponents import EXPONENTS, ROUND_OFF
+from ..parameter_path import coefficients_at, determinant_along
+from ..value import scaled_determinant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
