@@ -1,6 +1,8 @@
 """Rates of the five minors along an element, term by term in w, and the start values of the minors.
 
-The equations are those of `rodsweep.determinant.arm.elements.collocation`.
+The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at the
+Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH). turning:
+`elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH).
 """
 
 from ....arrays import Array
@@ -24,7 +26,7 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`add_start_value` of theta^s or y^theta, from whose equation another minor is eliminated."""
+    """`add_start_value` of theta^s or y^theta, (STAGES, WIDTH), whose equation contains an eliminated minor."""
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
             c = minor * ARM_ELEMENTS.lanes + lane
@@ -45,7 +47,7 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
 
 @compiled_for_vectors
 def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s what s^m and the start value of theta^m contribute."""
+    """Adds to the rates of theta^s, (STAGES, WIDTH), what s^m and the start value of theta^m contribute."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
@@ -56,7 +58,7 @@ def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates
 
 @compiled_for_vectors
 def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
-    """The rates of theta^m."""
+    """Fills the rates of theta^m, (STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
@@ -64,7 +66,7 @@ def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m what theta^m and s^m contribute."""
+    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, what theta^m and s^m contribute."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             turn = values[TM, i, c]
@@ -78,7 +80,7 @@ def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, ra
 
 @compiled_for_vectors
 def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
-    """The rates of y^theta."""
+    """Fills the rates of y^theta, (STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
@@ -86,7 +88,7 @@ def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m what y^theta contributes by the force."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), what y^theta contributes by the force."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]
