@@ -1,8 +1,8 @@
 """Rates of the five minors along an element, term by term in w, and the start values of the minors.
 
-The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at the
-Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH). turning:
-`elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH).
+The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
+the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
+turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH).
 """
 
 from ....arrays import Array
@@ -26,7 +26,7 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`add_start_value` of theta^s or y^theta, (STAGES, WIDTH), whose equation contains an eliminated minor."""
+    """`add_start_value` of theta^s or y^theta, (STAGES, WIDTH), where a minor is eliminated."""
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
             c = minor * ARM_ELEMENTS.lanes + lane
