@@ -20,7 +20,7 @@ from rodsweep.config.arm.section import ArmSection
 from rodsweep.config.document.refusals import what_is_allowed
 from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.material import MaterialSection, ProfileTable
-from rodsweep.config.phase_diagram import PhaseDiagramConfig
+from rodsweep.config.task.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS

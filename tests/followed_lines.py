@@ -10,9 +10,9 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
-from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
 
 LONGEST = 64
 LARGEST = 400

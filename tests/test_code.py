@@ -16,12 +16,6 @@ LONGEST_FUNCTION = 40
 """Lines of code, without its docstring, comments and empty lines."""
 LONGEST_MODULE = 250
 """Lines, with docstrings, comments and empty lines."""
-LONG_MODULES = {
-    "rodsweep/determinant/arm/collocation.py": 325,
-    "rodsweep/discretization/straight/elements.py": 258,
-    "rodsweep/solve/spectrum/search.py": 262,
-}
-"""Modules that are longer, with the lines they may have: no entry is added, and none grows."""
 ARRAYS = re.compile(r"\b(NDArray|ndarray|Array|Complex|Vector)\b")
 SHAPE = re.compile(r"\bshapes?\b|\((?:[\w.+* -]+,\s*)+[\w.+* -]*\)")
 """How a docstring names a shape: by the word, or as (n,), (3, ..., nodes + 1)."""
@@ -97,12 +91,9 @@ def test_no_function_is_long():
 
 
 def test_no_module_is_long():
-    allowed = {Path(name): lines for name, lines in LONG_MODULES.items()}
     lengths = {path: len(text.splitlines()) for path, text in SOURCES.items() if path.parts[0] == "rodsweep"}
-    too_long = {path: n for path, n in lengths.items() if n > allowed.get(path, LONGEST_MODULE)}
+    too_long = {path: n for path, n in lengths.items() if n > LONGEST_MODULE}
     assert too_long == {}
-    # A module that has become short enough loses its entry.
-    assert [path for path in allowed if lengths.get(path, 0) <= LONGEST_MODULE] == []
 
 
 def test_every_exception_from_a_lint_rule_has_its_reason():

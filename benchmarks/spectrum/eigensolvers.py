@@ -18,7 +18,7 @@ from rodsweep.bench.spectrum.arms import mesh_of_arm, on_arm
 from rodsweep.bench.spectrum.own import PENCIL, WANTED_MODES, leading
 from rodsweep.bench.spectrum.study import ORDERS, mesh_of
 from rodsweep.bench.study import Contender
-from rodsweep.determinant.newton import refined
+from rodsweep.determinant.roots.newton import refined
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.problem import problem_of

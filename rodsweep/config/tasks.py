@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from .branch import BranchConfig
-from .criticality import CriticalityConfig
-from .limit_cycle import LimitCycleConfig
-from .modes import ModesConfig
-from .phase_diagram import PhaseDiagramConfig
 from .schema import Config
-from .spectrum import SpectrumConfig
-from .thresholds import ThresholdsConfig
+from .task.branch import BranchConfig
+from .task.criticality import CriticalityConfig
+from .task.limit_cycle import LimitCycleConfig
+from .task.modes import ModesConfig
+from .task.phase_diagram import PhaseDiagramConfig
+from .task.spectrum import SpectrumConfig
+from .task.thresholds import ThresholdsConfig
 
 CONFIGS: dict[str, type[Config]] = {
     "spectrum": SpectrumConfig,

@@ -16,7 +16,7 @@ from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .newton import crossing_newton, double_newton
+from .roots.newton import crossing_newton, double_newton
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

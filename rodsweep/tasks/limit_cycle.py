@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..arrays import Complex
-from ..config.limit_cycle import LimitCycleConfig
+from ..config.task.limit_cycle import LimitCycleConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..model.parameters import Range

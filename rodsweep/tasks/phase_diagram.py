@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..config.phase_diagram import PhaseDiagramConfig
+from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
@@ -16,7 +16,7 @@ from .protocol import Part, Solver
 from .thresholds import search_record
 
 if TYPE_CHECKING:
-    from ..solve.changes.rows import DiagramRow, RowRequest
+    from ..solve.changes.diagram.rows import DiagramRow, RowRequest
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +92,7 @@ class PhaseDiagramTask(ProvedTask):
         return replace(lines, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
-        from ..solve.changes.rows import solve_row
+        from ..solve.changes.diagram.rows import solve_row
         from ..solve.changes.thresholds import ThresholdStatus, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
@@ -132,7 +132,7 @@ class PhaseDiagramTask(ProvedTask):
 
     def row_request(self) -> "RowRequest":
         """Request for every row."""
-        from ..solve.changes.rows import RowRequest
+        from ..solve.changes.diagram.rows import RowRequest
 
         options = self.config.phase_diagram
         return RowRequest(

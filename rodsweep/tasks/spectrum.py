@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..config.spectrum import SpectrumConfig
+from ..config.task.spectrum import SpectrumConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
@@ -132,9 +132,9 @@ class SpectrumTask(ProvedTask):
         return estimate_followed(alone, self.stretches, self.config.standard)
 
     def solver(self) -> Solver:
+        from ..solve.spectrum.path.stretch import warm_up as warm_up_following
         from ..solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
         from ..solve.spectrum.status import SpectrumStatus
-        from ..solve.spectrum.stretch import warm_up as warm_up_following
         from ..solve.spectrum.two_meshes import solve_on_two_meshes
 
         options = self.config.spectrum
@@ -154,8 +154,8 @@ class SpectrumTask(ProvedTask):
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
         """Results for the points of a stretch."""
         from ..determinant.parameter_path import Path
+        from ..solve.spectrum.path.stretch import Stretch, solve_stretch
         from ..solve.spectrum.status import SpectrumStatus
-        from ..solve.spectrum.stretch import Stretch, solve_stretch
 
         stretches = self.stretches
         assert stretches is not None

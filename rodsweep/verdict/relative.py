@@ -13,8 +13,8 @@ import numpy as np
 
 from ..determinant.certificate.covering import cover
 from ..determinant.certificate.first_boxes import first_boxes
-from ..determinant.newton import LocatedZero
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
+from ..determinant.roots.newton import LocatedZero
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag

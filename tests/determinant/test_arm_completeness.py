@@ -13,9 +13,9 @@ from rodsweep.determinant.arm.completeness import (
     right_of_hull,
 )
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.hull import hull_of
+from rodsweep.determinant.arm.hull.hull import hull_of
+from rodsweep.determinant.arm.hull.region import Hull
 from rodsweep.determinant.arm.newton import refined
-from rodsweep.determinant.arm.region import Hull
 from rodsweep.model.rod import Rod
 
 

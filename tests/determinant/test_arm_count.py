@@ -6,12 +6,12 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.beside_axis import modes_beside_axis
-from rodsweep.determinant.arm.count import count_right_of
+from rodsweep.determinant.arm.count.beside_axis import modes_beside_axis
+from rodsweep.determinant.arm.count.count import count_right_of
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.hull import hull_of
+from rodsweep.determinant.arm.hull.hull import hull_of
+from rodsweep.determinant.arm.hull.region import Hull, clearance
 from rodsweep.determinant.arm.newton import refined, root_error
-from rodsweep.determinant.arm.region import Hull, clearance
 from rodsweep.determinant.arm.roots import roots
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform

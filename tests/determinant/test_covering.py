@@ -15,8 +15,8 @@ from rodsweep.determinant.certificate.box import (
 from rodsweep.determinant.certificate.covering import cover, distance_bound, examine_box
 from rodsweep.determinant.certificate.discs import bound_on_bidisc, centre_at
 from rodsweep.determinant.certificate.first_boxes import first_boxes, slabs
-from rodsweep.determinant.newton import eigenvalue_newton
 from rodsweep.determinant.parameter_path import Path, changes, coefficients_at, determinant_along
+from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 

@@ -44,9 +44,9 @@ from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.changes.boundaries import curves_through, seed_of
-from rodsweep.solve.changes.boundary_curves import trace
-from rodsweep.solve.changes.rows import RowRequest, solve_row
+from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.diagram.boundary_curves import trace
+from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.marched import solve_by_integration
@@ -60,9 +60,9 @@ from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, inte
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
-from rodsweep.solve.spectrum.followed_leader import followed_leader
+from rodsweep.solve.spectrum.path.followed_leader import followed_leader
+from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
 ALL = "RODSWEEP_RODS" in os.environ

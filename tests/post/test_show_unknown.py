@@ -9,7 +9,7 @@ from shown import shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
-from rodsweep.determinant.arm import hull
+from rodsweep.determinant.arm.hull import hull
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.provenance import (
     FAILURE_REASONS,
@@ -19,7 +19,7 @@ from rodsweep.results.file.provenance import (
 )
 from rodsweep.results.layouts.phase_diagram import CLASSES, CURVE_ENDS
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
-from rodsweep.solve.changes import boundary_curves
+from rodsweep.solve.changes.diagram import boundary_curves
 
 ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
 ROWS = {"F": rs.linspace(0.0, 190.0, 20), "k1": 200.0, "k2": [1e3, 1e4], "gamma3": 1e-4}

@@ -66,7 +66,7 @@ def break_it():
 BROKEN_STRETCH = f"""
 {WHEN_SOLVERS_ARE_LOADED}
 def break_it():
-    import rodsweep.solve.spectrum.stretch as stretch
+    import rodsweep.solve.spectrum.path.stretch as stretch
 
     def broken(*words):
         raise IndexError("a bug")

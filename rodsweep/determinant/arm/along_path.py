@@ -12,9 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..exponents import EXPONENTS, ROUND_OFF
-from ..newton import FAILED, ROOT_NEWTON, LocatedZero
 from ..parameter_path import Path
-from ..root_settings import ROOTS
+from ..roots.newton import FAILED, ROOT_NEWTON, LocatedZero
+from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in

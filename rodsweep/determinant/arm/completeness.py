@@ -26,7 +26,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS
 from .determinant import ArmDeterminant
-from .region import Hull
+from .hull.region import Hull
 from .value import chain_value
 
 

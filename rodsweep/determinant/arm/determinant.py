@@ -22,8 +22,8 @@ from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..exponents import EXPONENTS
 from ..value import DeterminantValue
-from .element_settings import ARM_ELEMENTS
-from .propagators import element_propagators, gauss_method, tail_of
+from .elements.propagators import element_propagators, gauss_method, tail_of
+from .elements.settings import ARM_ELEMENTS
 from .value import chain_value
 
 Level = tuple[float, Array]

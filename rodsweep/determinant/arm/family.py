@@ -17,13 +17,13 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS
-from ..newton import ROOT_NEWTON
 from ..parameter_path import Path
+from ..roots.newton import ROOT_NEWTON
 from ..value import DeterminantValue
-from .collocation import ENTRIES
 from .determinant import Samples, elements_for, samples_of
-from .element_settings import ARM_ELEMENTS
-from .propagators import element_propagators
+from .elements.minor_rates import ENTRIES
+from .elements.propagators import element_propagators
+from .elements.settings import ARM_ELEMENTS
 from .value import ARM_VALUE, chain_along, chain_value
 
 LINEAR = math.inf

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS, ROUND_OFF
-from ..newton import ROOT_NEWTON
-from ..root_settings import ROOTS
-from ..roots import roots_of_parabola
+from ..roots.newton import ROOT_NEWTON
+from ..roots.roots import roots_of_parabola
+from ..roots.settings import ROOTS
 from ..value import DETERMINANT, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, Level
 from .value import ARM_VALUE, chain_value

@@ -1,6 +1,6 @@
 """Refinement of a mesh's eigenvalues to roots of D, for arms without a closed form of D.
 
-The algorithm is that of `rodsweep.determinant.roots`, with D from propagators.
+The algorithm is that of `rodsweep.determinant.roots.roots`, with D from propagators.
 """
 
 import cmath
@@ -14,12 +14,12 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..exponents import EXPONENTS
-from ..newton import ROOT_NEWTON
-from ..root_settings import ROOTS
-from ..roots import Roots
+from ..roots.newton import ROOT_NEWTON
+from ..roots.roots import Roots
+from ..roots.settings import ROOTS
 from .determinant import ArmDeterminant
+from .hull.region import Hull
 from .newton import ARM_ROOTS, refined_root, root_error, second_derivative, two_roots
-from .region import Hull
 
 T = TypeVar("T")
 

@@ -1,8 +1,8 @@
 """D(w) of an arm from the propagators of its elements: five minors, multiplied from clamp to tip.
 
-The minors are those of `rodsweep.determinant.arm.collocation`: s^m = 1 and no other at the clamp, D = s^m at
-the tip. D spans hundreds of decades, so the minors are scaled on their way; the logarithms of the factors
-are summed. Derivatives by w and along a path of arms are carried along.
+The minors are those of `rodsweep.determinant.arm.elements.collocation`: s^m = 1 and no other at the clamp,
+D = s^m at the tip. D spans hundreds of decades, so the minors are scaled on their way; the logarithms of the
+factors are summed. Derivatives by w and along a path of arms are carried along.
 
 The propagators at one w are sums over powers of w, which all elements share. Real and imaginary parts are
 rows of their own, so that a sum is a vector instruction over the entries of a propagator.
@@ -19,8 +19,8 @@ from ...model.compiled.settings import CompiledSettings
 from ..exponents import UNIT
 from ..parameter_path import ValueAlong
 from ..value import DeterminantValue
-from .collocation import ENTRIES, SM
-from .element_settings import MINORS
+from .elements.minor_rates import ENTRIES, SM
+from .elements.settings import MINORS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,8 +28,8 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENTS
-from ..newton import FAILED, LocatedZero, crossing_newton
 from ..parameter_path import changes, coefficients_at, determinant_along
+from ..roots.newton import FAILED, LocatedZero, crossing_newton
 from .discs import DISCS, BidiscCentre, Pair, bound_on_bidisc, centre_at
 
 

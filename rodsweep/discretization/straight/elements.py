@@ -24,6 +24,7 @@ from ..elements.basis import differentiation
 from ..elements.elements import ELEMENTS
 from ..elements.quadrature import gauss_lobatto
 from ..state_layout import COMPONENTS
+from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
 LONGITUDINAL = (0,)
@@ -31,44 +32,6 @@ LONGITUDINAL = (0,)
 TRANSVERSE = (1, 2)
 """Components of stresses and velocities in se(2) that change their sign under reflection in the rod's
 axis."""
-
-Indices = NDArray[np.int_]
-
-
-@dataclass(frozen=True, eq=False)
-class _Numbering:
-    """Indices of the elements' unknowns.
-
-    An element has `local` unknowns. unknowns: indices in the state, (elements, local); stresses at the tip
-    are not unknowns, and have the index behind the state. inside, ends: local indices of interior unknowns
-    and of unknowns at both ends, the left end first. between: indices of the end unknowns among all unknowns
-    between elements, (elements, ends). exists: False for stresses at the tip, (unknowns between elements,).
-    """
-
-    unknowns: Indices
-    inside: Indices
-    ends: Indices
-    between: Indices
-    exists: NDArray[np.bool_]
-
-
-@lru_cache(maxsize=ELEMENTS.meshes_kept)
-def _numbering(elements: int, order: int, components: tuple[int, ...]) -> _Numbering:
-    last = elements * order
-    nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
-    unknown = COMPONENTS * (2 * last + 1)
-    stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
-    velocities = [COMPONENTS * last + c * (last + 1) + nodes for c in components]
-    width = 2 * len(components)
-    node = np.tile(np.arange(order + 1), width)
-    inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)
-    ends = np.setdiff1d(np.arange(len(node)), inside)
-    ends = ends[np.argsort(node[ends], kind="stable")]
-    between = np.arange(elements)[:, None] * width + np.arange(len(ends))
-    unknowns = np.concatenate([*stresses, *velocities], axis=1)
-    exists = np.ones(between[-1, -1] + 1, bool)
-    exists[between[-1]] = unknowns[-1, ends] < unknown
-    return _Numbering(unknowns, inside, ends, between, exists)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,12 +45,12 @@ class StraightElements:
     components: tuple[int, ...]
 
     @cached_property
-    def numbering(self) -> _Numbering:
+    def numbering(self) -> ElementNumbering:
         """Indices of the elements' unknowns. Raises ValueError for several elements of an even order."""
         mesh = self.form.mesh
         if mesh.elements > 1 and mesh.order % 2 == 0:
             raise ValueError(f"several elements need an odd order, not {mesh.order}")
-        return _numbering(mesh.elements, mesh.order, self.components)
+        return element_numbering(mesh.elements, mesh.order, self.components)
 
     @cached_property
     def A(self) -> Array:
@@ -181,7 +144,7 @@ class _InteriorElimination:
     left: Complex
 
     @classmethod
-    def of(cls, K: Complex, numbering: _Numbering) -> Self:
+    def of(cls, K: Complex, numbering: ElementNumbering) -> Self:
         """Elimination of the interior unknowns from the element matrix K, (local, local)."""
         inside = numbering.inside
         ends = numbering.ends

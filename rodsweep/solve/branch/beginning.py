@@ -12,7 +12,7 @@ import numpy as np
 from ...determinant.parameter_path import Path
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..changes.arm_path import path_problem
+from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT

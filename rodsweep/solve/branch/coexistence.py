@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.rod import Rod
 from ...wording import counted
-from ..changes.rows import DiagramRow, Motion, RowRequest, solve_row
+from ..changes.diagram.rows import DiagramRow, Motion, RowRequest, solve_row
 from ..changes.thresholds import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..status import PointStatus

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover
 from ...determinant.certificate.first_boxes import first_boxes
-from ...determinant.newton import LocatedZero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
+from ...determinant.roots.newton import LocatedZero
 from ..point import Unsolvable
-from .arm_crossings import CrossingSearch
-from .arm_path import ArmPath, path_problem
+from .arm.crossings import CrossingSearch
+from .arm.path import ArmPath, path_problem
 from .leading_eigenvalue import Tracer
 from .path_problem import PathProblem
 from .search_range import SearchEnd

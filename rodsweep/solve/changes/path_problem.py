@@ -4,8 +4,8 @@ from abc import ABC, abstractmethod
 
 from ...determinant.certificate.first_boxes import slabs
 from ...determinant.certificate.winding_number import Count, count_right_of
-from ...determinant.newton import LocatedZero, double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at
+from ...determinant.roots.newton import LocatedZero, double_newton, eigenvalue_newton
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 

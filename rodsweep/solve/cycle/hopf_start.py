@@ -16,7 +16,7 @@ from ...discretization.at_jumps import carried_stress
 from ...discretization.elements.mesh import transfer
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..changes.arm_path import path_problem
+from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace

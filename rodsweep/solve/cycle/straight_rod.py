@@ -10,9 +10,9 @@ from math import isnan, nan
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.root_settings import ROOTS
+from ...determinant.roots.settings import ROOTS
 from ...model.rod import Rod
-from ..spectrum.followed_leader import followed_leader
+from ..spectrum.path.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 
 

@@ -14,7 +14,7 @@ from ...discretization.elements.elements import Elements
 from ...discretization.straight.elements import TRANSVERSE
 from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
-from ..changes.arm_path import path_problem
+from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
 from .normal_form import NORMAL_FORM, NormalForm, a_third_finer, elements_for, normal_form_on
 

@@ -16,8 +16,8 @@ from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.parameter_path import Path
 from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
-from ..changes.arm_path import path_problem
-from ..changes.boundary_curves import BoundaryCurve
+from ..changes.arm.path import path_problem
+from ..changes.diagram.boundary_curves import BoundaryCurve
 from ..changes.unstable_modes import ChangeKind, Crossing
 from ..point import FAILURES, Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients

@@ -5,7 +5,7 @@ from math import inf, nan
 
 import numpy as np
 
-from ...determinant.arm.hull import hull_of
+from ...determinant.arm.hull.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
 from ...discretization.straight.dense_form import AnyPencil, dense_form
 from ...discretization.straight.slaving import slaving_of

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Complex
 from ...determinant.certificate.winding_number import Count
-from ...determinant.roots import Roots
+from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.settings import CompiledSettings
 from ..backend.kept import forget_all

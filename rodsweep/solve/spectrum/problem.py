@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.arm.completeness import COMPLETENESS, cheapest_proof, none_is_missing
-from ...determinant.arm.count import count_right_of as count_of_arm
-from ...determinant.arm.count import is_countable, largest_w_of_count
+from ...determinant.arm.count.count import count_right_of as count_of_arm
+from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
-from ...determinant.arm.hull import hull_of
+from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import roots as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
 from ...determinant.certificate.winding_number import Count, count_right_of
-from ...determinant.roots import Roots, roots
+from ...determinant.roots.roots import Roots, roots
 from ...discretization.elements.resolution import Resolution, expected_wave_number, finer, resolution_for
 from ...discretization.straight.arm_pencil import ArmMesh
 from ...discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh
@@ -30,7 +30,7 @@ from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import EigenSolver, eigen_solver
-from .prediction import KnownRoots
+from .path.prediction import KnownRoots
 from .shift_invert import KRYLOV
 
 

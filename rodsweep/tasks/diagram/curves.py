@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.boundaries import SpecialBoundaries
     from ...solve.branch.special.point import SpecialPoint
-    from ...solve.changes.boundary_curves import BoundaryCurve
+    from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.generalised import CurveCriticality
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
@@ -147,7 +147,7 @@ class DiagramCurves:
 
     def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
         """Curves through the crossings of all finite rows; rows: value of every row, (rows,)."""
-        from ...solve.changes.boundaries import curves_through, seed_of
+        from ...solve.changes.diagram.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
         at, kind, frequency, rate = map(view.by_point, names)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.boundaries import RowSpecial
     from ...solve.branch.special.cycle_curves import CycleCurve
-    from ...solve.changes.boundary_curves import BoundaryCurve
+    from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
     from ...solve.hopf.generalised import CurveCriticality

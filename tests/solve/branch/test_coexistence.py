@@ -26,7 +26,7 @@ from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curves import CurveLimits
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.changes.rows import RowRequest
+from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import make_job
 

@@ -12,8 +12,8 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.boundary_curves import trace
-from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.boundary_curves import trace
+from rodsweep.solve.changes.diagram.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.hopf.generalised import curve_criticality

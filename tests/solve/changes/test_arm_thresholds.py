@@ -10,17 +10,17 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm import hull
+from rodsweep.determinant.arm.hull import hull
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
-from rodsweep.solve.spectrum import followed_arms
+from rodsweep.solve.spectrum.path import followed_arms
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
 ACROSS = (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization)

@@ -10,11 +10,11 @@ from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes import boundary_curves
-from rodsweep.solve.changes.boundaries import curves_through, seed_of
-from rodsweep.solve.changes.boundary_curves import trace
-from rodsweep.solve.changes.boundary_problem import BoundaryEnd
-from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.diagram import boundary_curves
+from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.diagram.boundary_curves import trace
+from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEnd
+from rodsweep.solve.changes.diagram.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 

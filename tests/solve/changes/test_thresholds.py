@@ -12,7 +12,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.rows import classes
+from rodsweep.solve.changes.diagram.rows import classes
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum

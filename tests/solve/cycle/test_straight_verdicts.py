@@ -15,7 +15,7 @@ from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cy
 from rodsweep.solve.cycle.second_state import SecondState
 from rodsweep.solve.cycle.straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
 from rodsweep.solve.hopf.normal_form import accurate_normal_form
-from rodsweep.solve.spectrum.followed_leader import followed_leader
+from rodsweep.solve.spectrum.path.followed_leader import followed_leader
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 BESIDE = Rod(F=28.201858565493147, k1=inf, k2=100.0, gamma3=1e-3, gamma1=100.0)

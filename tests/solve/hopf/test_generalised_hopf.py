@@ -16,7 +16,7 @@ from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.stability.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.changes.boundary_curves import trace
+from rodsweep.solve.changes.diagram.boundary_curves import trace
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality

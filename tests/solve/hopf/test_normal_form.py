@@ -11,7 +11,7 @@ import pytest
 from mixed_motion import mixed_form
 from rods import rod_of
 
-from rodsweep.determinant.newton import eigenvalue_newton
+from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import newton_correction
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle

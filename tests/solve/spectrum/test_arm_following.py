@@ -9,10 +9,10 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.arm_stretch import followed_arms
-from rodsweep.solve.spectrum.followed_arms import FollowedArms
+from rodsweep.solve.spectrum.path.arm_stretch import followed_arms
+from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
+from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)
 CONE = {"F": 10.0, "k1": 1e4, "k2": 1e3, "gamma3": 1e-3, "taper": 0.6}

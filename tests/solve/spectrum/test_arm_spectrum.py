@@ -10,8 +10,8 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.hull.region import UNKNOWN
 from rodsweep.determinant.arm.newton import refined
-from rodsweep.determinant.arm.region import UNKNOWN
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod

@@ -14,11 +14,11 @@ from rodsweep.determinant.certificate.winding_number import count_right_of, step
 from rodsweep.determinant.moving_line import IntervalEnd, free_of_zeros, none_crosses
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
-from rodsweep.solve.spectrum import stretch as stretch_of
-from rodsweep.solve.spectrum.prediction import extrapolated
+from rodsweep.solve.spectrum.path import stretch as stretch_of
+from rodsweep.solve.spectrum.path.prediction import extrapolated
+from rodsweep.solve.spectrum.path.stretch import solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
-from rodsweep.solve.spectrum.stretch import solve_stretch
 
 CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .....config.arm.axes import CHANGED_PARAMETER
-from .....config.limit_cycle import LONGEST
+from .....config.task.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS

@@ -1,0 +1,1 @@
+"""Config class of each task."""

@@ -1,0 +1,100 @@
+"""Config of the task branch: branches of cycles followed in one parameter from their Hopf points."""
+
+from collections.abc import Mapping
+from math import inf, isfinite
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ...model.parameters import (
+    LINEAR_PARAMETERS,
+    NONLINEAR_PARAMETERS,
+    OPTIONAL_PARAMETERS,
+    PARAMETERS,
+    all_but,
+)
+from ..axes import DEFAULTS, NonlinearParameters
+from ..schema import Config
+from ..values import Number, StrictSection
+
+FOLLOWED = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+"""Parameters along which branches can be followed: those on which Hopf points depend, so not gamma1."""
+
+
+class BranchOptions(StrictSection):
+    """Parameter and range of the branches, and the number of cycles and special points that are stored."""
+
+    along: Literal[FOLLOWED] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
+    """Parameter along which branches are followed. All other parameters are axes."""
+    start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
+    """Smallest value of the parameter `along`; a branch ends there."""
+    stop: Annotated[Number, Field(gt=-inf, lt=inf)] = 200.0
+    """Largest value of the parameter `along`. F ends just below the force that crushes the rod."""
+    cycles: Annotated[int, Field(ge=1, le=100_000)] = 500
+    """Maximum number of stored cycles per rod, over all branches."""
+    special: Annotated[int, Field(ge=1, le=10_000)] = 64
+    """Maximum number of stored special points per rod."""
+    certify: bool = True
+    """Confirm by winding numbers between the Hopf points that none is missing."""
+
+    @model_validator(mode="after")
+    def _range_of_the_parameter(self) -> "BranchOptions":
+        allowed = PARAMETERS[self.along].allowed
+        for key, value in (("start", self.start), ("stop", self.stop)):
+            if not allowed.contains(value) or not isfinite(value):
+                finite = " (not inf: a branch has finite ends)" if PARAMETERS[self.along].rigid else ""
+                raise ValueError(
+                    f"{key} = {value:g} is not allowed along {self.along}; allowed: {allowed.phrase}{finite}"
+                )
+        if not self.start < self.stop:
+            raise ValueError(f"start = {self.start:g} is not below stop = {self.stop:g}")
+        return self
+
+
+class BranchConfig(Config):
+    """Cycles, stable or not, followed through folds from every Hopf point of a rod to the ends of their
+    branches.
+    """
+
+    task: Literal["branch"]
+    parameters: NonlinearParameters
+    accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
+    """Relative error of each cycle's period and largest y. Special points are located to the smaller of
+    `accuracy` and 1e-9. The file holds error estimates of all."""
+    branch: BranchOptions = BranchOptions()
+
+    others_may_be_needed: ClassVar[bool] = True
+    of_cycles: ClassVar[bool] = True
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *self.added)
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+        return all_but(options.get("along", "F"), NONLINEAR_PARAMETERS)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _followed_has_no_default(cls, given: Any) -> Any:
+        """Removes the default of the followed parameter, which has no value; a given value is refused."""
+        sections = given if isinstance(given, dict) else {}
+        options = sections.get("branch")
+        parameters = sections.get("parameters")
+        along = options.get("along") if isinstance(options, dict) else None
+        if not isinstance(parameters, dict) or not isinstance(along, str) or along not in DEFAULTS:
+            return given
+        return sections | {"parameters": {along: None, **parameters}}
+
+    @model_validator(mode="after")
+    def _follows_one_parameter(self) -> "BranchConfig":
+        along = self.branch.along
+        why = f"follows {along}; remove it and set branch.start and branch.stop, or another branch.along"
+        self.refuse_found(along, why)
+        if self.parameters.arm is not None and along != "F":
+            raise ValueError(
+                f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
+                "or give the parameters without an arm"
+            )
+        self.parameters.require(self.names)
+        return self

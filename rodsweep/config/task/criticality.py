@@ -1,0 +1,46 @@
+"""Config of the task criticality: Hopf points of the straight rod, and the cycles born there."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from ..axes import NonlinearParameters
+from ..schema import Config, Crossings
+from ..values import Number, StrictSection
+
+
+class CriticalityOptions(StrictSection):
+    """Range of the search, and the number of Hopf points that are stored."""
+
+    F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
+    """Largest force of the search for Hopf points, which ends just below the force that crushes the rod."""
+    crossings: Crossings = 16
+    """Maximum number of stored Hopf points."""
+    certify: bool = True
+    """Confirm by winding numbers between the Hopf points that none is missing."""
+
+
+class CriticalityConfig(Config):
+    """Criticality of every Hopf point of a rod, and how amplitude and frequency of its cycles grow."""
+
+    task: Literal["criticality"]
+    parameters: NonlinearParameters
+    accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
+    """Relative error of each Hopf point, of the eigenvalue's slope and of the Landau coefficient. The errors
+    of the amplitude coefficient and of the frequency slope follow; the file holds all error estimates."""
+    criticality: CriticalityOptions = CriticalityOptions()
+
+    of_cycles: ClassVar[bool] = True
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+        return all_but("F", NONLINEAR_PARAMETERS)
+
+    @model_validator(mode="after")
+    def _finds_the_force_itself(self) -> "CriticalityConfig":
+        self.refuse_found("F", f"finds F itself; remove it and set {self.task}.F_max")
+        self.parameters.require(self.names)
+        return self

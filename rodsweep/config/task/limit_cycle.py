@@ -1,0 +1,112 @@
+"""Config of the task limit_cycle: the nonlinear rod, including its axial drag gamma1."""
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from ..arm.axes import AXIS_OF
+from ..axes import NonlinearParameters, words
+from ..schema import Config, Nodes
+from ..values import Number, StrictSection
+
+LONGEST = "longest"
+ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+
+
+class LimitCycleOptions(StrictSection):
+    """Start of each point, limits of the computation, and stored data of the cycle."""
+
+    method: Literal["collocation", "integration"] = "collocation"
+    """Cycles by collocation in time, with multipliers, or by time integration alone, without multipliers."""
+    amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
+    """Tip deflection of the leading mode at the start of a point, in L."""
+    start: Literal["mode", "neighbour", "hopf"] = "mode"
+    """Start of each point: the leading mode, a neighbour's cycle, or the Hopf point."""
+    along: ChainParameter = LONGEST
+    """Parameter along which each point starts from the previous point's cycle, or a quantity of the arm that
+    changes only this parameter; `longest`: the parameter with most values."""
+    direction: Literal["up", "down"] = "up"
+    """Whether the parameter `along` increases or decreases from a point to the next."""
+    harmonics: Annotated[int, Field(ge=1, le=100)] = 8
+    """Number of stored harmonics of the tip's y."""
+    samples: Annotated[int, Field(ge=0, le=100_000)] = 0
+    """Times per period at which the tip and the energy are stored; 0 stores none."""
+    shapes: Annotated[int, Field(ge=0, le=10_000)] = 0
+    """Times per period at which the shape of the rod is stored; 0 stores none."""
+    nodes: Nodes = 33
+    """Number of Lobatto nodes of each shape."""
+    transient: Annotated[int, Field(ge=0, le=100_000)] = 0
+    """Times from the start to the cycle at which the tip of the real motion is stored; 0 stores none."""
+    most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
+    """Maximum number of periods; an unsettled point is then given up, or after 200 time steps per period."""
+    time: Literal["tau2", "tau1"] = "tau2"
+    """Unit of time; tau1 adds the period in units of tau1, and all else stays in tau2."""
+
+
+class LimitCycleConfig(Config):
+    """The limit cycle of the nonlinear rod at every point, or the fact that the rod has no limit cycle."""
+
+    task: Literal["limit_cycle"]
+    parameters: NonlinearParameters
+    accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
+    """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
+    hundred times larger, in units of the largest y. The file holds error estimates of all."""
+    limit_cycle: LimitCycleOptions = LimitCycleOptions()
+
+    of_cycles: ClassVar[bool] = True
+
+    @property
+    def along(self) -> str:
+        """Parameter along which each point starts from the previous point's cycle: by default the first
+        parameter with most values.
+        """
+        sizes = self.parameters.alone
+        given = self.limit_cycle.along
+        if given == LONGEST:
+            return max(sizes, key=lambda name: sizes[name], default=given)
+        return AXIS_OF.get(given, given)
+
+    @property
+    def unused(self) -> dict[str, str]:
+        options = self.limit_cycle
+        found: dict[str, str] = {}
+        if options.start != "neighbour":
+            found |= dict.fromkeys(("along", "direction"), "start: neighbour")
+        if options.method == "integration":
+            found |= dict.fromkeys(("start", "along", "direction", "transient"), "method: collocation")
+        elif options.start == "hopf":
+            found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
+        if not options.shapes:
+            found["nodes"] = "shapes"
+        return found
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        meant = super().meaning
+        options = meant[self.task]
+        return meant | {self.task: options | ({"along": self.along} if "along" in options else {})}
+
+    @model_validator(mode="after")
+    def _only_what_is_used(self) -> "LimitCycleConfig":
+        self.parameters.require(self.names)
+        self.refuse_unused()
+        arm = self.parameters.arm
+        along = self.limit_cycle.along
+        if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.given}):
+            raise ValueError(
+                f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or one of "
+                f"{words(NONLINEAR_PARAMETERS, 'or')}"
+            )
+        if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
+            raise ValueError(
+                "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
+                "give axes instead of parameters.points"
+            )
+        if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.alone:
+            raise ValueError(
+                f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
+                f"of parameters.arm are {' and '.join(self.parameters.over)}; give several values of "
+                f"{words((*AXIS_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
+            )
+        return self

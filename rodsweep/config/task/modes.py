@@ -1,0 +1,35 @@
+"""Config of the task modes."""
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from ..schema import LinearConfig, Modes, Nodes
+from ..values import StrictSection
+
+
+class ModesOptions(StrictSection):
+    """Number of modes at each point, their nodes, and whether transient growth is computed."""
+
+    modes: Modes = 2
+    """Number of leading modes at each point."""
+    nodes: Nodes = 65
+    """Number of Lobatto nodes of each mode."""
+    growth: bool = True
+    """Compute the numerical abscissa and the transient growth."""
+    certify: bool = True
+    """Prove by the winding number that no leading mode is missing."""
+
+
+class ModesConfig(LinearConfig):
+    """The leading modes at every point, with their adjoints and the transient growth of the non-normal
+    operator.
+    """
+
+    task: Literal["modes"]
+    modes: ModesOptions = ModesOptions()
+
+    @model_validator(mode="after")
+    def _whole_points(self) -> "ModesConfig":
+        self.parameters.require(self.names)
+        return self

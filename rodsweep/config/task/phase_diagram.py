@@ -1,0 +1,195 @@
+"""Config of the task phase_diagram."""
+
+from math import inf
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ...model.arm.quantities import RELATIVE
+from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ..arm.axes import AXIS_OF, FLUID
+from ..axes import DEFAULTS, DiagramParameters, LinearAxes, words
+from ..schema import Crossings, LinearConfig
+from ..values import Axis, Number, StrictSection
+
+THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+
+
+class BautinAlong(LinearAxes):
+    """A parameter with values, over which generalised Hopf points are followed."""
+
+
+class PhaseDiagramOptions(StrictSection):
+    """Options for the rows of a phase diagram and for the curves between them."""
+
+    crossings: Crossings = 16
+    """Maximum number of stored crossings per row."""
+    certify: bool = True
+    """Confirm by winding numbers between the changes, and certify every spectrum."""
+    curves: bool = True
+    """Follow the boundaries between the rows as curves."""
+    criticality: bool = False
+    """Compute the criticality along Hopf curves, and where it changes; needs `curves`."""
+    cycles: bool = False
+    """Follow the cycles of each row, for the stable states and, with `curves`, the curves of their folds."""
+    cycle_accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-6
+    """Relative error of the period and of the largest y of each cycle; needs `cycles`. Special points are
+    located to the smaller of `cycle_accuracy` and 1e-9. A smaller number leaves fewer states undecided."""
+    bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
+        None
+    )
+    """A third parameter with values, over which curves of generalised Hopf points are followed; needs
+    `criticality`."""
+
+    @property
+    def third(self) -> tuple[str, Axis] | None:
+        """The third parameter and its values, None if not given."""
+        given = [(name, getattr(self.bautin_along, name, None)) for name in THIRD_PARAMETERS]
+        return next(((name, axis) for name, axis in given if axis is not None), None)
+
+    @model_validator(mode="after")
+    def _one_third_parameter(self) -> "PhaseDiagramOptions":
+        if self.bautin_along is None:
+            return self
+        given = [name for name in THIRD_PARAMETERS if getattr(self.bautin_along, name) is not None]
+        if len(given) != 1:
+            raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
+        name = given[0]
+        axis = getattr(self.bautin_along, given[0])
+        allowed = PARAMETERS[name].allowed
+        values = axis.array()
+        if axis.size < 2 or not (values < inf).all() or not all(map(allowed.contains, values)):
+            raise ValueError(
+                f"bautin_along.{name} needs at least two values, all {allowed.phrase} and none of them inf"
+            )
+        if not self.criticality:
+            raise ValueError("bautin_along is given but criticality is false; set criticality: true")
+        return self
+
+
+class PhaseDiagramConfig(LinearConfig):
+    """States of the rod over two parameters, row by row; a row is a line in the first parameter."""
+
+    task: Literal["phase_diagram"]
+    parameters: DiagramParameters
+    phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
+
+    into_crushed: ClassVar[bool] = True
+    of_several_rods: ClassVar[bool] = True
+    beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+
+    @property
+    def plane(self) -> tuple[str, ...]:
+        """(line axis, row axis): the parameters with more than one value, in the order of
+        LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
+        """
+        return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(name for name in super().names if name != self.plane[0])
+
+    @property
+    def gamma1(self) -> float:
+        """The axial drag of criticality and cycles: the given value, the arm's, or the default."""
+        if "gamma1" in self.parameters.numbers:
+            return self.parameters.numbers["gamma1"]
+        if self.parameters.arm is not None:
+            return float(self.parameters.arm.grid_axes()["gamma1"].array()[0])
+        return DEFAULTS["gamma1"]
+
+    @property
+    def unused(self) -> dict[str, str]:
+        return {} if self.phase_diagram.cycles else {"cycle_accuracy": "cycles: true"}
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        """Adds the values along every row and, if curves are drawn, which axes are logarithmic."""
+        meant = super().meaning
+        axes = self.parameters.axes
+        line = self.plane[0]
+        asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
+        meant |= {"parameters": meant["parameters"] | asked}
+        # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
+        asked_of_curves = meant["phase_diagram"].pop("criticality")
+        meant["phase_diagram"].pop("bautin_along", None)
+        meant["parameters"].pop("gamma1", None)
+        if self.phase_diagram.cycles:
+            meant["phase_diagram"]["gamma1"] = self.gamma1
+        if self.phase_diagram.curves:
+            meant |= {"together": {"logarithmic": [name for name in self.plane if axes[name].logarithmic]}}
+        if asked_of_curves:
+            meant["together"]["criticality"] = {"gamma1": self.gamma1}
+        if self.phase_diagram.third is not None:
+            name, axis = self.phase_diagram.third
+            meant["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.logarithmic}
+        return meant
+
+    @model_validator(mode="after")
+    def _only_what_the_curves_use(self) -> "PhaseDiagramConfig":
+        self.refuse_unused()
+        options = self.phase_diagram
+        if options.criticality and not options.curves:
+            raise ValueError(
+                "phase_diagram.criticality is true but phase_diagram.curves is false; criticality is "
+                "computed along the curves: set phase_diagram.curves: true or remove "
+                "phase_diagram.criticality"
+            )
+        if "gamma1" in self.parameters.numbers and not (options.criticality or options.cycles):
+            raise ValueError(
+                "parameters.gamma1 is given but the task phase_diagram does not use it without "
+                "phase_diagram.criticality: true or phase_diagram.cycles: true; remove it or set one of these"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _two_axes(self) -> "PhaseDiagramConfig":
+        every = words(LINEAR_PARAMETERS, "and")
+        if self.parameters.points is not None:
+            raise ValueError(
+                "parameters.points is given but the task phase_diagram needs axes; remove it and give "
+                f"{every}"
+            )
+        self.parameters.require(LINEAR_PARAMETERS, or_points=False)
+        if self.parameters.over:
+            several = next(name for name in self.parameters.over if name not in (*AXIS_OF, "drag"))
+            moves = "no parameter" if several in FLUID else "several parameters at once"
+            why = (
+                "is relative to flutter" if several in RELATIVE else f"has several values, which move {moves}"
+            )
+            raise ValueError(
+                f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
+                f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters beside the arm"
+            )
+        long = self.plane
+        names = words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
+        if len(long) != 2:
+            raise ValueError(
+                f"parameters has {len(long)} {'axis' if len(long) == 1 else 'axes'} with more than one value "
+                f"({', '.join(long) or 'none'}); a phase diagram needs exactly two of {names}"
+            )
+        line = self.parameters.axes[long[0]]
+        if inf in (line.values or ()):
+            stiff = words(tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid), "and")
+            raise ValueError(
+                f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
+                f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _third_beside_the_plane(self) -> "PhaseDiagramConfig":
+        if self.phase_diagram.third is None:
+            return self
+        name, axis = self.phase_diagram.third
+        low, high = axis.array()[[0, -1]]
+        given = self.parameters.axes.get(name)
+        value = np.array([PARAMETERS[name].default]) if given is None else given.array()
+        if name in self.plane or not low <= value[0] <= high:
+            raise ValueError(
+                f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; it must be a parameter with "
+                f"one value that lies in this range, and parameters.{name} has "
+                f"{len(value)} from {value[0]:g}"
+            )
+        return self

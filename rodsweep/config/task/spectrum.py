@@ -1,0 +1,83 @@
+"""Config of the task spectrum."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
+
+from pydantic import model_validator
+
+from ...model.parameters import LINEAR_PARAMETERS
+from ..schema import LinearConfig, Modes, Nodes
+from ..values import StrictSection
+
+
+class SpectrumOptions(StrictSection):
+    """Number of eigenvalues at each point, the method, and stored data of their modes."""
+
+    modes: Modes = 4
+    """Number of leading eigenvalues at each point."""
+    method: Literal["determinant", "krylov_schur"] = "determinant"
+    """Eigenvalues as roots of D, or by Krylov-Schur on two meshes, which proves nothing."""
+    certify: bool = True
+    """Prove by the winding number of D that no eigenvalue is missing."""
+    vectors: bool = False
+    """Store (Y, Theta), scaled to Y(1) = 1, with an error of about `accuracy`."""
+    nodes: Nodes = 33
+    """Number of Lobatto nodes of (Y, Theta); used if `vectors` is true."""
+    follow: bool = True
+    """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
+    longitudinal: bool = False
+    """Add the longitudinal modes: -(k1/gamma1) (pi (n - 1/2))^2 for a uniform rod of linear material."""
+
+
+class SpectrumConfig(LinearConfig):
+    """The leading eigenvalues at every point."""
+
+    task: Literal["spectrum"]
+    spectrum: SpectrumOptions = SpectrumOptions()
+
+    beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+        return (*LINEAR_PARAMETERS, *cls.beyond) if options.get("longitudinal") else LINEAR_PARAMETERS
+
+    @property
+    def unused(self) -> dict[str, str]:
+        found = {} if self.spectrum.vectors else {"nodes": "vectors: true"}
+        if self.spectrum.method == "krylov_schur":
+            found |= dict.fromkeys(("certify", "follow"), "method: determinant")
+        return found
+
+    @property
+    def certifies(self) -> bool:
+        """Whether the winding number of D must prove that no mode is missing."""
+        return self.spectrum.certify and self.spectrum.method == "determinant"
+
+    @property
+    def follows(self) -> bool:
+        """Whether eigenvalues are followed along an axis: without vectors, and with a count of misses."""
+        return self.spectrum.follow and self._could_follow
+
+    @property
+    def _could_follow(self) -> bool:
+        return self.certifies and not (self.spectrum.vectors or self.parameters.is_list)
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        meant = super().meaning
+        if "follow" in meant["spectrum"] and not self._could_follow:  # `follow` then has no effect
+            meant["spectrum"]["follow"] = True
+        return meant
+
+    @model_validator(mode="after")
+    def _only_what_is_used(self) -> "SpectrumConfig":
+        self.parameters.require(self.names)
+        if "gamma1" in self.parameters.numbers and not self.spectrum.longitudinal:
+            raise ValueError(
+                "parameters.gamma1 is given but not used: the transverse spectrum does not depend on it; "
+                "remove it or set spectrum.longitudinal: true"
+            )
+        if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:
+            raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
+        self.refuse_unused()
+        return self

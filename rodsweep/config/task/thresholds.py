@@ -1,0 +1,40 @@
+"""Config of the task thresholds."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from ...model.parameters import all_but
+from ..schema import Crossings, LinearConfig
+from ..values import Number, StrictSection
+
+
+class ThresholdsOptions(StrictSection):
+    """Range of the search, and the number of crossings that are stored."""
+
+    F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
+    """Largest force of the search. If the arm is crushed at a smaller force (k1 for a uniform rod of linear
+    material), the search ends just below the crushing force."""
+    crossings: Crossings = 16
+    """Maximum number of stored crossings."""
+    certify: bool = True
+    """Confirm by winding numbers between the changes, and certify every spectrum."""
+
+
+class ThresholdsConfig(LinearConfig):
+    """Forces at which the number or kind of the unstable eigenvalues of a rod changes."""
+
+    task: Literal["thresholds"]
+    thresholds: ThresholdsOptions = ThresholdsOptions()
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+        return all_but("F")
+
+    @model_validator(mode="after")
+    def _finds_the_force_itself(self) -> "ThresholdsConfig":
+        self.refuse_found("F", f"finds F itself; remove it and set {self.task}.F_max")
+        self.parameters.require(self.names)
+        return self

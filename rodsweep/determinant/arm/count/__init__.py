@@ -1,0 +1,1 @@
+"""Number of an arm's eigenvalues right of a vertical line."""

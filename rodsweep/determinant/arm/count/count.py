@@ -1,0 +1,209 @@
+"""Number of an arm's transverse eigenvalues right of a vertical line, without mesh or shift.
+
+The number is the change of arg D along the upper half of a box that contains all these eigenvalues, divided
+by pi, as in `rodsweep.determinant.certificate.winding_number`. The phase between two nodes follows from the
+tangents log D(w) + L (v - w), L = D'/D, at both nodes, if each tangent is wrong by less than pi/2 where
+the tangents meet.
+
+Known eigenvalues close to the line are divided out: D above stands for D(w)/prod (w - w_n), whose zeros are
+far from the line. Those of them right of the line are added to the count.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ....model.compiled.compilation import compiled
+from ...certificate.winding_number import COUNT, Count
+from ..completeness import has_conjugate
+from ..determinant import ArmDeterminant, ArmSamples, Level, scales_at
+from ..elements.settings import ARM_ELEMENTS
+from ..hull.region import Hull
+from .phase_node import PhaseNode, phase_node, tangent
+from .settings import ARM_COUNT
+
+NONE_KNOWN: Complex = np.empty(0, complex)
+
+
+class PhaseLost(ArithmeticError):
+    """The change of phase could not be determined; nodes: number of nodes used."""
+
+    def __init__(self, nodes: int):
+        super().__init__("an eigenvalue lies too close to the line, or the box is too large")
+        self.nodes = nodes
+
+
+class BoxWalk(NamedTuple):
+    """A walk along the sides of a box: the side, the distance t from its start, the change of arg D so far.
+
+    here: the last of `nodes` nodes. growth: change of the reach per distance. ahead: distance of the next
+    node, 0 if not chosen. needed: |w| for which elements are needed; inf where the phase is lost.
+    """
+
+    side: int
+    t: float
+    total: float
+    nodes: int
+    here: PhaseNode
+    growth: float
+    ahead: float
+    needed: float
+
+
+def count_right_of(
+    line: float,
+    determinant: ArmDeterminant,
+    hull: Hull,
+    known: Complex = NONE_KNOWN,
+    error: Array | float = 0.0,
+) -> Count:
+    """The number of transverse eigenvalues with Re w > line, for any real line.
+
+    known, error: some eigenvalues, (n,), and the error of each, (n,); known eigenvalues make the count
+    faster. Raises no error: a failed count is a Count without a number, with the reason.
+    """
+    if not math.isfinite(hull.a):
+        return Count(None, 0, "no a-priori bound on the eigenvalues applies")
+    if line >= hull.box(max(-line, 0.0))[0]:
+        return Count(0, 0)
+    known = known[error < ARM_COUNT.sharp * np.abs(known.real - line)]
+    known = known[has_conjugate(known)]
+    height = np.maximum(np.abs(known.imag), abs(line))
+    known = known[np.abs(known.real - line) < ARM_COUNT.close_to_line * height]
+    try:
+        total, nodes = _phase_change(line, determinant, hull, known)
+    except PhaseLost as lost:
+        return Count(None, lost.nodes, str(lost))
+    except FloatingPointError as unresolved:
+        return Count(None, 0, str(unresolved))
+    number = round(total / math.pi)
+    if abs(total / math.pi - number) > COUNT.not_an_integer:
+        return Count(None, nodes, "the winding number is not an integer within rounding")
+    return Count(number + int((known.real > line).sum()), nodes)
+
+
+def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
+    """Whether eigenvalues right of a line at most 0 can be counted: a bound is known, and D resolved."""
+    if not math.isfinite(hull.a):
+        return False
+    try:
+        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT.highest)
+    except FloatingPointError:
+        return False
+    return True
+
+
+def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+    """The largest |w| at which a count right of a line evaluates D."""
+    corner = _corner(line, hull)
+    return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)
+
+
+def _corner(line: float, hull: Hull) -> complex:
+    """The corner of the box about all eigenvalues right of the line, with the largest |w|."""
+    real, imag = hull.box(max(-line, 0.0))
+    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.least_height * abs(line)))
+
+
+def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:
+    """(change of arg D, without the known eigenvalues, along half the box; nodes used).
+
+    Raises `PhaseLost` if the nodes do not connect.
+    """
+    corner = _corner(line, hull)
+    corners = np.array([corner.real, corner, complex(line, corner.imag), line])
+    # Elements for the largest |w| first: they serve most others.
+    largest = largest_w_of_count(line, determinant, hull)
+    level = determinant.level(largest, ARM_COUNT.highest)
+    samples = determinant.samples, determinant.gauss_samples
+    unit = determinant.length(corners[0])
+    trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
+    first = phase_node(corners[0], known, trial, hull, (samples[1], level))
+    walk = BoxWalk(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
+    while True:
+        walk = _advance(walk, (corners, largest), known, hull, samples, level)
+        if walk.needed == 0:
+            break
+        if walk.needed == math.inf:
+            raise PhaseLost(walk.nodes)
+        level = determinant.level(walk.needed, ARM_COUNT.highest)
+    return walk.total, walk.nodes
+
+
+@compiled
+def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
+    walk: BoxWalk,
+    box: tuple[Complex, float],
+    known: Complex,
+    hull: Hull,
+    samples: tuple[ArmSamples, ArmSamples],
+    level: Level,
+) -> BoxWalk:
+    """Continues a walk along the box over all nodes for which the present elements suffice.
+
+    box: (corners, largest |w| for which elements are known to exist). level: (W, propagators) of the present
+    elements. samples: of the arm, for the lengths over which D changes and for the dominant wave.
+    """
+    corners, largest = box
+    side, t, total, nodes, here, growth, ahead, _ = walk
+    while side < len(corners) - 1:
+        end = corners[side + 1]
+        length = abs(end - corners[side])
+        if t == length:
+            side, t, growth = side + 1, 0.0, 0.0
+            continue
+        if not here.reach > ARM_COUNT.smallest_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
+            return BoxWalk(side, t, total, nodes, here, growth, ahead, math.inf)
+        if ahead == 0:
+            ahead = min(_stride(here.reach, growth), length - t)
+        w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
+        unit = scales_at(w, samples[0])[1]
+        first = ARM_COUNT.first_radius * unit
+        radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
+        radius = max(radius, ARM_COUNT.of_height * w.imag)
+        enough = max(first, min(ARM_COUNT.of_height * w.imag, largest - abs(w)))
+        needed = abs(w) + min(radius, enough)
+        if not needed <= level[0] <= ARM_COUNT.highest * max(needed, ARM_ELEMENTS.smallest_level):
+            return BoxWalk(side, t, total, nodes, here, growth, ahead, needed)
+        there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
+        nodes += 1
+        growth = (there.reach - here.reach) / ahead
+        if abs(there.w - here.w) < here.reach + there.reach:
+            total += _turn(here, there, samples[1])
+            t = length if there.w == end else t + ahead
+            here = there
+            ahead = 0.0
+        else:
+            ahead = _nearer(here.reach, growth, ahead)
+    return BoxWalk(side, t, total, nodes, here, growth, ahead, 0.0)
+
+
+@compiled
+def _stride(reach: float, growth: float) -> float:
+    """Distance at which the reaches of two nodes just overlap, if they grow by `growth` per distance."""
+    overlap = ARM_COUNT.overlap
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
+
+
+@compiled
+def _nearer(reach: float, growth: float, ahead: float) -> float:
+    """A shorter distance of the next node than `ahead`; repeated calls end within the reach of the present
+    node.
+    """
+    nearer = min(_stride(reach, growth), ARM_COUNT.closer * ahead)
+    return nearer if nearer > reach else min(ARM_COUNT.within_reach * reach, ahead / 2)
+
+
+@compiled
+def _turn(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
+    """The change of arg D between two nodes whose reaches overlap."""
+    share = here.reach / (here.reach + there.reach)
+    between = here.w + share * (there.w - here.w)
+    # The tangents at both nodes predict the turn. D gives the remainder, which is below half a turn because
+    # the reaches overlap.
+    expected = tangent(here, between, samples).imag - tangent(there, between, samples).imag
+    rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
+    return expected + cmath.phase(rest)

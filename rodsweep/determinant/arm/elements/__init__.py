@@ -1,0 +1,1 @@
+"""Elements of an arm: their propagators as polynomials in w, by collocation."""

@@ -1,0 +1,205 @@
+"""The transverse problem of arms in minors of two solutions, and its collocation over elements.
+
+With the state (y, theta, s, m) the eigenproblem of an arm with profiles reads (physics: the arm as it is
+built)
+
+    y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
+
+D is the minor of the rows s and m of two solutions, those that start with s = 1 or m = 1 at the clamp. With
+y^s for the minor of the rows y and s, and so on, y^s + theta^m - F y^theta is constant along the arm: 0 for
+these two solutions. The other five minors then obey a linear system of their own,
+
+    (s^m)'     = w (gamma2 y^m - gamma3 theta^s)
+    (theta^s)' = F c3 theta^m - c3 s^m - w gamma2 y^theta
+    (theta^m)' = -g theta^s
+    (y^theta)' = c3 y^m - c2 theta^s
+    (y^m)'     = (g + nu) theta^m + c2 s^m + (w gamma3 - F g) y^theta
+
+from s^m = 1 at the clamp, the others 0, to D = s^m at the tip. A growing exponential of one solution cannot
+hide the other one, as it does where the solutions themselves are integrated.
+
+Elements are solved by collocation at their Gauss points, for one power of w after the other: the terms of the
+propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENTS.lanes` elements are solved together. The last
+axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops over it are vector
+instructions. STAGES, LANES and MAX_TERMS are the settings of these names.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled, compiled_for_vectors
+from .elimination import elimination_matrix
+from .minor_rates import (
+    C3,
+    SM,
+    TM,
+    TS,
+    YM,
+    YT,
+    G,
+    add_eliminated_start_value,
+    add_rates_by_theta_m,
+    add_rates_by_y_theta,
+    add_start_value,
+    add_theta_s_rates,
+    fill_drag_rates,
+    fill_theta_m_rates,
+    fill_y_theta_rates,
+)
+from .settings import ARM_ELEMENTS, MINORS
+
+
+class IntegrationMatrices(NamedTuple):
+    """Integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights, (STAGES,)."""
+
+    integrals: Array
+    weights: Array
+
+
+@compiled
+def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array) -> int:
+    """Fills the terms of the elements of n arms; returns how many are needed, MAX_TERMS + 1 for more.
+
+    F: forces, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n, batches, 6,
+    STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, ENTRIES), all 0.
+    """
+    most = 1
+    values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
+    rates = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
+    local = np.empty((6, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
+    turning = np.empty((ARM_ELEMENTS.stages, 1 + ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
+    for arm in range(len(F)):
+        for b in range(coefficients.shape[1]):
+            _repeat(coefficients[arm, b], local)
+            for lane in range(ARM_ELEMENTS.lanes):
+                own = coefficients[arm, b, :, :, lane]
+                eliminated = elimination_matrix(F[arm], own[C3], own[G], method.integrals)
+                _put_in_lane(eliminated, lane, turning)
+            here = terms[arm, b * ARM_ELEMENTS.lanes : (b + 1) * ARM_ELEMENTS.lanes]
+            most = max(most, _fill_batch((F[arm], W), local, (method, turning), (values, rates), here))
+    return most
+
+
+@compiled_for_vectors
+def _repeat(coefficients: Array, local: Array) -> None:
+    """Coefficients, (6, STAGES, LANES), repeated for each initial value: (6, STAGES, WIDTH)."""
+    for q in range(6):
+        for i in range(ARM_ELEMENTS.stages):
+            for k in range(MINORS):
+                for lane in range(ARM_ELEMENTS.lanes):
+                    local[q, i, k * ARM_ELEMENTS.lanes + lane] = coefficients[q, i, lane]
+
+
+@compiled_for_vectors
+def _put_in_lane(eliminated: Array, lane: int, turning: Array) -> None:
+    """Copies `elimination_matrix` of an element into its lane of `turning`, (STAGES, 1 + STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for j in range(1 + ARM_ELEMENTS.stages):
+            for k in range(MINORS):
+                turning[i, j, k * ARM_ELEMENTS.lanes + lane] = eliminated[i, j]
+
+
+@compiled
+def _fill_batch(
+    load: tuple[float, float],
+    local: Array,
+    method: tuple[IntegrationMatrices, Array],
+    work: tuple[Array, Array],
+    terms: Array,
+) -> int:
+    """Fills the terms of some elements, (LANES, MAX_TERMS, ENTRIES); returns how many are needed.
+
+    load: (F, W). local: (6, STAGES, WIDTH). method: the second is `elimination_matrix` in lanes. work: values
+    of the minors and their rates, (MINORS, STAGES, WIDTH) each.
+    """
+    F, W = load
+    (Q, weights), turning = method
+    values, rates = work
+    values[:] = 0.0
+    rates[:] = 0.0
+    for n in range(terms.shape[1]):
+        start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
+        fill_drag_rates(W, local, values, rates)
+        _integrate(Q, rates[SM], values[SM])
+        add_start_value(SM, start, values)
+        add_theta_s_rates(F, start, local, values, rates)
+        _integrate_eliminated(turning, rates[TS], values[TS])
+        add_eliminated_start_value(TS, start, turning, values)
+        fill_theta_m_rates(local, values, rates)
+        _integrate(Q, rates[TM], values[TM])
+        add_start_value(TM, start, values)
+        add_rates_by_theta_m(F, start, local, values, rates)
+        _integrate(Q, rates[YM], values[YM])  # without the part by y^theta
+        add_start_value(YM, start, values)
+        fill_y_theta_rates(local, values, rates)
+        _integrate_eliminated(turning, rates[YT], values[YT])
+        add_eliminated_start_value(YT, start, turning, values)
+        add_rates_by_y_theta(F, local, values, rates)
+        _integrate(Q, rates[YM], values[YM])
+        add_start_value(YM, start, values)
+        fill_y_theta_rates(local, values, rates)
+        if _end_values(weights, rates, n, terms):
+            return n + 1
+    return terms.shape[1] + 1
+
+
+@compiled_for_vectors
+def _integrate(Q: Array, rates: Array, out: Array) -> None:
+    """out = the integrals of rates, both (STAGES, WIDTH), to each stage; Q: integrals, (STAGES, STAGES)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            out[i, c] = 0.0
+        for j in range(0, ARM_ELEMENTS.stages, 4):  # four products at a time save passes over `out`
+            p = Q[i, j]
+            q = Q[i, j + 1]
+            r = Q[i, j + 2]
+            s = Q[i, j + 3]
+            for c in range(ARM_ELEMENTS.width):
+                out[i, c] += p * rates[j, c] + q * rates[j + 1, c] + r * rates[j + 2, c] + s * rates[j + 3, c]
+
+
+@compiled_for_vectors
+def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
+    """out = M Q rates, both (STAGES, WIDTH), for the M of each lane; turning: (STAGES, 1 + STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            out[i, c] = 0.0
+        for j in range(0, ARM_ELEMENTS.stages, 4):
+            for c in range(ARM_ELEMENTS.width):
+                out[i, c] += turning[i, j + 1, c] * rates[j, c] + turning[i, j + 2, c] * rates[j + 1, c]
+                out[i, c] += turning[i, j + 3, c] * rates[j + 2, c] + turning[i, j + 4, c] * rates[j + 3, c]
+
+
+@compiled
+def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
+    """Fills term n, (LANES, MAX_TERMS, ENTRIES), from rates; whether it is negligible in all elements."""
+    end = np.zeros((MINORS, ARM_ELEMENTS.width))
+    _add_ends(weights, rates, end)
+    done = True
+    for lane in range(ARM_ELEMENTS.lanes):
+        size = 0.0
+        first = 0.0
+        for row in range(MINORS):
+            for k in range(MINORS):
+                entry = end[row, k * ARM_ELEMENTS.lanes + lane] + (1.0 if n == 0 and k == row else 0.0)
+                terms[lane, n, MINORS * k + row] = entry
+                size = max(size, abs(entry))
+                first = max(first, abs(terms[lane, 0, MINORS * k + row]))
+        done = done and size <= ARM_ELEMENTS.negligible * first
+    return done
+
+
+@compiled_for_vectors
+def _add_ends(weights: Array, rates: Array, end: Array) -> None:
+    """Adds the integrals of rates, (MINORS, STAGES, WIDTH), over the elements to `end`, (MINORS, WIDTH)."""
+    for row in range(MINORS):
+        for i in range(0, ARM_ELEMENTS.stages, 4):
+            p = weights[i]
+            q = weights[i + 1]
+            r = weights[i + 2]
+            s = weights[i + 3]
+            for c in range(ARM_ELEMENTS.width):
+                end[row, c] += p * rates[row, i, c] + q * rates[row, i + 1, c]
+                end[row, c] += r * rates[row, i + 2, c] + s * rates[row, i + 3, c]

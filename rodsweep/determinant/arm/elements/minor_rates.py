@@ -1,0 +1,94 @@
+"""Rates of the five minors along an element, term by term in w, and the start values of the minors.
+
+The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
+the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
+turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH).
+"""
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled_for_vectors
+from .settings import ARM_ELEMENTS, MINORS
+
+SM, TS, TM, YT, YM = range(MINORS)
+"""Places of the minors s^m, theta^s, theta^m, y^theta and y^m."""
+ENTRIES = MINORS * MINORS
+NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
+"""Places of the `LocalCoefficients`."""
+
+
+@compiled_for_vectors
+def add_start_value(minor: int, start: float, values: Array) -> None:
+    """Adds the start value of a minor, where it is the initial value, to values, (MINORS, STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for lane in range(ARM_ELEMENTS.lanes):
+            values[minor, i, minor * ARM_ELEMENTS.lanes + lane] += start
+
+
+@compiled_for_vectors
+def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
+    """`add_start_value` of theta^s or y^theta, (STAGES, WIDTH), where a minor is eliminated."""
+    for i in range(ARM_ELEMENTS.stages):
+        for lane in range(ARM_ELEMENTS.lanes):
+            c = minor * ARM_ELEMENTS.lanes + lane
+            values[minor, i, c] += start * turning[i, 0, c]
+
+
+@compiled_for_vectors
+def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None:
+    """Rates of one power of w by the values of the power before, both (MINORS, STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            push = W * local[GAMMA2, i, c]
+            turn = W * local[GAMMA3, i, c]
+            rates[SM, i, c] = push * values[YM, i, c] - turn * values[TS, i, c]
+            rates[TS, i, c] = -push * values[YT, i, c]
+            rates[YM, i, c] = turn * values[YT, i, c]
+
+
+@compiled_for_vectors
+def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of theta^s, (STAGES, WIDTH), what s^m and the start value of theta^m contribute."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
+        for lane in range(ARM_ELEMENTS.lanes):
+            c = TM * ARM_ELEMENTS.lanes + lane
+            rates[TS, i, c] += F * start * local[C3, i, c]
+
+
+@compiled_for_vectors
+def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
+    """Fills the rates of theta^m, (STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
+
+
+@compiled_for_vectors
+def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, what theta^m and s^m contribute."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            turn = values[TM, i, c]
+            rates[TS, i, c] += F * local[C3, i, c] * turn
+            rates[YM, i, c] += (local[G, i, c] + local[NU, i, c]) * turn
+            rates[YM, i, c] += local[C2, i, c] * values[SM, i, c]
+        for lane in range(ARM_ELEMENTS.lanes):
+            c = TM * ARM_ELEMENTS.lanes + lane
+            rates[TS, i, c] -= F * start * local[C3, i, c]  # contained in `add_theta_s_rates`
+
+
+@compiled_for_vectors
+def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
+    """Fills the rates of y^theta, (STAGES, WIDTH)."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
+
+
+@compiled_for_vectors
+def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of y^m, (STAGES, WIDTH), what y^theta contributes by the force."""
+    for i in range(ARM_ELEMENTS.stages):
+        for c in range(ARM_ELEMENTS.width):
+            rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]

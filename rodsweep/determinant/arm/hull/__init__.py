@@ -1,0 +1,1 @@
+"""Convex regions that hold all eigenvalues of an arm."""

@@ -1,0 +1,193 @@
+"""Regions that contain every eigenvalue of an arm with jumps, from weights averaged over a window.
+
+The identity of `rodsweep.determinant.arm.hull.hull` needs a continuous weight alpha. Best would be
+t = g/(nu + l) with l = f |F| sqrt(c2 c3 gamma3/gamma2), which jumps with the material. With log alpha as the
+mean of log t over [u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h), and what is
+left of the term with theta has two parts,
+
+    g - alpha nu = (g - t nu) + (t - alpha) nu.
+
+The first part is bounded by the rotational drag. The second differs from 0 near the jumps only and is bounded
+by theta(0) = 0; or the drag bounds both.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled
+from ....model.compiled.settings import CompiledSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AveragedWeightSettings(CompiledSettings):
+    """Settings for the weights that are tried."""
+
+    factors: tuple[float, ...] = (0.0, 0.5, 1.0)
+    """Trial f."""
+    half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
+    """Trial h, in L."""
+    close: float = 1e-6
+    """Distance of two points, in L, below which they are the two sides of a jump."""
+    beside: float = 1e-12
+    """Distance from the places where a slope jumps, in L, of the points on both their sides."""
+
+    @property
+    def trials(self) -> int:
+        """Number of trial regions: two for each f and h."""
+        return 2 * len(self.factors) * len(self.half_widths)
+
+
+AVERAGED_WEIGHT = AveragedWeightSettings()
+
+
+class GridPlaces(NamedTuple):
+    """Intervals of a grid, (n,), and shares of their lengths, (n,)."""
+
+    interval: NDArray[np.int64]
+    share: Array
+
+
+@compiled
+def averaged_regions(u: Array, local: Array, F: float) -> Array:
+    """Constants (a, c) of a region for each trial weight, (trials, 2); inf where a trial gives no bound.
+
+    u: points of an arm from base to tip, (points,), two at a jump. local: the `LocalCoefficients` at the
+    points, (6, points), with c2 > 0 and g > 0.
+    """
+    regions = np.full((AVERAGED_WEIGHT.trials, 2), math.inf)
+    row = 0
+    for h in AVERAGED_WEIGHT.half_widths:
+        points = _with_places_beside_jumps(u, h)
+        places = _places(points, u)
+        there = np.empty((6, len(points)))
+        for k in range(6):
+            there[k] = _interpolated(places, local[k])
+        window = (_places(points - h, points), _places(points + h, points))
+        for f in AVERAGED_WEIGHT.factors:
+            _fill(regions[row : row + 2], points, there, window, (F, f, h))
+            row += 2
+    return regions
+
+
+@compiled
+def _with_places_beside_jumps(u: Array, h: float) -> Array:
+    """The points u of an arm and further points, increasing: two at each place whose distance from a jump is
+    h.
+    """
+    points = np.empty(5 * len(u))
+    count = len(u)
+    points[:count] = u
+    for i in range(len(u) - 1):
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT.close:
+            for side in (-h, h):
+                for at in (-AVERAGED_WEIGHT.beside, AVERAGED_WEIGHT.beside):
+                    place = (u[i + 1] + u[i]) / 2 + side + at
+                    if u[0] < place < u[-1]:
+                        points[count] = place
+                        count += 1
+    return np.sort(points[:count])
+
+
+@compiled
+def _places(x: Array, grid: Array) -> GridPlaces:
+    """The places of x, (n,), increasing, among the points of a grid; the ends for x outside."""
+    interval = np.empty(len(x), np.int64)
+    share = np.empty(len(x))
+    i = 0
+    for n in range(len(x)):
+        while i < len(grid) - 2 and grid[i + 1] < x[n]:
+            i += 1
+        width = grid[i + 1] - grid[i]
+        interval[n] = i
+        share[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
+    return GridPlaces(interval, share)
+
+
+@compiled
+def _interpolated(places: GridPlaces, values: Array) -> Array:
+    """Values at places, (n,), from values at the points of the grid."""
+    out = np.empty(len(places.share))
+    for n in range(len(out)):
+        i = places.interval[n]
+        out[n] = values[i] + places.share[n] * (values[i + 1] - values[i])
+    return out
+
+
+@compiled
+def _fill(
+    regions: Array,
+    u: Array,
+    local: Array,
+    window: tuple[GridPlaces, GridPlaces],
+    trial: tuple[float, float, float],
+) -> None:
+    """Writes the two regions of a trial (F, f, h): with (t - alpha) nu bounded by the clamp, and bounded by
+    the drag.
+
+    window: places of u - h and u + h among the points of the arm.
+    """
+    F, f, h = trial
+    count = len(u)
+    log_t = np.empty(count)
+    integral = np.zeros(count)
+    for i in range(count):
+        nu, c2, c3, gamma2, gamma3, g = local[:, i]
+        log_t[i] = math.log(g / (nu + f * abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)))
+        if i > 0:
+            integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
+    behind, ahead, means = _averaged(u, log_t, integral, window, h)
+    split = 0.0
+    whole = 0.0
+    bend = 0.0
+    share = 0.0
+    before = 0.0
+    for i in range(count):
+        nu, c2, c3, gamma2, gamma3, g = local[:, i]
+        alpha = math.exp(means[i] / (2 * h))
+        t = math.exp(log_t[i])
+        A2 = ((ahead[i] - behind[i]) / (2 * h)) ** 2 / (gamma2 * c2)
+        B2 = F * F * alpha * c3 / gamma2
+        split = max(split, squared_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
+        whole = max(whole, squared_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
+        if i > 0:
+            # As theta(0) = 0, |theta(u)|^2 is at most int_0^u c3 du times int c3 |m|^2 du.
+            bend += (u[i] - u[i - 1]) * (c3 + local[2, i - 1]) / 2
+        here = ((t - alpha) * nu) ** 2 / (alpha * c2) * bend
+        if i > 0:
+            share += (u[i] - u[i - 1]) * (here + before) / 2
+        before = here
+    regions[0] = math.sqrt(split), math.sqrt(share) / 2
+    regions[1] = math.sqrt(whole), 0.0
+
+
+@compiled
+def _averaged(
+    u: Array, log_t: Array, integral: Array, window: tuple[GridPlaces, GridPlaces], h: float
+) -> tuple[Array, Array, Array]:
+    """(log t at u - h, log t at u + h, 2 h times the mean of log t between), (points,) each.
+
+    integral: that of log t from the first point, (points,).
+    """
+    behind = _interpolated(window[0], log_t)
+    ahead = _interpolated(window[1], log_t)
+    # Beyond its ends the arm continues with its end values, so that every window has the same width.
+    means = _interpolated(window[1], integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
+    means -= _interpolated(window[0], integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
+    return behind, ahead, means
+
+
+@compiled
+def squared_norm(A2: float, B2: float, e: float, drag: float) -> float:
+    """The squared norm of [[A, B], [e/sqrt(drag), 0]]; inf where there is no drag."""
+    if e == 0:
+        return A2 + B2
+    if drag == 0:
+        return math.inf
+    C2 = e * e / drag
+    total = A2 + B2 + C2
+    return (total + math.sqrt(max(total * total - 4 * B2 * C2, 0.0))) / 2

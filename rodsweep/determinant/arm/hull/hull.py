@@ -1,0 +1,172 @@
+"""A convex region that contains every transverse eigenvalue of an arm with profiles and any law.
+
+Testing the eigenproblem with alpha(u) y* and theta*, alpha > 0 continuous, gives with N^2 = int alpha gamma2
+|y|^2 + gamma3 |theta|^2 and n^2 N^2 = int alpha c2 |s|^2 + c3 |m|^2
+
+    w N^2 = -n^2 N^2 + int (g - alpha nu) theta* s - F int alpha c3 y* m - int alpha' y* s.
+
+The last three terms are at most a n N^2, where a is the largest norm of the matrix
+
+    [[alpha'/(alpha sqrt(gamma2 c2)), F sqrt(alpha c3/gamma2)], [(g - alpha nu)/sqrt(gamma3 alpha c2), 0]]
+
+along the arm. Where gamma3 is small the term with theta is better bounded by theta(0) = 0: it is at most
+c n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give, for some n >= 0,
+
+    Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
+
+a convex region bounded by a parabola. Of several alpha the one with the smallest region is taken. With alpha
+= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
+`rodsweep.determinant.certificate.box`.
+
+Extremes along the arm are looked up at points between the breaks, with `HULL.margin` for those between.
+"""
+
+from collections.abc import Sequence
+from functools import cache
+from math import inf, isfinite, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled
+from ....model.rod import Rod
+from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
+from .region import HULL, UNKNOWN, Hull, PathHulls
+from .weights import clamp_integrals, constant_weight_norm, constant_weights, varying_weight_norms
+
+
+def hull_of(rod: Rod) -> Hull:
+    """The smallest known region that contains the spectrum of the arm; `UNKNOWN` without a bound."""
+    return _hull(_arms([rod]))
+
+
+def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
+    """The regions for all arms between neighbouring places of a path, (k,); rods: the arms at the places.
+
+    Extremes along the path are evaluated at the places only, like those along an arm at its points;
+    `HULL.margin` allows for the arms between.
+    """
+    arms = _arms(rods)
+    hulls = [_hull(_part(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+    return PathHulls(places, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
+
+
+def _hull(arms: "SampledArms") -> Hull:
+    largest = 1 - HULL.least_remainder
+    a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
+    return Hull((1 + HULL.margin) * a, c) if isfinite(a) else UNKNOWN
+
+
+class SampledArms(NamedTuple):
+    """n arms: F, (n,); lengths of the smooth pieces, (pieces,); coefficients, (6, n, pieces, points).
+
+    The points of a piece are its Chebyshev points, with increasing u. averaged: `averaged_regions` of each,
+    (n, trials, 2), inf for an arm that allows none, without trials for arms without jumps.
+    """
+
+    F: Array
+    lengths: Array
+    local: Array
+    averaged: Array
+
+
+def _arms(rods: Sequence[Rod]) -> SampledArms:
+    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    build = rods[0].build
+    lengths = np.diff(build.breaks)
+    u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
+    F = np.array([rod.F for rod in rods])
+    lengths = lengths * (1 - 2 * HULL.inside)
+    local = np.array(Rod.local_of_all(rods, u))
+    averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
+    return SampledArms(F, lengths, local, averaged)
+
+
+def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
+    """`averaged_regions` of each arm with jumps, (n, trials, 2), inf for an arm without c2 > 0 and g > 0."""
+    starts = np.cumsum(lengths) - lengths
+    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
+    along = local.reshape(6, len(F), -1)
+    regions = np.full((len(F), AVERAGED_WEIGHT.trials, 2), inf)
+    for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
+        regions[i] = averaged_regions(u, along[:, i], float(F[i]))
+    return regions
+
+
+def _part(arms: SampledArms, chosen: slice) -> SampledArms:
+    """The arms with the indices `chosen`."""
+    local = np.ascontiguousarray(arms.local[:, chosen])
+    return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
+
+
+class ChebyshevMatrices(NamedTuple):
+    """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate the
+    interpolant.
+
+    derivative, integral: from values at the points to values at the points, (points, points); integrals start
+    at -1.
+    """
+
+    points: Array
+    derivative: Array
+    integral: Array
+
+
+@cache
+def _chebyshev() -> ChebyshevMatrices:
+    x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL.points - 1))
+    slopes = np.polynomial.chebyshev.chebder(to_series)
+    integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
+    derivative = np.polynomial.chebyshev.chebvander(x, HULL.points - 2) @ slopes
+    integral = np.polynomial.chebyshev.chebvander(x, HULL.points) @ integrals
+    return ChebyshevMatrices(x, np.ascontiguousarray(derivative), np.ascontiguousarray(integral))
+
+
+@compiled
+def _smallest(
+    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: ChebyshevMatrices, largest: float
+) -> tuple[float, float]:
+    """(a, c) of the smallest region of all arms, without the margin of a; inf without a bound.
+
+    largest: bound of c.
+    """
+    nu, c2, c3, gamma2, gamma3, g = local
+    push = 0.0
+    for arm in range(len(F)):
+        push = max(push, (F[arm] * F[arm] * c3[arm] / gamma2[arm]).max())
+    alphas = constant_weights(local)
+    best = (inf, 0.0)
+    if not (c2 > 0).any():  # then g = nu
+        best = (sqrt(push), 0.0)
+    elif (gamma3 > 0).all():
+        best = (sqrt(constant_weight_norm(alphas, local.reshape(6, -1), push)), 0.0)
+    continuous = averaged.shape[1] == 0
+    if continuous and (g > 0).all() and (c2 > 0).all():
+        for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):
+            best = _smaller(best, (sqrt(square), 0.0), largest)
+    for trial in range(averaged.shape[1]):
+        c = (1 + HULL.margin) * averaged[:, trial, 1].max()
+        best = _smaller(best, (averaged[:, trial, 0].max(), c), largest)
+    if not (c2 > 0).all():
+        alphas = np.ones(1)
+    integrals = clamp_integrals(alphas, F, lengths, local, chebyshev.integral)
+    for k in range(len(alphas)):
+        c = (1 + HULL.margin) * sqrt(integrals[k]) / 2
+        best = _smaller(best, (sqrt(alphas[k] * push), c), largest)
+    return best
+
+
+@compiled
+def _smaller(best: tuple[float, float], other: tuple[float, float], largest: float) -> tuple[float, float]:
+    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/wide)^4).
+
+    A region with c above `largest` is never chosen.
+    """
+    if not other[1] < largest:
+        return best
+    here = best[0] ** 2 * (1 + (best[1] / HULL.wide) ** 4)
+    there = other[0] ** 2 * (1 + (other[1] / HULL.wide) ** 4)
+    return other if there < here else best

@@ -1,0 +1,108 @@
+"""Norms for the regions of `rodsweep.determinant.arm.hull.hull`, from constant or smooth weights alpha."""
+
+from math import exp, inf, log, sqrt
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled
+from .averaged_weight import squared_norm
+from .region import HULL
+
+
+@compiled
+def constant_weight_norm(alphas: Array, local: Array, push: float) -> float:
+    """The smallest a^2, over the constant weights alpha to try, (n,): the squared norm of the matrix along
+    all arms.
+
+    The matrix is given in `rodsweep.determinant.arm.hull`. local: coefficients at all points, (6, points).
+    push: the largest F^2 c3/gamma2.
+    """
+    least = inf
+    for alpha in alphas:
+        largest = alpha * push
+        for i in range(local.shape[1]):
+            nu, c2, _, _, gamma3, g = local[:, i]
+            if c2 > 0:
+                largest = max(largest, (g - alpha * nu) ** 2 / (gamma3 * alpha * c2))
+            elif alpha != 1:  # where c2 = 0 is g = nu
+                largest = inf
+            if largest >= least:
+                break
+        least = min(least, largest)
+    return least
+
+
+@compiled
+def constant_weights(local: Array) -> Array:
+    """Constant alpha that are tried, (HULL.weights + 1,): between the extremes of g/nu along arms, and 1."""
+    ratio = np.abs(local[5] / local[0])
+    start = log(max(ratio.min(), HULL.least_ratio))
+    stop = log(max(ratio.max(), 2 * HULL.least_ratio))
+    alphas = np.ones(HULL.weights + 1)
+    for k in range(HULL.weights):
+        alphas[k] = exp(start + (stop - start) * k / (HULL.weights - 1))
+    return alphas
+
+
+@compiled
+def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
+    """The largest a^2 along all arms for each of the weights alpha(u) = g/(nu + middle |F| sqrt(c2 c3
+    gamma3/gamma2)) with a factor of `HULL.middles`.
+
+    F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
+    from `ChebyshevMatrices`.
+    """
+    found = np.zeros(len(HULL.middles))
+    points = local.shape[3]
+    level = np.empty(points)
+    log_alpha = np.empty(points)
+    for m in range(len(HULL.middles)):
+        for arm in range(len(F)):
+            for piece in range(len(lengths)):
+                for i in range(points):
+                    nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
+                    level[i] = HULL.middles[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    log_alpha[i] = log(g / (nu + level[i]))
+                for i in range(points):
+                    nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
+                    alpha = g / (nu + level[i])
+                    slope = (derivative[i] @ log_alpha) * 2 / lengths[piece]
+                    A2 = slope * slope / (gamma2 * c2)
+                    B2 = F[arm] * F[arm] * alpha * c3 / gamma2
+                    e = alpha * level[i]  # g - alpha nu
+                    found[m] = max(found[m], squared_norm(A2, B2, e, gamma3 * alpha * c2))
+    return found
+
+
+@compiled
+def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integral: Array) -> Array:
+    """The largest 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du over the arms, for each constant
+    alpha, (alphas,).
+
+    c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
+    (`rodsweep.determinant.arm.hull`). local: coefficients, (6, n, pieces, points). integral: from
+    `ChebyshevMatrices`.
+    """
+    found = np.zeros(len(alphas))
+    points = local.shape[3]
+    weights = np.empty((len(lengths), points))
+    for arm in range(len(F)):
+        below = 0.0  # integral of c3
+        for piece in range(len(lengths)):
+            half = lengths[piece] / 2
+            along = integral @ local[2, arm, piece] * half
+            weights[piece] = integral[-1] * half * (below + along)
+            below += along[-1]
+        for k in range(len(alphas)):
+            alpha = alphas[k]
+            total = 0.0
+            for piece in range(len(lengths)):
+                for i in range(points):
+                    nu = local[0, arm, piece, i]
+                    c2 = local[1, arm, piece, i]
+                    if c2 > 0:  # g = nu + F c2
+                        e = (1 - alpha) * nu + F[arm] * c2
+                        total += e * e / (alpha * c2) * weights[piece, i]
+            found[k] = max(found[k], total)
+    return found

@@ -1,0 +1,1 @@
+"""Roots of D, by Newton's method."""

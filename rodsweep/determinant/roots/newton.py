@@ -1,0 +1,180 @@
+"""Newton's method for eigenvalues, and for crossings and double eigenvalues along a path of rods.
+
+A crossing of the imaginary axis satisfies D(i eta; p) = 0, two real equations for (eta, p). A double real
+eigenvalue, at which two real eigenvalues become a complex pair, satisfies D = D_w = 0 in (x, p). Near a
+double eigenvalue the simple eigenvalues lose half of their digits, but p does not.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
+from ...model.rod import Coefficients
+from ..exponents import EXPONENTS, ROUND_OFF
+from ..parameter_path import coefficients_at, determinant_along
+from ..value import scaled_determinant
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RootNewtonSettings(CompiledSettings):
+    """Settings for Newton's method to crossings and eigenvalues."""
+
+    max_steps: int = 15
+    """Maximum Newton steps to a crossing; a double eigenvalue may need twice as many."""
+    max_refinements: int = 12
+    """Maximum Newton steps to an eigenvalue."""
+    largest_step: float = 20.0
+    """Largest Newton step, in units of the given scale, before the iteration counts as failed."""
+    last_step: float = 4.0
+    """Step, in units of the rounding error, at which the iteration has converged."""
+    jacobian_step: float = 1e-5
+    """Relative step of the differences in the Jacobian, which need not be accurate."""
+    stagnant_step: float = 1e-9
+    """Relative step of p below which a step that did not halve is rounding error: the iteration has
+    converged."""
+    real_below: float = 1e-14
+    """Relative imaginary part below which an eigenvalue is real: the size of rounding errors."""
+
+
+ROOT_NEWTON = RootNewtonSettings()
+
+
+class LocatedZero(NamedTuple):
+    """A crossing (w = i eta) or a double eigenvalue (w = x) with error estimates; nan after a failure."""
+
+    eta_or_x: float
+    p: float
+    error: float
+    error_of_p: float
+
+
+FAILED = LocatedZero(math.nan, math.nan, math.nan, math.nan)
+
+
+@compiled
+def crossing_newton(
+    eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
+) -> LocatedZero:
+    """The zero of D(i eta; p) near (eta, p), with error estimates from rounding and the last step.
+
+    scale: expected sizes of eta and p. FAILED for a step beyond `ROOT_NEWTON.largest_step` or without
+    convergence.
+    """
+    last = math.inf
+    for _ in range(ROOT_NEWTON.max_steps):
+        coefficients = coefficients_at(p, origin, direction)
+        D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
+        # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
+        a = 1j * D_w
+        # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
+        cross = (a * D_p.conjugate()).imag
+        if cross == 0:
+            return FAILED
+        in_eta = -(D * D_p.conjugate()).imag / cross
+        in_p = (D * a.conjugate()).imag / cross
+        # The rounding errors of p and eta add to the rounding error of D.
+        blur = noise + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
+        e_eta = blur * abs(D_p) / abs(cross)
+        e_p = blur * abs(a) / abs(cross)
+        step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
+        # Negated comparisons are also true for NaN.
+        if not step < ROOT_NEWTON.largest_step or not eta + in_eta > 0:
+            return FAILED
+        eta += in_eta
+        p += in_p
+        if (abs(in_eta) <= ROOT_NEWTON.last_step * e_eta and abs(in_p) <= ROOT_NEWTON.last_step * e_p) or (
+            step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)
+        ):
+            return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
+        last = step
+    return FAILED
+
+
+@compiled
+def double_newton(
+    x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float
+) -> LocatedZero:
+    """The double real eigenvalue D = D_w = 0 near (x, p).
+
+    FAILED if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+    """
+    start = x
+    first = p
+    last = math.inf
+    for _ in range(2 * ROOT_NEWTON.max_steps):
+        D, D_w, D_p, S, noise = _real(x, p, origin, direction)
+        h = ROOT_NEWTON.jacobian_step * abs(x)
+        k = ROOT_NEWTON.jacobian_step * reach
+        _, right, _, S_right, _ = _real(x + h, p, origin, direction)
+        _, left, _, S_left, _ = _real(x - h, p, origin, direction)
+        _, after, _, S_after, _ = _real(x, p + k, origin, direction)
+        _, before, _, S_before, _ = _real(x, p - k, origin, direction)
+        D_ww = (right * math.exp(S_right - S) - left * math.exp(S_left - S)) / (2 * h)
+        D_wp = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * k)
+        cross = D_w * D_wp - D_p * D_ww
+        if cross == 0 or not math.isfinite(cross):
+            return FAILED
+        in_x = (D_p * D_w - D_wp * D) / cross
+        in_p = (D_ww * D - D_w * D_w) / cross
+        blur = noise + ROUND_OFF * abs(p * D_p)
+        e_p = blur * abs(D_ww) / abs(cross)
+        e_x = (blur * abs(D_wp) + noise / max(abs(x), EXPONENTS.least_divisor) * abs(D_p)) / abs(cross)
+        x += in_x
+        p += in_p
+        # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
+        if not abs(p - first) <= 2 * reach or not x * start > 0:
+            return FAILED
+        if abs(in_p) <= ROOT_NEWTON.last_step * e_p and (
+            abs(in_x) <= ROOT_NEWTON.last_step * e_x or abs(in_x) > last / 2
+        ):
+            return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
+        last = abs(in_x)
+    return FAILED
+
+
+@compiled
+def _real(
+    x: float, p: float, origin: Coefficients, direction: Coefficients
+) -> tuple[float, float, float, float, float]:
+    """`determinant_along` at real w = x and p, where D and its derivatives are real."""
+    coefficients = coefficients_at(p, origin, direction)
+    D, D_w, D_p, S, noise = determinant_along(complex(x, 0.0), coefficients, direction)
+    return D.real, D_w.real, D_p.real, S, noise
+
+
+@compiled
+def refined(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
+    """The eigenvalue near w, by Newton's method until rounding error stops the convergence.
+
+    A real guess gives a real eigenvalue. farthest: length of a first step that is not taken.
+    """
+    real = w.imag == 0
+    last = 2 * farthest
+    for _ in range(ROOT_NEWTON.max_refinements):
+        value = scaled_determinant(w, coefficients)
+        if value.D_w == 0:
+            break
+        step = value.D / value.D_w
+        if real:
+            step = complex(step.real, 0.0)
+        # Newton's method converges quadratically; a step that does not halve is rounding error.
+        if not abs(step) < last / 2:
+            break
+        last = abs(step)
+        w -= step
+        # D is real on the real axis, where rounding leaves a tiny imaginary part.
+        if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w):
+            w = complex(w.real, 0.0)
+    return w
+
+
+@compiled
+def eigenvalue_newton(
+    w: complex, coefficients: Coefficients, direction: Coefficients
+) -> tuple[complex, complex, float]:
+    """(w, dw/dp, error of w) of the simple eigenvalue near the guess w, by `refined`."""
+    w = refined(w, coefficients)
+    value = determinant_along(w, coefficients, direction)
+    return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

@@ -1,0 +1,226 @@
+"""Refinement of a mesh's eigenvalues to roots of D by Newton's method.
+
+The mesh has to be only as fine as Newton's method needs. The accuracy of an eigenvalue is then the accuracy
+of D, at the cost of a few evaluations of D. Two eigenvalues closer than the errors of the mesh are first
+moved to the roots of the Taylor polynomial of D of second order about their middle. The polynomial decides
+whether the two are real or a complex pair; Newton's method from the wrong kind would not converge.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...model.compiled.compilation import compiled
+from ...model.rod import Coefficients
+from ..certificate.box import box_of
+from ..value import DETERMINANT, distance_to_next, newton_correction, scaled_determinant, second_derivative
+from .newton import ROOT_NEWTON, refined
+from .settings import ROOTS
+
+
+class Roots(NamedTuple):
+    """Eigenvalues of a mesh refined to roots of D, sorted by descending real part, then frequency.
+
+    chosen: index of each root in the list of the mesh. w: complex roots. error: error estimates.
+    displacement: error of the mesh, in units of |w| or of the length over which D changes, whichever is
+    larger. wave: largest |q|. on_the_axis: whether the root is imaginary within its error. All are (k,).
+    ahead: number of eigenvalues of the mesh inside the box, right of all roots, that approximate no root.
+    """
+
+    chosen: NDArray[np.int64]
+    w: Complex
+    error: Array
+    displacement: Array
+    wave: Array
+    on_the_axis: NDArray[np.bool_]
+    ahead: int
+
+
+@compiled
+def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+    """(distance to the nearest root of D, length, wave number): `newton_correction` for double roots too.
+
+    With the larger e of |D| and its rounding error, the Newton correction e/|D'| is valid if |D'|^2 is large
+    against e |D''|. Closer to a double root, at the distance |D'/D''| from the middle of both roots, the
+    roots cannot be separated within sqrt(2 e/|D''|) of the middle.
+    """
+    error, length, wave = newton_correction(w, coefficients)
+    if error > ROOTS.blurred * abs(w):
+        D, D1, S, noise = scaled_determinant(w, coefficients)
+        e = max(abs(D), DETERMINANT.typical_noise * noise)
+        second = abs(second_derivative(w, S, coefficients))
+        # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
+        if abs(D1) ** 2 < ROOTS.separated * e * second:
+            spread = math.sqrt(2 * e / second)
+            error = min(max(error, spread), abs(D1) / second + spread)
+    return error, length, wave
+
+
+@compiled
+def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
+    """The two roots of the Taylor polynomial of D of second order about `middle`.
+
+    For a real `middle` both roots are real or complex conjugates.
+    """
+    D, D1, S, _ = scaled_determinant(middle, coefficients)
+    if middle.imag == 0:
+        D = complex(D.real, 0.0)
+        D1 = complex(D1.real, 0.0)
+    return roots_of_parabola(middle, D, D1, second_derivative(middle, S, coefficients))
+
+
+@compiled
+def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
+    """The two roots of the Taylor polynomial about `middle` with value D, slope D1 and curvature D2."""
+    if D2 == 0:
+        return middle, middle
+    root = cmath.sqrt(D1 * D1 - 2 * D * D2)
+    return middle + (root - D1) / D2, middle - (root + D1) / D2
+
+
+@compiled
+def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
+    """Moves pairs of eigenvalues closer than their errors to two roots, in place.
+
+    Returns half the distance from the other one of the pair, (n,), inf where an eigenvalue is not moved.
+    w: eigenvalues, (n,). error: (n,).
+    """
+    reach = np.full(len(w), math.inf)
+    for i in range(len(w)):
+        if reach[i] < math.inf:
+            continue
+        partner = -1
+        least = math.inf
+        for j in range(len(w)):
+            if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
+                partner = j
+                least = abs(w[j] - w[i])
+        if partner >= 0 and least <= ROOTS.refined_together * (error[i] + error[partner]):
+            for _ in range(ROOTS.expansions):
+                middle = (w[i] + w[partner]) / 2
+                # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
+                if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
+                    middle = complex(middle.real, 0.0)
+                w[i], w[partner] = two_roots(middle, coefficients)
+            reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
+    return reach
+
+
+@compiled
+def _descending(w: Complex) -> NDArray:
+    """Indices that sort w, (n,), by descending real part, then descending frequency."""
+    order = np.arange(len(w))
+    sort_descending(w, order)
+    return order
+
+
+@compiled
+def sort_descending(w: Complex, order: NDArray) -> None:
+    """Sorts the indices `order` of w, shape (n,), in place, by descending real part, then frequency.
+
+    Insertion sort: fast for lists that are almost sorted.
+    """
+    for m in range(1, len(order)):
+        i = order[m]
+        at = m
+        # Insertion sort: the lists are short and nearly sorted.
+        while at > 0:
+            j = order[at - 1]
+            if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
+                break
+            order[at] = j
+            at -= 1
+        order[at] = i
+
+
+@compiled
+def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
+    """Roots of D, refined from those eigenvalues of a mesh that approximate a root.
+
+    raw: eigenvalues of a mesh, complex, shape (n,). amplification: square root of
+    `rodsweep.determinant.certificate.box.squared_amplification`. most_waves: largest |q| that the mesh
+    resolves. Rounding makes infinite eigenvalues finite; these lie outside the box, beyond the mesh or far
+    from every root.
+    """
+    error: Array = np.empty(len(raw))
+    length: Array = np.empty(len(raw))
+    wave: Array = np.empty(len(raw))
+    near = np.zeros(len(raw), dtype=np.bool_)
+    inside = np.zeros(len(raw), dtype=np.bool_)
+    first = raw.copy()
+    for i in range(len(raw)):
+        if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
+            continue
+        if abs(raw[i].imag) <= ROOT_NEWTON.real_below * abs(raw[i]):
+            first[i] = complex(raw[i].real, 0.0)
+        error[i], length[i], wave[i] = root_error(first[i], coefficients)
+        # No eigenvalue lies outside the box; what the mesh has there is its artefact.
+        real, imag = box_of(amplification, max(-first[i].real, 0.0))
+        inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
+        near[i] = inside[i] and wave[i] <= most_waves and error[i] <= ROOTS.largest_of_pair * length[i]
+    chosen = np.flatnonzero(near)
+    first = first[chosen]
+    error = error[chosen]
+    length = length[chosen]
+    wave = wave[chosen]
+    w, stands = _refined_all(first, error, wave, error <= ROOTS.largest_correction * length, coefficients)
+    order = np.flatnonzero(stands)
+    order = order[_descending(w[order])]
+    displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
+    chosen = chosen[order]
+    w = w[order]
+    error = error[order]
+    wave = wave[order]
+    _raise_errors_of_equal_roots(w, error, coefficients)
+    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
+    ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
+    return Roots(chosen, w, error, displacement, wave, axis, ahead)
+
+
+@compiled
+def _refined_all(
+    first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
+) -> tuple[Complex, NDArray[np.bool_]]:
+    """(w, mask): eigenvalues after refinement, and which of them are roots; both (k,).
+
+    first: eigenvalues of the mesh, (k,). near: which of these approximate a root. error, wave, both (k,), are
+    updated in place.
+    """
+    w = first.copy()
+    reach = _separate(w, error, coefficients)
+    moved = np.isfinite(reach)
+    stands = moved | near
+    for i in range(len(w)):
+        if not stands[i]:
+            continue
+        single = i > 0 and w[i].imag != 0 and not moved[i - 1] and not moved[i]
+        if single and w[i] == first[i - 1].conjugate():
+            # The conjugate is refined already.
+            w[i] = w[i - 1].conjugate()
+            error[i] = error[i - 1]
+            wave[i] = wave[i - 1]
+        else:
+            # Close to a double root D and D' are rounding errors, whose quotient may lead anywhere.
+            w[i] = refined(w[i], coefficients, reach[i])
+            error[i], _, wave[i] = root_error(w[i], coefficients)
+    return w, stands
+
+
+@compiled
+def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
+    """Raises the errors of two eigenvalues at the same root to the distance of the next root, 2 |D'/D''|.
+
+    w, error: (n,).
+    """
+    for i in range(len(w)):
+        for j in range(i + 1, len(w)):
+            apart = abs(w[i] - w[j])
+            if apart <= ROOTS.same_root * (error[i] + error[j]):
+                next_root = distance_to_next(w[i], coefficients)
+                if apart < ROOTS.share_of_next * next_root:
+                    error[i] = max(error[i], next_root)
+                    error[j] = max(error[j], next_root)

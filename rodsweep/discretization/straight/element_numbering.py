@@ -1,0 +1,49 @@
+"""Indices of the unknowns of the elements of a straight rod, inside the elements and between them."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..elements.elements import ELEMENTS
+from ..state_layout import COMPONENTS
+
+Indices = NDArray[np.int_]
+
+
+@dataclass(frozen=True, eq=False)
+class ElementNumbering:
+    """Indices of the elements' unknowns.
+
+    An element has `local` unknowns. unknowns: indices in the state, (elements, local); stresses at the tip
+    are not unknowns, and have the index behind the state. inside, ends: local indices of interior unknowns
+    and of unknowns at both ends, the left end first. between: indices of the end unknowns among all unknowns
+    between elements, (elements, ends). exists: False for stresses at the tip, (unknowns between elements,).
+    """
+
+    unknowns: Indices
+    inside: Indices
+    ends: Indices
+    between: Indices
+    exists: NDArray[np.bool_]
+
+
+@lru_cache(maxsize=ELEMENTS.meshes_kept)
+def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
+    """Numbering of a mesh of equal elements of some order, for some components of stresses and velocities."""
+    last = elements * order
+    nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
+    unknown = COMPONENTS * (2 * last + 1)
+    stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
+    velocities = [COMPONENTS * last + c * (last + 1) + nodes for c in components]
+    width = 2 * len(components)
+    node = np.tile(np.arange(order + 1), width)
+    inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)
+    ends = np.setdiff1d(np.arange(len(node)), inside)
+    ends = ends[np.argsort(node[ends], kind="stable")]
+    between = np.arange(elements)[:, None] * width + np.arange(len(ends))
+    unknowns = np.concatenate([*stresses, *velocities], axis=1)
+    exists = np.ones(between[-1, -1] + 1, bool)
+    exists[between[-1]] = unknowns[-1, ends] < unknown
+    return ElementNumbering(unknowns, inside, ends, between, exists)

@@ -1,0 +1,1 @@
+"""Changes of stability along a path of arms that have no closed form of D."""

@@ -1,0 +1,214 @@
+"""Crossings of the imaginary axis along a path of arms. No covering proves their list complete.
+
+The unstable modes are counted at places along the path. Between places whose counts differ by one pair,
+Newton's method on D finds the crossing. Between places with equal counts, the slopes of the pairs nearest to
+the axis must exclude two crossings; otherwise a place is added between.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...point import Unsolvable
+from ..search_range import SearchedIntervals, SearchEnd
+from ..unstable_modes import ChangeKind, Crossing
+from .axis_place import AxisPlace, AxisPlaces, next_count_place
+from .path import ArmPath
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmCrossingSettings:
+    """Settings for the crossings along a path of arms."""
+
+    beyond_the_list: float = 2.0
+    smallest_first: float = 1e-3
+    """Intervals are halved before a search if more modes than the list holds, times the first factor, are
+    expected to grow at their right ends, down to this length in units of the path."""
+    most_at_once: int = 6
+    """Largest number of pairs by which the counts of two places may differ for a search of all crossings
+    between."""
+    higher: float = 4.0
+    """Height up to which modes beside the axis are searched at a crossing, in units of the heights known."""
+    same_errors: float = 10.0
+    same_frequency: float = 1e-6
+    """Two crossings are equal if they differ by less: in p in units of their errors, in frequency
+    relative."""
+    smallest_interval: float = 1e-6
+    """Length of an interval, in units of the path, that is not divided further: two crossings inside stay
+    undecided."""
+    smallest_step: float = 1e-12
+    """Relative length of an interval without a place between its ends, up to some thousand roundings."""
+    count_distance: float = 1e-5
+    """Distance from a crossing, in units of the path, of the counts on both its sides."""
+    max_steps: int = 20
+    """Maximum number of Newton steps for one crossing."""
+    converged: float = 4.0
+    """Newton step, in units of the error of p, at which a crossing has converged."""
+    rounding: float = 4e-16
+    """Relative rounding error of the path variable: two units in the last place."""
+
+
+ARM_CROSSINGS = ArmCrossingSettings()
+
+
+class CrossingSearch:
+    """The search for crossings along a path.
+
+    found: crossings by their p. gaps: intervals of p that may contain two undecided crossings.
+    """
+
+    def __init__(self, problem: ArmPath, certify: bool):
+        self.problem = problem
+        self.places = AxisPlaces(problem, certify)
+        self.found: dict[float, Crossing] = {}
+        self.gaps: list[tuple[float, float]] = []
+
+    def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
+        """All crossings from the first of `edges` up to the reach of the search, in increasing order of p.
+
+        The search ends behind the first crossing beyond `most`: where dozens of modes grow, each further one
+        costs more than all before. Raises Unsolvable if the search does not reach beyond the first edge.
+        """
+        intervals = SearchedIntervals(edges)
+        self.places.at(edges[0])
+        for a, b in intervals:
+            if sum(p < a for p in self.found) > most:
+                intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
+                continue
+            if self._is_too_long(a, b, most, intervals.length):
+                intervals.divide((a, (a + b) / 2), ((a + b) / 2, b))
+                continue
+            try:
+                self._search(a, b, intervals)
+            except Unsolvable as why:
+                intervals.end_within((a, b), str(why))
+                self.found = {p: crossing for p, crossing in self.found.items() if p <= a}
+        return [self.found[p] for p in sorted(self.found)], intervals.reach
+
+    def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
+        """Whether the list is likely to be full before b, where a count is expensive."""
+        if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
+            return False
+        expected = self.problem.expected_growing(b)
+        return self.places.are_many(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
+
+    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
+        """Searches one interval: keeps its crossing, or divides the interval."""
+        left = self.places.at(a)
+        right = self.places.at(b)
+        # Equal counts leave room for a pair that crosses and returns.
+        if left.unstable == right.unstable:
+            share = next_count_place(left, right)
+            if share == 0.0:
+                return
+            if b - a <= ARM_CROSSINGS.smallest_interval * intervals.length:
+                self.gaps.append((a, b))
+                return
+        else:
+            share = 0.5
+            crossings = self._between(left, right)
+            parts = self._parted(crossings, left, right, intervals.length) if crossings else None
+            if parts is not None:
+                self.found.update(
+                    (self.problem.path.variable(crossing.at), crossing) for crossing in crossings
+                )
+                intervals.divide(*parts)
+                return
+            if b - a <= ARM_CROSSINGS.smallest_step * max(abs(a), abs(b)):
+                raise Unsolvable(f"the crossing near {self.problem.path.at(a)} is not found")
+        middle = a + share * (b - a)
+        intervals.divide((a, middle), (middle, b))
+
+    def _parted(
+        self, crossings: list[Crossing], left: AxisPlace, right: AxisPlace, length: float
+    ) -> list[tuple[float, float]] | None:
+        """The intervals between crossings, in increasing order of p; None if the counts just before and just
+        behind a crossing do not confirm it.
+
+        The modes beside the axis at a crossing serve both places where many modes grow.
+        """
+        parts: list[tuple[float, float]] = []
+        start = left.p
+        highest = ARM_CROSSINGS.higher * max(left.highest, right.highest)
+        for crossing in crossings:
+            p = self.problem.path.variable(crossing.at)
+            before = max(start, p - ARM_CROSSINGS.count_distance * length)
+            behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
+            beside = None
+            if self.places.are_many(before):
+                beside = self.places.modes_beside(p, highest, np.array([1j * crossing.frequency]))
+            change = self.places.at(behind, beside).unstable - self.places.at(before, beside).unstable
+            if change != (2 if right.unstable > left.unstable else -2):
+                return None
+            parts.append((start, before))
+            start = behind
+        return [*parts, (start, right.p)]
+
+    def _between(self, left: AxisPlace, right: AxisPlace) -> list[Crossing]:
+        """Crossings between two places, in increasing order of p, that explain the change of the number of
+        unstable modes; empty if not found."""
+        change = (right.unstable - left.unstable) // 2
+        many = self.places.are_many(right.p)
+        # Where modes are followed a bisection parts several crossings first.
+        if abs(change) > (ARM_CROSSINGS.most_at_once if many else 1):
+            return []
+        if many:
+            self.problem.make_family(left.p, right.p, max(left.highest, right.highest))
+        grows = change > 0
+        found: dict[float, Crossing] = {}
+        # The pairs that cross are stable on one side and unstable on the other; the nearest to the axis are
+        # tried first.
+        for start, growing in ((left, not grows), (right, grows)):
+            pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
+            for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
+                crossing = self._newton(start, i, (left.p, right.p), grows)
+                if crossing is not None and not any(_same(crossing, other) for other in found.values()):
+                    found[self.problem.path.variable(crossing.at)] = crossing
+                if len(found) == abs(change):
+                    return [found[p] for p in sorted(found)]
+        return []
+
+    def _newton(self, start: AxisPlace, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
+        """Newton's method for the p at which eigenvalue i of a place lies on the imaginary axis; None without
+        convergence.
+
+        ends: interval of p. grows: whether the pair's growth rate increases with p.
+        """
+        p = start.p
+        w = complex(start.w[i])
+        slope = complex(start.slopes[i])
+        for _ in range(ARM_CROSSINGS.max_steps):
+            if slope.real == 0 or not math.isfinite(slope.real):
+                return None
+            step = -w.real / slope.real
+            p = p + step
+            guess = w + slope * step
+            if not ends[0] <= p <= ends[1]:
+                return None
+            w, slope, error = self.problem.eigenvalue(guess, p)
+            blur = error / abs(slope.real) + ARM_CROSSINGS.rounding * abs(p)
+            if abs(w.real / slope.real) <= ARM_CROSSINGS.converged * blur:
+                # Where nothing is resolved there is no root of D.
+                unresolved = self.places.are_many(p) and not blur <= ARM_CROSSINGS.count_distance * (
+                    ends[1] - ends[0]
+                )
+                return None if unresolved else self._crossing(p, w, slope, blur, grows)
+        return None
+
+    def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
+        """The crossing of the pair w at p; None if its growth rate changes in the opposite direction."""
+        # Newton's method may find another pair of the interval, going the other way.
+        if w.imag <= 0 or (slope.real > 0) != grows:
+            return None
+        kind = ChangeKind.hopf if grows != self.problem.path.inverse else ChangeKind.hopf_reverse
+        error_of_p = blur + abs(w.real / slope.real)
+        at, error = self.problem.path.value(p, error_of_p)
+        error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # its own, and that by p
+        return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
+
+
+def _same(one: Crossing, other: Crossing) -> bool:
+    """Whether two crossings are equal within their errors, of F and of the frequency."""
+    apart = abs(one.at - other.at) <= ARM_CROSSINGS.same_errors * (one.error + other.error)
+    return apart and abs(one.frequency - other.frequency) <= ARM_CROSSINGS.same_frequency * one.frequency

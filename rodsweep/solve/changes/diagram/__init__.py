@@ -1,0 +1,1 @@
+"""Rows and boundaries of a phase diagram."""

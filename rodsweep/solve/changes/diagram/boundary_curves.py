@@ -1,0 +1,138 @@
+"""Curves in a plane of rods on which the spectrum changes: Hopf points, and double real eigenvalues.
+
+A boundary (`determinant.boundary`) is followed through its folds (`boundary_problem`). A fold is a point
+where a coordinate is extremal on the curve, for example where a window of flutter closes: the tangent has
+no component along that axis.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....arrays import Array
+from ....determinant.boundary import Boundary, OnBoundary
+from ....determinant.parameter_plane import Plane
+from ....watch import report
+from ...continuation.follower import CurveStop, follow, zero_along
+from ...point import Unsolvable
+from .boundary_problem import BOUNDARY_STEPS, CHANGE_CURVES, BoundaryEnd, BoundaryPoint, ChangeCurveProblem
+
+
+@dataclass(frozen=True, slots=True)
+class Fold:
+    """Extremum of coordinate `axis` (0 or 1) on a curve: both parameters with errors, eigenvalue in
+    1/tau2."""
+
+    axis: int
+    values: tuple[float, float]
+    frequency: float
+    growth_rate: float
+    errors: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class BoundaryCurve:
+    """A curve of Hopf points (sign 0) or of double real eigenvalues with a sign (-1 or 1).
+
+    values: of both parameters, (points, 2). frequency, growth_rate: of the eigenvalue, in 1/tau2, (points,).
+    ends: reasons for the ends at the first and the last point.
+    """
+
+    sign: float
+    values: Array
+    frequency: Array
+    growth_rate: Array
+    folds: tuple[Fold, ...]
+    ends: tuple[BoundaryEnd, BoundaryEnd]
+    scaled: Array
+    """Scaled coordinates and h = log|eigenvalue| of each point, (points, 3)."""
+
+    @property
+    def hopf(self) -> bool:
+        return self.sign == 0
+
+
+def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> BoundaryCurve | None:
+    """The curve of a sign through a start in scaled coordinates with |w| = |eigenvalue|; None if not found.
+
+    The curve is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
+    """
+    curve = ChangeCurveProblem(Boundary(plane, sign))
+    guess = np.array([*start, math.log(abs(eigenvalue))])
+    try:
+        tangent = curve.boundary.tangent(guess)
+        first = BoundaryPoint.on(curve.near(guess, tangent), tangent)
+    except (ValueError, ArithmeticError, Unsolvable):
+        return None
+    ahead = follow(curve, first, BOUNDARY_STEPS, lambda _: report())
+    back = ahead
+    passed = ahead.solutions
+    if ahead.end is not CurveStop.closed:
+        back = follow(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
+        passed = [*back.solutions[:0:-1], *passed]
+    points = np.array([point.v for point in passed])
+    # Between coincident points, as on an edge, the chord has no direction.
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > CHANGE_CURVES.coincident_points
+    return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
+
+
+def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]) -> BoundaryCurve:
+    """The curve through points, (points, 3), with the folds between them and the reasons for its ends."""
+    boundary = curve.boundary
+    folds = []
+    if len(points) > 1:
+        forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
+        tangents = np.array([boundary.tangent(v) for v in points])
+        tangents *= np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+        passed = list(map(BoundaryPoint, points, tangents))
+        for axis in (0, 1):
+            for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
+                fold = _fold(curve, passed[i], passed[i + 1], axis)
+                if fold is not None:
+                    folds.append(fold)
+    # One by one: the rounding of NumPy's exp of an array depends on the place of an element in memory.
+    growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
+    axes = boundary.plane.axes
+    values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
+    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), ends, points)
+
+
+def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
+    """The point between two where the tangent has no component along an axis; None if not found."""
+    boundary = curve.boundary
+    noise = _tangent_noise(curve.boundary)
+    chord = b.v - a.v
+    found = dict[float, OnBoundary]()
+    size = float(np.linalg.norm(chord))
+
+    def component(length: float) -> float:
+        found[length] = there = curve.near(a.v + length / size * chord, chord / size)
+        return float(BoundaryPoint.on(there, chord).tangent[axis])
+
+    ends = float(a.tangent[axis]), float(b.tangent[axis])
+    try:
+        length = zero_along(component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy)
+        # The tangent turns by the difference of the ends over the chord, so its error moves the fold.
+        along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
+    except Unsolvable:
+        return None
+    return _as_fold(boundary, found[length], axis, along)
+
+
+def _tangent_noise(boundary: Boundary) -> float:
+    """Error of the tangents of a boundary."""
+    if not boundary.plane.standard:
+        return CHANGE_CURVES.arm_tangent
+    return CHANGE_CURVES.double_tangent if boundary.sign else CHANGE_CURVES.hopf_tangent
+
+
+def _as_fold(boundary: Boundary, there: OnBoundary, axis: int, along: float) -> Fold:
+    """The fold at a point of a boundary. along: error of the point in the direction of the curve."""
+    axes = boundary.plane.axes
+    first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
+    units = [abs(a.stretch(x)) for a, x in zip(axes, (first, second), strict=True)]
+    # Along the curve the extremal coordinate is stationary at the fold, the other coordinate is not.
+    errors = [unit * (there.error if i == axis else there.error + along) for i, unit in enumerate(units)]
+    growth_rate, frequency = boundary.eigenvalue(there.v[2])
+    return Fold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

@@ -1,0 +1,149 @@
+"""A boundary of the spectrum in a plane of rods as a problem for the follower.
+
+A point of the curve has its unit tangent. A curve ends at an edge of the plane, at a crushed rod, or where it
+closes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from ....arrays import Array
+from ....determinant.boundary import Boundary, OnBoundary
+from ...continuation.follower import Curve, CurveStop, StepControl, StepResult
+from ...point import Unsolvable
+
+BOUNDARY_STEPS = StepControl(
+    first=0.01, longest=0.04, shortest=1e-9, turn=0.15, sharpest=0.3, growth=1.5, most=5000
+)
+"""Arc lengths of steps; each axis of the plane has length 1. They are short enough for a smooth drawn
+curve."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangeCurveSettings:
+    """Points, ends and folds of a boundary curve."""
+
+    beside_an_edge: float = 1e-9
+    """Largest distance beyond one edge of the plane for a point on another edge."""
+    coincident_points: float = 1e-9
+    """Two points of a curve at a smaller distance are one, as at a start on the border of the plane."""
+    fold_accuracy: float = 1e-13
+    """Convergence tolerance at a fold: component of the tangent, and bracket as a fraction of the step."""
+    hopf_tangent: float = 1e-12
+    """Error of the tangent to a curve of Hopf points, by rounding."""
+    double_tangent: float = 1e-11
+    """Error of the tangent to a curve of double eigenvalues, by differences in the Jacobian of D_w."""
+    arm_tangent: float = 3e-10
+    """Error of the tangent to a curve of arms, by differences of D, which deviate from the closed form by up
+    to 8e-11 for uniform rods."""
+    min_loop_points: int = 4
+    """Fewest points of a closed curve."""
+
+
+CHANGE_CURVES = ChangeCurveSettings()
+CRUSHED_MARGIN = 4
+"""Index of the margin that is negative for a crushed rod, behind the four edges of the plane."""
+
+
+class BoundaryEnd(IntEnum):
+    """Reasons for the end of a boundary curve."""
+
+    none = 0
+    edge = 1
+    crushed = 2
+    closed = 3
+    not_followed = 4
+    list_full = 5
+
+
+class BoundaryPoint(NamedTuple):
+    """A point v = (x, y, h) of a curve, and the unit tangent in the direction of the curve, (3,) each."""
+
+    v: Array
+    tangent: Array
+
+    @classmethod
+    def on(cls, there: OnBoundary, way: Array) -> "BoundaryPoint":
+        """A point of a boundary; the tangent is oriented to a side, (3,)."""
+        tangent = there.tangent
+        return cls(there.v, tangent if tangent @ way > 0 else -tangent)
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeCurveProblem:
+    """A boundary as a problem for the follower."""
+
+    boundary: Boundary
+
+    def step(self, behind: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
+        """The point a step along the tangent; raises Unsolvable."""
+        v, tangent = behind[-1]
+        there = BoundaryPoint.on(self.near(v + length * tangent, tangent), tangent)
+        # The turn of the tangent alone controls the step length.
+        return StepResult(there, 0.0, float(there.tangent @ tangent))
+
+    def near(self, guess: Array, normal: Array) -> OnBoundary:
+        """The point in the plane through a guess with a normal, both (3,); raises Unsolvable."""
+        there = self.boundary.corrected(guess, normal)
+        if there is None:
+            raise Unsolvable("no point of the boundary is near")
+        return there
+
+    def margins(self, point: BoundaryPoint) -> Array:
+        """Distances from the four edges of the plane, and 1 for a rod that is not crushed, else -1; (5,)."""
+        x, y = map(float, point.v[:2])
+        on_plane = 0 <= x <= 1 and 0 <= y <= 1
+        # Outside the plane the parameters may describe no rod.
+        alive = 1.0 if not on_plane or self.boundary.plane.uncrushed(x, y) else -1.0
+        return np.array([x, 1 - x, y, 1 - y, alive])
+
+    def landed(
+        self, behind: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
+    ) -> BoundaryPoint | None:
+        """The point on the edge that a step crosses; None for a crushed rod, or if the point lies beyond a
+        second edge."""
+        if margin == CRUSHED_MARGIN:
+            return None
+        axis, limit = divmod(margin, 2)
+        inner = behind[-1].v
+        share = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
+        found = self.boundary.corrected(inner + share * (outer.v - inner), np.eye(3)[axis])
+        if (
+            found is None
+            or not -CHANGE_CURVES.beside_an_edge <= found.v[1 - axis] <= 1 + CHANGE_CURVES.beside_an_edge
+        ):
+            return None
+        return BoundaryPoint.on(found, behind[-1].tangent)
+
+    def closes(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
+        """Whether the curve returns to its first point within the step."""
+        first = behind[0]
+        last = behind[-1]
+        step = float(np.linalg.norm(there.v - last.v))
+        near = float(np.linalg.norm(there.v - first.v)) < step
+        return (
+            len(behind) >= CHANGE_CURVES.min_loop_points and near and float(there.tangent @ first.tangent) > 0
+        )
+
+    def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
+        """The reason for the end of a followed curve.
+
+        No solution is found beyond a point on an edge where a parameter cannot go further, as gamma3 below 0,
+        nor for a crushed rod, which may be closer than the shortest step.
+        """
+        if followed.end is CurveStop.closed:
+            return BoundaryEnd.closed
+        if followed.end is CurveStop.full:
+            return BoundaryEnd.list_full
+        if followed.end is CurveStop.margin:
+            return BoundaryEnd.crushed if followed.margin == CRUSHED_MARGIN else BoundaryEnd.edge
+        v, tangent = followed.solutions[-1]
+        if self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min() <= CHANGE_CURVES.beside_an_edge:
+            return BoundaryEnd.edge
+        beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.shortest * tangent, tangent)
+        is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
+        return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed

@@ -1,0 +1,146 @@
+"""Rows of a phase diagram: the class of the rod at each value along one axis, and all changes.
+
+All changes along a row are found first (`along_path`). They determine the class of every point without a
+solve at the point, and a boundary is as accurate as Newton's method.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....determinant.parameter_path import Path
+from ....model.rod import Rod
+from ...point import solved
+from ..along_path import Transitions, transitions
+from ..thresholds import Thresholds, ThresholdStatus, judged, nothing_found
+from ..unstable_modes import CHANGE_COUNTS
+
+
+class Motion(IntEnum):
+    """Evolution of a small deflection of the straight rod.
+
+    monotone, oscillatory: stable; the slowest mode decays without or with oscillations. flutter: at least one
+    mode grows. undecided: on a boundary within its error, or unknown. crushed: F is at least the force that
+    crushes the weakest section, k1 for a uniform rod of linear material.
+    """
+
+    monotone = 0
+    oscillatory = 1
+    flutter = 2
+    undecided = 3
+    crushed = 4
+
+
+@dataclass(frozen=True, slots=True)
+class RowRequest:
+    """Request for every row: the varied parameter and its increasing values, (values,)."""
+
+    name: str
+    values: Array
+    accuracy: float
+    """Relative accuracy of the changes."""
+    certify: bool
+    crossings: int
+    """Maximum number of stored changes."""
+    cycle_accuracy: float = 1e-6
+    """Relative accuracy of the period and of the largest y of each cycle, if cycles are requested."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiagramRow:
+    """One row: class and number of unstable modes at each value, (values,), and all changes along the row."""
+
+    motion: NDArray[np.int8]
+    unstable_count: NDArray[np.int32]
+    changes: Thresholds
+    seconds: float = 0.0
+
+    @property
+    def status(self) -> ThresholdStatus:
+        return self.changes.status
+
+    @property
+    def message(self) -> str:
+        return self.changes.message
+
+
+def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
+    """The row of rods along an axis; a failure is a status, never an exception."""
+
+    def failed(cause: str) -> DiagramRow:
+        return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
+
+    # ValueError: a search along the row needs a rod with parameters outside their range.
+    return solved(lambda: _searched(rod, request), failed, more_failures=(ValueError,))
+
+
+def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
+    """The row, searched between the first and the last rod that are not crushed."""
+    name = request.name
+    values = request.values
+    F = values if name == "F" else np.full(len(values), rod.F)
+    k1 = values if name == "k1" else np.full(len(values), rod.k1)
+    share = rod.build.crushing_share(rod.taper)
+    crushing = k1 * share
+    alive = crushing * (1 - CHANGE_COUNTS.crushing_margin) > F
+    crushed = crushing * (1 - CHANGE_COUNTS.meets_crushing) <= F
+    if not alive.any():
+        row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
+        return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
+    start = float(values[alive][0])
+    stop = float(values[alive][-1])
+    # Changes may lie between the last value that is not crushed and the crushing force.
+    if name == "F" and not alive.all():
+        stop = rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin)
+    if name == "k1" and not alive.all():
+        start = rod.F / (share * (1 - CHANGE_COUNTS.crushing_margin)) if rod.F > 0 else start
+    found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
+    motion, unstable = classes(found, values)
+    # Nearly crushed rods lie outside the searched range.
+    motion[crushed] = Motion.crushed
+    unstable[crushed] = -1
+    motion[~alive & ~crushed] = Motion.undecided
+    unstable[~alive & ~crushed] = -1
+    changes = judged(found, request.accuracy, request.certify, request.crossings)
+    return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
+
+
+def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: str = "") -> DiagramRow:
+    """A row of a single class, without changes."""
+    return DiagramRow(
+        motion=np.full(len(values), motion, dtype=np.int8),
+        unstable_count=np.full(len(values), -1, dtype=np.int32),
+        changes=nothing_found(status, float(values[-1]), message),
+    )
+
+
+def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+    """(class, number of unstable modes) at each value of a path's parameter, (values,) each, from the
+    changes. Values beyond the end of a search that ended early are undecided."""
+    oscillates = np.full(len(values), found.oscillates_at_start)
+    unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
+    blurred = np.zeros(len(values), dtype=bool)
+    for crossing in found.crossings:
+        beyond = values > crossing.at
+        if crossing.kind.changes_leader:
+            oscillates[beyond] = crossing.kind.pair_leads_after
+        else:
+            unstable[beyond] = crossing.unstable_after
+        blurred |= np.abs(values - crossing.at) <= crossing.error
+    if found.ended_early:
+        blurred |= (values < found.searched[0]) | (values > found.searched[1])
+    low, high = found.open_range
+    if not math.isnan(low):
+        blurred |= (values >= low) & (values <= high)
+        # Crossings in the open range change the number unseen; behind it the count at the end holds.
+        unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
+    motion = np.where(oscillates, Motion.oscillatory, Motion.monotone).astype(np.int8)
+    motion[unstable > 0] = Motion.flutter
+    blurred |= unstable < 0
+    motion[blurred] = Motion.undecided
+    unstable[blurred] = -1
+    return motion, unstable

@@ -1,0 +1,1 @@
+"""Spectra along a path in one parameter: followed, predicted, counted."""

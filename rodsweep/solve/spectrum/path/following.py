@@ -1,0 +1,204 @@
+"""Eigenvalues followed along the points of a path: predicted, then corrected by Newton's method on D.
+
+Each result is a root of D within its error, and no two are the same root. Whether they are all eigenvalues,
+and whether two have exchanged, is left to the count.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ....determinant.exponents import ROUND_OFF
+from ....determinant.parameter_path import determinant_along
+from ....determinant.roots.newton import ROOT_NEWTON
+from ....determinant.roots.roots import sort_descending, two_roots
+from ....determinant.roots.settings import ROOTS
+from ....determinant.value import DETERMINANT
+from ....model.compiled.compilation import compiled
+from ....model.compiled.settings import CompiledSettings
+from ....model.rod import Coefficients
+from .prediction import Track, guess_at, guess_two, mates_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FollowingSettings(CompiledSettings):
+    """Settings for the corrections of followed eigenvalues."""
+
+    max_corrections: int = 8
+    """Maximum number of Newton steps for one eigenvalue."""
+    accuracy: float = 1e-9
+    """Relative accuracy of eigenvalues that do not lead, and only show where to count."""
+    safe_curvature: float = 4.0
+    """Safety factor on |D''/(2 D')|, the modulus of the sum of 1/(w - w_j) over all other roots, computed
+    from the known roots only."""
+    rounding_step: float = 4.0
+    """A step below this multiple of the rounding error ends the corrections."""
+
+
+FOLLOWING = FollowingSettings()
+
+
+class CorrectedEigenvalue(NamedTuple):
+    """An eigenvalue after one Newton step: w, slope dw/dp, length of the step, rounding error `blur`."""
+
+    w: complex
+    slope: complex
+    step: float
+    blur: float
+
+
+@compiled
+def corrected(w: complex, coefficients: Coefficients, direction: Coefficients) -> CorrectedEigenvalue:
+    """The eigenvalue after one Newton step from w; a real eigenvalue stays real."""
+    D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
+    return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
+
+
+@compiled
+def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
+    """Newton step from D, the derivatives by w and p, and the rounding error; real w stays real."""
+    size = abs(D_w)
+    if not size > 0:
+        return CorrectedEigenvalue(w, 0j, math.inf, math.inf)
+    step = D / D_w
+    slope = -D_p / D_w
+    if w.imag == 0:
+        step = complex(step.real, 0.0)
+        slope = complex(slope.real, 0.0)
+    return CorrectedEigenvalue(w - step, slope, abs(step), rounding / size)
+
+
+@compiled
+def crowding_of(w: Complex, k: int) -> float:
+    """Upper estimate of |D''/(2 D')| at root k, from its distances to the other known roots, (m,)."""
+    total = 1 / abs(w[k])
+    for j in range(len(w)):
+        if j != k:
+            total += 1 / abs(w[k] - w[j])
+    return FOLLOWING.safe_curvature * total
+
+
+@compiled
+def settled_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
+    """Error of an eigenvalue after a Newton step, once the remainder crowding step^2 is small enough; inf
+    before.
+
+    crowding: upper estimate of |D''/(2 D')| at the eigenvalue, from its distance to other roots. exact:
+    whether the remainder must be below rounding, instead of `FOLLOWING.accuracy`.
+    """
+    left = crowding * here.step * here.step
+    allowed = max(here.blur, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
+    if left <= allowed or here.step <= FOLLOWING.rounding_step * here.blur:
+        return max(here.blur, min(left, here.step))
+    return math.inf
+
+
+@compiled
+def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalue) -> bool:
+    """Writes eigenvalue k of point i, and its conjugate as number `mate` if it has one.
+
+    False for a pair that has become real. The error of eigenvalue k is in the track already.
+    """
+    w = track.w[i]
+    slope = track.slope[i]
+    error = track.error[i]
+    w[k] = last.w
+    slope[k] = last.slope
+    if mate >= 0:
+        if not w[k].imag > ROOT_NEWTON.real_below * abs(w[k]):
+            return False
+        w[mate] = w[k].conjugate()
+        slope[mate] = slope[k].conjugate()
+        error[mate] = error[k]
+    return True
+
+
+@compiled
+def _settled(
+    first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
+) -> tuple[CorrectedEigenvalue, float]:
+    """(last Newton step, error) of an eigenvalue: steps until `settled_error` is finite; the error is inf
+    without convergence.
+
+    first: result of the first step. crowding, exact: as in `settled_error`.
+    """
+    here = first
+    for _ in range(FOLLOWING.max_corrections):
+        error = settled_error(here, crowding, exact)
+        if error < math.inf:
+            return here, error
+        here = corrected(here.w, rod, direction)
+    return here, math.inf
+
+
+@compiled
+def distinct_roots(w: Complex, error: Array) -> bool:
+    """Whether all, (m,), eigenvalues and errors are finite and no two eigenvalues may be the same root."""
+    for k in range(len(w)):
+        if not (abs(w[k]) < math.inf and error[k] < math.inf):
+            return False
+        for j in range(k):
+            if not abs(w[k] - w[j]) > ROOTS.same_root * (error[k] + error[j]):
+                return False
+    return True
+
+
+@compiled
+def _correct_all(
+    track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
+) -> bool:
+    """Corrects the guesses for point i and writes the roots to the track. True if all converged and every
+    pair stayed a pair.
+    """
+    w = track.w[i]
+    error = track.error[i]
+    order = track.order[i]
+    m = len(w)
+    mate = np.empty(m, np.int64)
+    mates_of(guess, mate)
+    # One step for all before further steps for any: the crowding of a root needs its neighbours.
+    first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf) for _ in range(m)]
+    for k in range(m):
+        if guess[k].imag != 0 and mate[k] < 0:
+            return False
+        if guess[k].imag >= 0:
+            first[k] = corrected(guess[k], rod, direction)
+            w[k] = first[k].w
+            if mate[k] >= 0:
+                w[mate[k]] = w[k].conjugate()
+    sort_descending(w, order)
+    for rank in range(m):
+        k = order[rank]
+        if guess[k].imag >= 0:
+            last, error[k] = _settled(first[k], crowding_of(w, k), rank <= modes, rod, direction)
+            if not store_root(track, i, k, mate[k], last):
+                return False
+    sort_descending(w, order)
+    return distinct_roots(w, error)
+
+
+@compiled
+def follow(track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int) -> int:
+    """Number of points, from the first, to which the eigenvalues can be followed; fills the track so far.
+
+    track: with w and order at the first point. coefficients: (points, 4); p: path variables, (points,).
+    direction: d(F, nu, c2, gamma3)/dp. The leading `modes` eigenvalues get all digits.
+    """
+    guess = track.w[0].copy()
+    decided = np.empty(len(guess), np.int64)
+    for i in range(len(p)):
+        F, nu, c2, gamma3 = coefficients[i]
+        rod = Coefficients(F, nu, c2, gamma3)
+        if i > 0:
+            guess_at(track, i, p, guess, decided)
+            for k in range(len(guess)):
+                if decided[k] >= 0:
+                    two = (k, decided[k])
+                    guess_two(track.w[i - 1], two, two_roots(guess[k], rod), guess)
+            track.order[i] = track.order[i - 1]
+        if not _correct_all(track, i, guess, modes, rod, direction):
+            return i
+    return len(p)

@@ -1,0 +1,191 @@
+"""Spectra of neighbouring points along one parameter: eigenvalues are followed, and one count serves all
+points.
+
+Krylov-Schur solves the first point for some modes more than requested, and solves again where following stops
+or a count disagrees. Points without proof or with lost digits are solved singly. The outcome depends on the
+points of the stretch alone.
+"""
+
+import time
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array, Complex
+from ....determinant.certificate.winding_number import count_right_of
+from ....determinant.parameter_path import Path
+from ....model.rod import Rod, coefficients_of
+from ...backend.kept import forget_all
+from ...point import FAILURES
+from ..search import Search, SpectrumRequest, solve_spectrum
+from ..search import warm_up as warm_up_search
+from ..spectrum import FollowedPoints, Spectrum, stated_errors
+from ..status import SpectrumStatus
+from .arm_stretch import followed_arms
+from .carried_count import best_gap, carry_count, judge_points, leading, line_in
+from .following import follow
+from .prediction import Track, part_of_track, track_from
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StretchSettings:
+    """Settings for eigenvalues followed along a stretch."""
+
+    further_modes: int = 2
+    """Number of modes followed beyond the requested modes; the count uses the gaps between them."""
+
+
+STRETCH = StretchSettings()
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Rods along a path, at values of its parameter, (n,)."""
+
+    path: Path
+    values: Array
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def rod(self, i: int) -> Rod:
+        """The i-th rod."""
+        return self.path.rod.changed(**{self.path.name: float(self.values[i])})
+
+    @property
+    def coordinates(self) -> Array:
+        """Path variable of every rod, (n,)."""
+        return 1 / self.values if self.path.inverse else self.values
+
+    @property
+    def coefficients(self) -> Array:
+        """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
+        columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
+        table = np.empty((len(self), len(columns)))
+        for place, column in enumerate(columns):
+            table[:, place] = column
+        return table
+
+
+def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
+    """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
+    began = time.perf_counter()
+    n = len(stretch)
+    modes = request.modes
+    columns = _unsolved(n, modes)
+    place = 0
+    patience = 1
+    while place < n:
+        found = _followed(stretch, place, request)
+        end = place + (len(found.good) if found else min(patience, n - place))
+        # If no proof succeeds, as without a bound, following is tried less and less often.
+        patience = 1 if found else 2 * patience
+        if found:
+            here = slice(place, end)
+            columns["eigenvalues"][here] = found.w
+            columns["error_estimate"][here] = stated_errors(found.w, found.error, stretch.path.rod)
+            columns["unstable_count"][here] = found.unstable
+            columns["certified"][here] = True
+        for i in range(place, end):
+            if not (found and found.good[i - place]):
+                alone = solve_spectrum(stretch.rod(i), request)
+                for name, column in columns.items():
+                    column[i] = getattr(alone, name)
+        place = end
+    return Spectrum(seconds=np.full(n, (time.perf_counter() - began) / n), **columns)
+
+
+def _unsolved(n: int, modes: int) -> dict[str, Any]:
+    """Fields of a `Spectrum` of n rods, to be filled."""
+    whole = np.zeros(n, np.int64)
+    return {
+        "eigenvalues": np.full((n, modes), np.nan + 0j),
+        "error_estimate": np.full((n, modes), np.nan),
+        "unstable_count": whole - 1,
+        "certified": np.zeros(n, np.bool_),
+        "elements": whole.copy(),
+        "order": whole.copy(),
+        "status": whole + SpectrumStatus.ok,
+        "message": np.full(n, "", object),
+    }
+
+
+def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
+    """Follows and counts the points from `start` on, as far as possible; None if the first point fails."""
+    rod = stretch.path.rod
+    varies = stretch.path.name == "taper"
+    if rod.uniform and not (rod.standard or varies):
+        return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
+    if varies or not rod.standard:
+        return followed_arms(stretch.path, stretch.coordinates[start:], request)
+    seed = _first_point(stretch.rod(start), request)
+    if seed is None:
+        return None
+    first, complete = seed
+    modes = request.modes
+    rest = Stretch(stretch.path, stretch.values[start:])
+    track = track_from(first, len(rest))
+    n = follow(track, rest.coefficients, rest.coordinates, stretch.path.direction, modes)
+    if n == 0:
+        return None
+    track = part_of_track(track, 0, n)
+    known = _known_along(rest, track, modes, complete)
+    reached = part_of_track(track, 0, len(known))
+    good, unstable = judge_points(reached, known, modes, request.accuracy)
+    return FollowedPoints(*leading(reached, modes), unstable, good)
+
+
+def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
+    """Numbers of leading eigenvalues that are proved complete at the first points of a track, (points,).
+
+    complete: the number at the first point. Where it cannot be carried on, a count gives the next number.
+    """
+    n = len(track.w)
+    coefficients = stretch.coefficients[:n]
+    p = stretch.coordinates[:n]
+    known = np.zeros(n, np.int64)
+    known[0] = complete
+    at = 0
+    while True:
+        rest = part_of_track(track, at, n)
+        at += carry_count(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
+        if at == n - 1:
+            break
+        gap = best_gap(track, at + 1, modes)
+        line = float(line_in(track, at + 1, gap)[0]) if gap else 0.0
+        if not gap or count_right_of(line, stretch.rod(at + 1)).number != gap:
+            break
+        at += 1
+        known[at] = gap
+    return known[: at + 1]
+
+
+def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
+    """(eigenvalues to follow, pairs unsplit; number of leading eigenvalues proved complete), or None."""
+    try:
+        modes = request.modes + STRETCH.further_modes
+        search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
+        with np.errstate(all="ignore"):
+            outcome = search.outcome()
+    except FAILURES:
+        forget_all()
+        return None
+    if search.best is None or search.best.verdict is None or not outcome.certified:
+        return None
+    w = search.best.found.roots.w.copy()
+    complete = search.best.verdict.here
+    w = w[: complete + 1 + (complete < len(w) and w[complete].imag > 0)]
+    for k in np.flatnonzero(w.imag > 0):
+        if k + 1 == len(w):
+            return w[:k], min(complete, int(k))
+        w[k + 1] = w[k].conjugate()
+    return w, complete
+
+
+def warm_up() -> None:
+    """Loads compiled code and creates solver objects, so that the first point takes no extra time."""
+    warm_up_search()
+    path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
+    solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))
