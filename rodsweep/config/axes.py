@@ -92,7 +92,7 @@ class Axes(LinearAxes):
 
     @property
     def alone(self) -> dict[str, int]:
-        """Number of values of each parameter that has an axis to itself."""
+        """Number of values of each parameter that is the only one changed by its axis."""
         if self.arm is None or not self.over:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.given | self.given_axes

@@ -36,7 +36,10 @@ EVEN_FUNCTIONS = EvenFunctionSettings()
 
 
 class EvenFunctions(NamedTuple):
-    """s, d, s' = s_M, d' = d_M and d* = d_P, all times exp(-S)."""
+    """The even functions s(M, P^2) and d(M, P^2) of the module with their derivatives, all times exp(-S).
+
+    s_M = ds/dM, d_M = dd/dM, d_P = (dd/dP^2)/4.
+    """
 
     S: float
     s: complex

@@ -61,7 +61,7 @@ class NodalChange(NamedTuple):
     compliance: Array
     drag: Array
     sides: Array
-    """Of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
+    """Derivatives of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
 
 
 def nodal_rod(

@@ -88,9 +88,7 @@ class Page:
         self._show_solving()
 
     def stop(self) -> None:
-        """Cancels the long solves; a bent arm goes on as before it was bent, and pictures that show an
-        earlier rod say so.
-        """
+        """Cancels the long solves; their pictures say so, and a bent arm moves on as before it was bent."""
         for kind in STOPPABLE:
             if kind in self.solving:
                 self._drop(kind)

@@ -204,7 +204,7 @@ class ArmSection(StrictSection):
 
     @property
     def tapering(self) -> tuple[str, ...]:
-        """("taper",) for cones, else ()."""
+        """Names of parameters that only cones have: ("taper",) for cones, else ()."""
         return () if self.tip_radius is None else ("taper",)
 
     def count(self, beside: int) -> int:

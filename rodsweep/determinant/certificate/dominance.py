@@ -86,7 +86,9 @@ def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficient
 
 @compiled
 def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
-    """Whether |e| < 1 is proved on the disc of radius rho about w."""
+    """Whether |e| < 1 in D = A (1 + e) is proved on the disc of radius rho about w: one exponential then
+    dominates D.
+    """
     P, (z, slope, root), (z_other, slope_other, root_other) = _ordered(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
@@ -125,7 +127,7 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 @compiled
 def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """(w z'/z, sqrt z) of the dominant exponential at w: factor and exponent of A."""
+    """(w z'/z, sqrt z) of the dominant exponential at w: factor and exponent of A in D = A (1 + e)."""
     _, dominant, _ = _ordered(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 

@@ -62,7 +62,7 @@ ARM_UNITS = {
 }
 """Units of time, force and pressure that an arm defines, by the property of `SlenderArm`."""
 SCALE_OF = {load: f"{load}_scale" for load in LOADS}
-"""By load, the name of the arm's quantity at which F = 1."""
+"""Name of the arm's quantity that makes F = 1, for each load."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
 """All variables of an arm in a result file, apart from its parameters as a rod."""
 

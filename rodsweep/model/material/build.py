@@ -44,7 +44,7 @@ class Sections(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """Law and profile of an arm, compared and hashed by value.
+    """Constitutive law and profile of an arm ("build"), compared and hashed by value.
 
     (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm, None for a
     uniform arm. Raises ValueError for an unknown law.

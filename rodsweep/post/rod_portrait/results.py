@@ -51,7 +51,7 @@ class RodResults:
     cycles: Sequence[tuple[float, View]]
     """(force, limit cycle there), increasing."""
     missing: Mapping[str, str]
-    """For every task without a result, the reason in a sentence."""
+    """Reason, in a sentence, for every task without a result."""
 
     @property
     def units(self) -> PortraitUnits:

@@ -190,7 +190,9 @@ def _axes(view: View) -> TextTable:
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """(number of different values but NaN, smallest, largest if another) of values of any shape, as text."""
+    """(number of distinct values without NaN, smallest, largest unless equal to the smallest) of values of
+    any shape, as text.
+    """
     # Twelve digits, because values computed from an arm may differ by rounding.
     different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
     ends = sorted(map(float, different))

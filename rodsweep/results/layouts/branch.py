@@ -112,7 +112,9 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _has(name: str) -> IncreaseRule:
-    """Increase of the length of a list; a list with room left is complete already."""
+    """Rule for the length of a list: a stored list with room left holds all items, however long it may be
+    now.
+    """
     return IncreaseRule(lambda records, before: records[name] < before)
 
 

@@ -166,7 +166,7 @@ def listed(
 
 @dataclass(frozen=True, slots=True)
 class IncreaseRule:
-    """Option whose larger value asks for more of every point, without further effect."""
+    """Rule for an option whose larger value requests more data of every point and changes nothing else."""
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
     """Function from stored records, (n,), and the option's stored value to whether each is complete, (n,)."""
@@ -174,7 +174,7 @@ class IncreaseRule:
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
     def is_more(self, before: Any, now: Any) -> bool:
-        """Whether the value `now` asks for more than the value `before`."""
+        """Whether the value `now` of the option requests more data than the value `before`."""
         if self.values:
             return self.values.index(now) > self.values.index(before)
         return bool(now > before)

@@ -44,7 +44,9 @@ def c_function(*arguments: Any) -> Callable[[Callable], Any]:
 
 
 def petsc_function(name: str) -> Any:
-    """int name(object, array*) of libpetsc for compiled callers; cacheable, unlike a function of ctypes."""
+    """The function int name(object, array*) of libpetsc for compiled code; unlike a ctypes function it can be
+    cached.
+    """
     return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
 
 

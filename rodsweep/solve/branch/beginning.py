@@ -168,7 +168,8 @@ def _cycle_of(
 ) -> ArcPoint:
     """The cycle of a given amplitude, solved to an accuracy from the normal form; raises Unsolvable.
 
-    aim: accuracy for which the first mesh is chosen. finer: whether the prediction has such a mesh too.
+    aim: accuracy for which the first mesh is chosen. finer: whether the search starts on this mesh, instead
+    of the coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:

@@ -168,8 +168,9 @@ class Tracer:
         return None
 
     def _double(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
-        """The double eigenvalue between an anchor with a leading pair and one with two real eigenvalues; or
-        None."""
+        """The double eigenvalue between an anchor with a leading pair and an anchor with two real
+        eigenvalues; None if not found.
+        """
         below = pair.partner()
         above = real.partner()
         width = abs(pair.p - real.p)
@@ -183,8 +184,9 @@ class Tracer:
         return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
     def _overtaking(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
-        """Newton's method for equal real parts of the real eigenvalue and the pair, each followed by itself;
-        or None."""
+        """The place between two anchors where a real eigenvalue and a pair have equal real parts, by Newton's
+        method; or None.
+        """
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
             return None  # no eigenvalue of the other kind is known
         p = (pair.p + real.p) / 2

@@ -43,7 +43,9 @@ class PathProblem(ABC):
         """Number of eigenvalues with Re w > line at p."""
 
     def counted_amid(self, low: float, high: float) -> int | None:
-        """Number of unstable modes that is proved already at a place amid low and high; None without one."""
+        """Number of unstable modes already proved at some place between low and high; None without such a
+        place.
+        """
         return None
 
     @abstractmethod

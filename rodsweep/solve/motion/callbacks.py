@@ -145,7 +145,10 @@ class Workspace:
             self.context[name] = value
 
     def prepare(self, beam: Beam, error: float, floor: float) -> None:
-        """Sets the rod, and the rms errors of a stage at which Newton's method stops and may stagnate."""
+        """Sets the rod and the limits of Newton's method, both as rms errors of a stage.
+
+        error: Newton's method stops below it. floor: rounding error, at which it may stagnate.
+        """
         self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
         self._set({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})

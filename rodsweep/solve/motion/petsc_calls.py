@@ -16,7 +16,9 @@ ENUM = types.int32
 
 
 def _external(name: str, *arguments: Any) -> Any:
-    """int name(arguments) of libpetsc for compiled callers; unlike a function of ctypes it can be cached."""
+    """The function int name(arguments) of libpetsc for compiled code; unlike a ctypes function it can be
+    cached.
+    """
     return _found(name, typing.signature(types.int32, *arguments))
 
 

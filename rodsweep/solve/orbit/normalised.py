@@ -20,7 +20,11 @@ from .symmetry import REFLECTION
 
 
 class Reflected(NamedTuple):
-    """reversed: 1 where the reflection reverses a state, 0 elsewhere; weights: weights of m3^2; both (n,)."""
+    """Effect of the reflection on a state, and the norm by which orbits are measured.
+
+    reversed: 1 for components that the reflection reverses, 0 for all others, (n,). weights: quadrature
+    weights of m3^2, (n,).
+    """
 
     reversed: Array
     weights: Array
@@ -93,9 +97,10 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 @compiled_for_vectors
 def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """Values, (N + 1,), plus the change that weights, (m,), give the slopes and values in data, (m, N + 1).
+    """An orbit's values, (N + 1,), plus a weighted sum of data, (m, N + 1): slopes, and other orbits' values
+    minus its own.
 
-    orders: 1 for a slope, 0 for a value, (m,).
+    orders: 1 for a slope, 0 for values, (m,). weights: (m,).
     """
     out = np.zeros(len(values))
     rest = 1.0

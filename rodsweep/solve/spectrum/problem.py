@@ -74,7 +74,9 @@ class TransverseProblem(ABC):
         """Number of eigenvalues with Re w > line; found: roots that may make the count faster."""
 
     def none_is_missing(self, line: float, found: Roots) -> tuple[bool, int]:
-        """(whether a proof without a count says that all right of a line are found, evaluations of D)."""
+        """(whether all eigenvalues right of a line are proved to be found, without a count; evaluations of
+        D).
+        """
         return False, 0
 
     @cached_property

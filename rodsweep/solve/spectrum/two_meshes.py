@@ -100,7 +100,8 @@ class _MeshEigenvalues(NamedTuple):
 
 
 def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
-    """Eigenvalues of a mesh, sorted; more eigenvalues do not change the leading `modes` ones.
+    """Leading eigenvalues of a mesh, sorted; their number is raised until the leading `modes` ones no longer
+    change.
 
     Empty if the mesh is too coarse for twice as many eigenvalues.
     """

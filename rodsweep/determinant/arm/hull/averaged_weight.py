@@ -169,9 +169,9 @@ def _fill(
 def _averaged(
     u: Array, log_t: Array, integral: Array, window: tuple[GridPlaces, GridPlaces], h: float
 ) -> tuple[Array, Array, Array]:
-    """(log t at u - h, log t at u + h, 2 h times the mean of log t between), (points,) each.
+    """(log t at u - h, log t at u + h, 2 h times the mean of log t over [u - h, u + h]), (points,) each.
 
-    integral: that of log t from the first point, (points,).
+    integral: integral of log t from the first point, (points,).
     """
     behind = _interpolated(window[0], log_t)
     ahead = _interpolated(window[1], log_t)

@@ -15,8 +15,8 @@ def constant_weight_norm(alphas: Array, local: Array, push: float) -> float:
     """The smallest a^2, over the constant weights alpha to try, (n,): the squared norm of the matrix along
     all arms.
 
-    The matrix is given in `rodsweep.determinant.arm.hull`. local: coefficients at all points, (6, points).
-    push: the largest F^2 c3/gamma2.
+    The matrix is given in `rodsweep.determinant.arm.hull.hull`. local: coefficients at all points, (6,
+    points). push: the largest F^2 c3/gamma2.
     """
     least = inf
     for alpha in alphas:
@@ -81,7 +81,7 @@ def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integ
     alpha, (alphas,).
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
-    (`rodsweep.determinant.arm.hull`). local: coefficients, (6, n, pieces, points). integral: from
+    (`rodsweep.determinant.arm.hull.hull`). local: coefficients, (6, n, pieces, points). integral: from
     `ChebyshevMatrices`.
     """
     found = np.zeros(len(alphas))

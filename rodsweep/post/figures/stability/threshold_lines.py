@@ -193,7 +193,9 @@ def _far_apart(table: Array) -> list[int]:
 
 
 def _alike(lines: dict[int, Array]) -> list[list[int]]:
-    """Groups of lines, by number, that are indistinct in the figure; lines: (3, points) each."""
+    """Groups of lines that cannot be distinguished in the figure, by the lines' numbers; lines: (3, points)
+    each.
+    """
     size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
     groups: list[list[int]] = []
     for number, values in lines.items():

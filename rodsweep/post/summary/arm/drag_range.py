@@ -27,7 +27,9 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
-    """Number of the arm at each point, (points,), equal where only the drag differs; None if none varies."""
+    """Index of the arm at each point, (points,), equal for points that differ only in drag; None if drag
+    never varies.
+    """
     columns = given_columns(view)
     if columns.pop("drag", None) is None:
         return None

@@ -121,9 +121,11 @@ class BorderedMatrix:
         return over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
-        """Singular vector of the least singular value at a fixed parameter, (N + 1,), of any length and sign.
+        """Singular vector of the smallest singular value of the matrix at a fixed parameter, (N + 1,), of any
+        length and sign.
 
-        At a crossing of branches it points along the branch that the tangent does not follow.
+        At a crossing of branches the vector points along the second branch, which the tangent does not
+        follow.
         """
         matrix = self._matrix.copy()
         # The last row fixes the parameter: the least singular vector then is a direction of cycles at one

@@ -89,8 +89,10 @@ class ArmPath(PathProblem):
         return edges.tolist()
 
     def expected_growing(self, p: float) -> float:
-        """About the number of unstable modes at p: half of the waves that the local dispersion relation lets
-        grow. Of 14 arms with 4 to 132 it was 0.9 to 1.9 times the number.
+        """Estimate of the number of unstable modes at p: half the number of waves that grow by the local
+        dispersion relation.
+
+        For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
         """
         rod = self.path.at(p)
         _, weights, local = sampled(rod)
@@ -165,8 +167,8 @@ class ArmPath(PathProblem):
     def counted(self, p: float, known: Complex, error: Array) -> int | None:
         """Number of unstable modes at p by a count; None if undecided.
 
-        known: eigenvalues beside the axis, one of each pair; error: how far each may be off; (n,) each. They
-        make the count faster.
+        known: eigenvalues beside the axis, (n,), one of each pair, which make the count faster; error: the
+        error of each, (n,).
         """
         if p not in self._counts:
             roots = KnownRoots(np.append(known, known.conj()), np.append(error, error))

@@ -100,7 +100,10 @@ class CoarserMeshes:
         return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
 
     def _errors(self, finer: ComparedCycle, factor: float) -> Array:
-        """Errors of a finer mesh, (4,), `factor` times smaller than the errors of the coarse mesh."""
+        """Errors of a finer mesh, (4,), from the difference of its cycle from the coarse mesh's.
+
+        factor: errors of the coarse mesh in units of those of the finer mesh.
+        """
         errors: Array = path_differences(self._coarse.path, finer.path) / (factor - 1)
         return errors
 

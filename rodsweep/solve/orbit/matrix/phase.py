@@ -30,7 +30,9 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 
 @compiled_for_vectors
 def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
-    """dy/dt of the tip at the start, (n,), by the reaction at the tip."""
+    """Lateral velocity dy/dt of the tip at the start of the orbit, (n,), from the reaction at the tip: the
+    phase condition.
+    """
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     balance(start, V, G, c, m)

@@ -22,7 +22,9 @@ class ParameterDerivatives(NamedTuple):
 
 @compiled_for_vectors
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
-    """F(x), shape (n,), and the intermediate V and G, (3, nodes + 1) each."""
+    """Writes the right side F(x) of M dx/dt = F(x), (n,), with the velocities V and strain rates G, (3, nodes
+    + 1) each.
+    """
     balance(x, V, G, p.rod, p.matrices)
     _store_stresses(G, F)
     if len(p.rod.kept):

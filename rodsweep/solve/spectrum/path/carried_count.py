@@ -62,8 +62,9 @@ def best_gap(track: Track, i: int, modes: int) -> int:
 
 @compiled
 def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
-    """Whether at all points between the ends exactly the first `gap` eigenvalues lie right of the line,
-    clearly."""
+    """Whether at every point between the ends exactly the first `gap` eigenvalues lie clearly right of the
+    line.
+    """
     i, j = ends
     for s in range(i, j + 1):
         share = (p[s] - p[i]) / (p[j] - p[i])

@@ -46,7 +46,7 @@ class Track(NamedTuple):
 
 
 class KnownRoots(NamedTuple):
-    """Some roots of D of one rod, (k,), in any order, and how far each may be off, (k,)."""
+    """Some roots of D of one rod, (k,), in any order, with the error of each, (k,)."""
 
     w: Complex
     error: Array
