@@ -17,10 +17,10 @@ import click
 import rodsweep as rs
 from rodsweep import errors
 from rodsweep.cli import commands
-from rodsweep.cli.run.running import CONTINUE
+from rodsweep.cli.run.running import STOPPED_STATUS
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.post.tables.contents import FIRST, NAMES
+from rodsweep.post.tables.contents import DEFAULT_TABLE, NAMES
 
 STORED = Path(__file__).parent / "reference" / "promises.json"
 DOCS = Path(__file__).parents[1] / "docs"
@@ -80,10 +80,10 @@ def promised() -> dict[str, dict[str, dict[str, str]]]:
                 "bug": str(errors.BUG_STATUS),
                 "bad input": str(errors.InputError.exit_status),
                 "incomplete environment": str(errors.EnvironmentIncomplete.exit_status),
-                "to be continued": str(CONTINUE),
+                "to be continued": str(STOPPED_STATUS),
             }
         },
-        "tables": {"": dict.fromkeys(NAMES.values(), ""), "first": dict(FIRST)},
+        "tables": {"": dict.fromkeys(NAMES.values(), ""), "first": dict(DEFAULT_TABLE)},
         "commands": {
             name: {
                 word: "" for each in command.params if isinstance(each, click.Option) for word in each.opts

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from rodsweep.bench.limit_cycle.sweeping import RODS, STRETCH, ExactCycle, from_neighbour, name_of, swept
+from rodsweep.bench.limit_cycle.sweeping import RODS, TIMED_POINTS, ExactCycle, from_neighbour, name_of, swept
 from rodsweep.bench.limit_cycle.tracking import (
-    EXACT,
     REFERENCE_INTERVALS,
     REFERENCE_STAGES,
+    REFERENCE_TOLERANCE,
     SETTLED_WITHIN,
     cycle_request,
     orbit_of,
@@ -86,7 +86,7 @@ def compared(program: Path, point: Rod, settings: Sequence[AutoSetting], rounds:
     own = [
         judged(
             exact,
-            Measurement(name_of(point), OWN, f"{accuracy:.0e}", timed.median / STRETCH, inf),
+            Measurement(name_of(point), OWN, f"{accuracy:.0e}", timed.median / TIMED_POINTS, inf),
             timed.outcome,
         )
         for accuracy, timed in zip(ASKED, raced[:ours], strict=True)
@@ -104,7 +104,9 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     near = orbit_of(solve_cycle(point, cycle_request(SETTLED_WITHIN), along="F"))
     orders = {setting.order for setting in settings}
     moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
-    return {order: newton(orbit, EXACT, NewtonWorkspace()).orbit for order, orbit in moved.items()}
+    return {
+        order: newton(orbit, REFERENCE_TOLERANCE, NewtonWorkspace()).orbit for order, orbit in moved.items()
+    }
 
 
 def each(few: TimedRuns, many: TimedRuns) -> float:
@@ -133,8 +135,8 @@ def introduction(point: Rod) -> str:
         f"F, k1, k2, gamma3, gamma1 = {name_of(point)} with all multipliers up to this F, in {MANY - 1} "
         f"steps of {STEP:.0%}, on one element of order p, starting from a cycle of rodsweep. The time per "
         f"cycle is the difference between this run and a run of {FEW} cycles, so that the start does not "
-        f"count. Errors are those of the last cycle. rodsweep's time is the mean of {STRETCH} cycles and "
-        f"includes the choice of the mesh and the error estimate; {AUTO} has neither. Multipliers are "
+        f"count. Errors are those of the last cycle. rodsweep's time is the mean of {TIMED_POINTS} cycles "
+        f"and includes the choice of the mesh and the error estimate; {AUTO} has neither. Multipliers are "
         f"counted beyond {LARGE:g} in modulus, with the trivial one; Gauss collocation adds spurious ones."
     )
 

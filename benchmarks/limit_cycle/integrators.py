@@ -8,7 +8,12 @@ import numpy as np
 import scipy.integrate
 
 from rodsweep.arrays import Array
-from rodsweep.bench.limit_cycle.integrators import CAREFUL, IntegrationTask, IntegratorFamily, by_petsc
+from rodsweep.bench.limit_cycle.integrators import (
+    WAITING_TOLERANCES,
+    IntegrationTask,
+    IntegratorFamily,
+    by_petsc,
+)
 from rodsweep.discretization.stress.rates import rate, rate_jacobian
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 
@@ -85,8 +90,12 @@ FAMILIES = (
     IntegratorFamily("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
     IntegratorFamily("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
     IntegratorFamily("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("SciPy Radau", partial(by_scipy, "Radau"), RADAU, (*RADAU[2:5], *CAREFUL[:4])),
-    IntegratorFamily("SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
+    IntegratorFamily(
+        "SciPy Radau", partial(by_scipy, "Radau"), RADAU, (*RADAU[2:5], *WAITING_TOLERANCES[:4])
+    ),
+    IntegratorFamily(
+        "SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), WAITING_TOLERANCES
+    ),
 )
 """BDF 5 is at the edge of its stability until the tolerance is tight."""
 
@@ -96,5 +105,5 @@ def families() -> tuple[IntegratorFamily, ...]:
     module = installed(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
     return FAMILIES + (
-        (IntegratorFamily(CVODE, partial(by_cvode, module), ladder, CAREFUL),) if module else ()
+        (IntegratorFamily(CVODE, partial(by_cvode, module), ladder, WAITING_TOLERANCES),) if module else ()
     )

@@ -13,12 +13,12 @@ from ..config.document.call_arguments import in_sentences
 from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
-from ..results.file.content import SEAL, attribute_digests, variable_digest
+from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
 from ..results.file.recent import journalled_points, journalled_reasons, put_in, read_unfolded
 from ..results.file.validation import ResultHeader, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
-from ..results.layouts.variables import DIMENSIONS, TYPED, Layout
+from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -83,14 +83,14 @@ def ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Data
 
 def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
     """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
-    digests = json.loads(header.attributes[SEAL])["variables"]
+    digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with reading(path):
         try:
             with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(reason_of(error)) from error
-        found = json.loads(sealed(data).attrs[SEAL])["variables"]
+        found = json.loads(sealed(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
             if found.get(name) != digest:
                 raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
@@ -107,7 +107,7 @@ def sealed(data: xr.Dataset) -> xr.Dataset:
         for name, v in data.variables.items()
     }
     digests = {"attributes": attribute_digests(data.attrs), "variables": variables}
-    return data.assign_attrs({SEAL: json.dumps(digests)})
+    return data.assign_attrs({SEAL_ATTRIBUTE: json.dumps(digests)})
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
@@ -131,5 +131,7 @@ def view_of(data: xr.Dataset, path: Path) -> View:
                 "or draw a selection by xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
-    typed = {str(name): str(v.attrs[TYPED]) for name, v in data.variables.items() if TYPED in v.attrs}
+    typed = {
+        str(name): str(v.attrs[TYPED_UNIT]) for name, v in data.variables.items() if TYPED_UNIT in v.attrs
+    }
     return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.over, typed)

@@ -16,7 +16,7 @@ from ..post.work_precision import draw_work_precision
 from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")
-SHORT = 0.02
+SHORT_RUN_SECONDS = 0.02
 """Duration in seconds below which the time of a run depends on the caches left by the previous run."""
 
 
@@ -111,7 +111,7 @@ def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[T
     first = [_timed(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
     for i in in_turn(rounds):
-        if first[i].median < SHORT:
+        if first[i].median < SHORT_RUN_SECONDS:
             runs[i]()
         seconds[i] += _timed(runs[i]).seconds
     return [TimedRuns(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]

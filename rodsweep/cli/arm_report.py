@@ -28,12 +28,12 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
 
 
 NAMES = "|".join((*UNITS, "segments"))
-NAMED = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
+QUANTITY_IN_SENTENCE = re.compile(rf"^({NAMES})|(?<= and )({NAMES})(?= = | are )")
 """A quantity at the beginning of a sentence, or the second of two that are given."""
 
 
 def as_options(sentence: str) -> str:
     """A sentence in which names of quantities are replaced by names of options."""
-    named = NAMED.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    named = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     named = named.replace("--segments", "--segment")
     return named if named.startswith("--") else f"--{named}"

@@ -73,7 +73,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
     from ..results.file.combination.merge import merge as merge_files
     from ..tasks.running.job import plan_without_solver
-    from .run.running import CONTINUE
+    from .run.running import STOPPED_STATUS
 
     output = result_file(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
@@ -83,7 +83,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
         click.echo(f"{output}: {merged.kernels}")
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
-        sys.exit(CONTINUE)
+        sys.exit(STOPPED_STATUS)
     if not merged.finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 

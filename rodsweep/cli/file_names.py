@@ -6,16 +6,16 @@ from pathlib import Path
 
 from ..errors import InputError
 
-RESULTS = (".h5", ".hdf5", ".nc")
+RESULT_ENDINGS = (".h5", ".hdf5", ".nc")
 """Endings of result files."""
 
 
 def result_file(path: Path) -> Path:
     """The result file of a given name, links resolved; InputError for a directory or another ending."""
-    endings = ", ".join(RESULTS)
+    endings = ", ".join(RESULT_ENDINGS)
     if path.is_dir() or not path.name:
         raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
-    if path.suffix not in RESULTS:
+    if path.suffix not in RESULT_ENDINGS:
         raise InputError(f"{path} is not a name for results, which are HDF5: it must end in {endings}")
     return link_target(path)
 

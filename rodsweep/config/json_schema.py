@@ -19,7 +19,7 @@ from pydantic import BaseModel
 
 from ..model.arm.quantities import LOADS, QUANTITIES, RELATIVE, SECTION_SIDES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .arm.axes import LOAD_AXES, SECTION
+from .arm.axes import ALL_BUT_LOAD, LOAD_AXES
 from .document.refusals import model_of
 from .tasks import CONFIGS
 from .values import Axis, StrictSection
@@ -28,7 +28,7 @@ Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """Pattern of a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in SECTION if not QUANTITIES[name].signed},
+    **{name: {"exclusiveMinimum": 0} for name in ALL_BUT_LOAD if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
     **{name: {"minimum": 0} for name in RELATIVE},
 }

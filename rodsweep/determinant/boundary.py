@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .exponents import EXPONENTS
-from .parameter_plane import PLANE, STENCIL, Plane
+from .parameter_plane import CENTRAL_STENCIL, PLANE, Plane
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +116,7 @@ class Boundary:
         jacobian = np.empty((2, 3))
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
-            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (STENCIL, PLANE.step)
+            stencil, h = self.plane.stencil(v[0], v[1], i) if i < 2 else (CENTRAL_STENCIL, PLANE.step)
             jacobian[1, i] = 0.0
             for offset, weight in stencil:
                 step = np.zeros(3)

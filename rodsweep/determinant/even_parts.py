@@ -16,7 +16,7 @@ import math
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .even_functions import EVEN_FUNCTIONS, EvenFunctions, by_roots, by_series
-from .exponents import EXPONENTS, UNIT, entire_cosh, exponents, modulus
+from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, exponents, modulus
 
 EvenSum = tuple[EvenFunctions, complex, float]
 """(even functions, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is the error
@@ -142,4 +142,4 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
         even, total, noise = by_squares(w, coefficients, blur_M, blur_square)
-    return even, total, UNIT * (math.exp(-even.S) + size / 2 * noise)
+    return even, total, NOISE_UNIT * (math.exp(-even.S) + size / 2 * noise)

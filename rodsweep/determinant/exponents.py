@@ -34,7 +34,7 @@ EXPONENTS = ExponentSettings()
 
 ROUND_OFF = sys.float_info.epsilon
 """Spacing of doubles at 1."""
-UNIT = 2 * ROUND_OFF
+NOISE_UNIT = 2 * ROUND_OFF
 """Unit of the noise of D and of its parts: two relative rounding errors."""
 
 

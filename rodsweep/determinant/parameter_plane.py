@@ -28,7 +28,7 @@ class PlaneSettings:
 PLANE = PlaneSettings()
 
 
-STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
+CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 """Central difference of fourth order: (offset in steps, weight times step) of each value."""
 ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
 """One-sided difference of fourth order, beside the limit of a parameter."""
@@ -115,7 +115,7 @@ class Plane:
         """(stencil, step) of a difference along the axis `which`, 0 or 1, at scaled coordinates."""
         h = self.small_step(x, y, which, PLANE.step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
-        return (STENCIL if self.holds(*back) else ONE_SIDED), h
+        return (CENTRAL_STENCIL if self.holds(*back) else ONE_SIDED), h
 
     def _of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` of arms, with differences of fourth order for the derivatives by x and y."""

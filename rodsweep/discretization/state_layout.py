@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..model.balance import Values
 from ..model.compiled.compilation import compiled_for_vectors
 
-FIELDS = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
+STRESS_NAMES = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stresses in the plane and in space."""
 COMPONENTS = 3
 BENDING = 2
@@ -42,7 +42,7 @@ class StateLayout:
 
     def place(self, name: str, node: int = 0) -> int:
         """Index of the stress `name` at a node in a state; node 0 is the clamp."""
-        return FIELDS[self.components].index(name) * self.nodes + node
+        return STRESS_NAMES[self.components].index(name) * self.nodes + node
 
     def at(self, x: Values, name: str, node: int = 0) -> Values:
         """The stress `name` of states x at one node, shape (...)."""

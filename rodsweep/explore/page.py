@@ -20,9 +20,9 @@ from .solving.solvers import Solvers
 from .state import PageState, from_address, rod_of
 from .stored_results import StoredResults
 
-STOPPED = "Stopped. A change of the rod starts it again."
+STOPPED_SENTENCE = "Stopped. A change of the rod starts it again."
 """Sentence in place of a picture whose solve the user has stopped."""
-IDLE = 900
+IDLE_MILLISECONDS = 900
 """Milliseconds without a change after which the slow questions are asked."""
 
 
@@ -95,7 +95,7 @@ class Page:
                 if kind in OF_TIP:
                     self.contents.beating.let_go()
                 elif kind not in ON_REQUEST:
-                    self.contents.say(kind, STOPPED)
+                    self.contents.say(kind, STOPPED_SENTENCE)
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
@@ -156,10 +156,10 @@ class Page:
         self._show_solving()
 
     def _rest(self) -> None:
-        """Schedules the slow questions after the pause `IDLE`; a further change restarts the pause."""
+        """Schedules the slow questions after `IDLE_MILLISECONDS`; a further change restarts the pause."""
         if self._idle is not None:
             self.document.remove_timeout_callback(self._idle)
-        self._idle = self.document.add_timeout_callback(self._rested, IDLE)
+        self._idle = self.document.add_timeout_callback(self._rested, IDLE_MILLISECONDS)
 
     def _rested(self) -> None:
         self._idle = None

@@ -19,15 +19,15 @@ from .stored import state_of
 
 SHOW_ADDRESS = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Code of the browser that writes the state into the address."""
-SAVE = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
+SAVE_SCRIPT = 'download(new Blob([lines.config], {type: "application/yaml"}), "explore.yaml")'
 DOWNLOAD_FILM = """
 const bytes = Uint8Array.from(atob(film.tags[0]), (letter) => letter.charCodeAt(0))
 if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.gif")
 """
-COPY = "navigator.clipboard.writeText(lines.{})"
+COPY_SCRIPT = "navigator.clipboard.writeText(lines.{})"
 TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks to choose from for the config; the first is the default."""
-FILM = """# the film of the arm:
+FILM_COMMANDS = """# the film of the arm:
 # rodsweep run explore.yaml --set limit_cycle.shapes=48
 # rodsweep plot explore.h5 --what animation -o explore.gif
 """
@@ -61,7 +61,7 @@ class Sharing:
         )
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
-        save.js_on_click(CustomJS(args={"lines": self.lines}, code=read("download.js") + SAVE))
+        save.js_on_click(CustomJS(args={"lines": self.lines}, code=read("download.js") + SAVE_SCRIPT))
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._take)
         copies = [
@@ -69,7 +69,7 @@ class Sharing:
             for what, name in (("config", "yaml"), ("Python lines", "python"))
         ]
         for button, name in zip(copies, ("config", "python"), strict=True):
-            button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY.format(name)))
+            button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY_SCRIPT.format(name)))
         self.film = Div(name="film", tags=[""], visible=False)
         self.film.js_on_change(
             "tags", CustomJS(args={"film": self.film}, code=read("download.js") + DOWNLOAD_FILM)
@@ -107,7 +107,7 @@ class Sharing:
     def _config(self) -> str:
         """The config of the chosen task."""
         text = self._state.yaml(self.task.value)
-        return text + FILM if self.task.value == TASKS[0] else text
+        return text + FILM_COMMANDS if self.task.value == TASKS[0] else text
 
     def _take(self, attribute: str, old: str, new: str) -> None:
         self._loaded(b64decode(new).decode(errors="replace"))

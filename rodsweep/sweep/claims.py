@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable
 
 from ..watch import SolvePosition
-from .handout import OVER, Handout, RankReport
+from .handout import NO_WORK_LEFT, Handout, RankReport
 from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
@@ -125,7 +125,7 @@ class FirstRankClaims:
             while self.waiting and (chunk := self.handout.take(self.waiting[0])) is not None:
                 rank = self.waiting.popleft()
                 comm.send(chunk, dest=rank, tag=ANSWER_TAG)
-                if chunk == OVER:
+                if chunk == NO_WORK_LEFT:
                     self.working.discard(rank)
 
     def _hear_places(self) -> None:
@@ -183,7 +183,7 @@ class OtherRankClaims:
             time.sleep(pause)
             pause = min(ASK_GROWTH * pause, LONGEST_ASK_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
-        if chunk != OVER:
+        if chunk != NO_WORK_LEFT:
             self.comm.send(RankReport(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 

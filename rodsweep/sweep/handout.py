@@ -24,7 +24,7 @@ LARGEST_CHUNK = 1 << 16
 """Largest number of units in a chunk."""
 MIN_UNITS_AHEAD = 4
 """Smallest number of units left, per rank, for a rank to get the next chunk in advance."""
-OVER: IndexRange = (0, 0)
+NO_WORK_LEFT: IndexRange = (0, 0)
 """Answer to a request once no work is left."""
 
 
@@ -40,7 +40,7 @@ class RankReport:
     done: int = 0
     """Units finished since the last report, in `seconds`."""
     seconds: float = 0.0
-    given_back: IndexRange = OVER
+    given_back: IndexRange = NO_WORK_LEFT
     """Units of the chunk left undone."""
     points: int = 0
     """Number of points stored since the last report."""
@@ -89,7 +89,7 @@ class Handout:
         with self.change:
             if self.todo:
                 return self._take(rank)
-            return None if self.held.total() and not self.stopped else OVER
+            return None if self.held.total() and not self.stopped else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
         """A further chunk for a rank before its present chunk is finished; None if few units are left."""
@@ -159,12 +159,12 @@ class Pool(Handout):
         """The next unit for a rank; OVER if no unit is left, None if the rank has to wait."""
         with self.change:
             if self.stopped:
-                return OVER
+                return NO_WORK_LEFT
             wanted = self.open
             if wanted:
                 self.taken[rank] = (wanted[0], wanted[0] + 1)
                 return self.taken[rank]
-            return None if self.taken else OVER
+            return None if self.taken else NO_WORK_LEFT
 
     def take_ahead(self, rank: int) -> IndexRange | None:
         """None: the choice of the next unit depends on the unfinished unit."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..watch import Stopped, reporting_to
 from .claims import FirstRankClaims, OtherRankClaims
-from .handout import GIVE_BACK_AFTER, OVER, Handout, RankReport, chunk_seconds
+from .handout import GIVE_BACK_AFTER, NO_WORK_LEFT, Handout, RankReport, chunk_seconds
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
 from .team import Team
@@ -72,7 +72,7 @@ def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: Stop
     """Solves every unit of `todo`, known to the first rank only; returns when all ranks have finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
-    current point, or within the point if more than `stop.GRACE` seconds are needed.
+    current point, or within the point if more than `stop.GRACE_SECONDS` seconds are needed.
     """
     claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
     with suppress(Stopped), reporting_to(RankListener(claims, stop)):
@@ -105,7 +105,7 @@ class _RankLoop:
         started = time.monotonic()
         busy = 0.0
         chunk = self.claims.claim(RankReport())
-        while chunk != OVER:
+        while chunk != NO_WORK_LEFT:
             began = time.monotonic()
             before = self.points
             at = self._solved_up_to(chunk)

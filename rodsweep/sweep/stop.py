@@ -1,6 +1,6 @@
 """Early stop of a run, requested by a scheduler's warning, a user's kill or Ctrl-C.
 
-A run stops between two points, or within a point with more than `GRACE` seconds left. The listener of long
+A run stops between two points, or within a point with more than `GRACE_SECONDS` left. The listener of long
 solves exchanges messages, reports progress, and ends a solve after a stop request.
 """
 
@@ -20,7 +20,7 @@ PLACE_SECONDS = 0.5
 """Seconds after which a solve counts as long and progress is reported, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """Signals that ask for a stop: `kill` or a scheduler's end, a scheduler's warning, and Ctrl-C."""
-GRACE = 0.3
+GRACE_SECONDS = 0.3
 """Time, in seconds, to finish the current point after a stop request. A longer point is abandoned and solved
 again on resuming: a run has to end within two seconds, and Open MPI's launcher kills after one."""
 STOPPING_MESSAGE = b"\nstopping: all points that are done are kept (Ctrl-\\ ends at once)\n"
@@ -48,7 +48,7 @@ class StopRequest:
         if not self.name:
             return False
         self._since = self._since or time.monotonic()
-        return time.monotonic() - self._since >= GRACE
+        return time.monotonic() - self._since >= GRACE_SECONDS
 
     def listen(self) -> None:
         """Record stop signals instead of ending the process. Only the main thread may call it."""

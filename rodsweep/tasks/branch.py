@@ -113,7 +113,7 @@ def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
     return recorded(variables, point, point.measures, point.errors, names=own)
 
 
-OTHERWISE = {
+FIELD_NAMES = {
     "special_tip_y_max_error": "size_error",
     "special_amplitude_coefficient_error": "coefficient_error",
 }
@@ -129,4 +129,4 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
     }
     known = {*beside, "special_branch", "special_meets"}
     own = [v for v in special_variables("F") if v.name not in known]
-    return beside | recorded(own, point, prefix="special_", names=OTHERWISE)
+    return beside | recorded(own, point, prefix="special_", names=FIELD_NAMES)

@@ -18,7 +18,7 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
 from .running.job import Job, job_of
 
-PLACES = (0.1, 0.5, 0.9)
+CYCLE_PLACES = (0.1, 0.5, 0.9)
 """Forces of the three cycles, as fractions of the length of all ranges with a stable cycle."""
 SHAPES = 12
 """Times per period at which a shape is solved; more cannot be told apart in a small panel."""
@@ -126,7 +126,7 @@ def cycle_forces(ranges: Sequence[Range]) -> list[float]:
     lengths = np.array([high - low for low, high in ranges])
     before = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
-    for place in PLACES:
+    for place in CYCLE_PLACES:
         along = place * before[-1]
         number = min(int(np.searchsorted(before, along, side="right")) - 1, len(ranges) - 1)
         low, high = ranges[number]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..solve.changes.thresholds import Thresholds
     from ..solve.hopf.criticality import Criticality
 
-EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
+FIRST_CROSSINGS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
 """Kinds of crossings whose first is a threshold, each with the variable stored beside F."""
 
 
@@ -64,7 +64,7 @@ class ThresholdsTask(ProvedTask):
 def record(result: "Thresholds", most: int) -> dict[str, Any]:
     """The thresholds of a rod as variables of the file; most: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
-    for kind, number in EVENTS.items():
+    for kind, number in FIRST_CROSSINGS.items():
         place = CROSSING_KINDS.index(kind)
         first = next((crossing for crossing in result.crossings if crossing.kind == place), None)
         for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):

@@ -11,7 +11,7 @@ from ..model.material.laws import LINEAR
 if TYPE_CHECKING:
     from .validity import Assessment  # for annotations only: the module imports solvers
 
-SLENDER = 20.0
+MIN_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
 LOWERED_BY_INERTIA = 0.64
 """Relative decrease of the flutter threshold per radian of phase between drag and velocity by inertia."""
@@ -68,11 +68,11 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 def slenderness(arm: SlenderArm) -> Check:
     """Check of the ratio of length to radius."""
     ratio = arm.si.length / arm.shape.drag_radius
-    fine = ratio >= SLENDER
+    fine = ratio >= MIN_SLENDERNESS
     why = (
         "slender enough for local drag"
         if fine
-        else f"below {SLENDER:g} local drag is rough, and the range of drag wide"
+        else f"below {MIN_SLENDERNESS:g} local drag is rough, and the range of drag wide"
     )
     return Check(_doubt(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 

@@ -8,9 +8,9 @@ from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import solving
-from .relative import ENDS_OF_VARIED, FARTHEST, rod_with
+from .relative import ENDS_OF_VARIED, SEARCH_END, rod_with
 
-REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
+SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
 """Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
 BEYOND_FLUTTER = 2.0
 """Smallest ratio of the last search's end to the first flutter and to the load, for an arm that varies."""
@@ -100,9 +100,9 @@ def span_of(values: list[float | None]) -> Span | None:
     return Span(min(known), max(known), len(known) == len(values)) if known else None
 
 
-def flutter_forces(arm: SlenderArm, drag: Drag, end: float = FARTHEST) -> FlutterForces:
+def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> FlutterForces:
     """All changes of stability of an arm with one drag, up to the force `end`."""
-    thresholds = solve_thresholds(rod_with(arm, drag), replace(REQUEST, F_max=end))
+    thresholds = solve_thresholds(rod_with(arm, drag), replace(SEARCH_REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
@@ -122,7 +122,7 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
     """(end of the search, changes of stability up to the end); the end is beyond first flutter and load."""
     known_load = arm.load is not None and arm.share_of_flutter is None
-    for end in ENDS_OF_VARIED if arm.shape.varies else (FARTHEST,):
+    for end in ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
         found = flutter_forces(arm, drag, end)
         flutter = found.force(ChangeKind.hopf)
         reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)

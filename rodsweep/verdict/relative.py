@@ -23,12 +23,12 @@ from ..model.rod import Rod
 from ..solve.changes.unstable_modes import ChangeKind, end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
-FARTHEST = 1000.0
+SEARCH_END = 1000.0
 """Largest force of the search, in k3/L^2, 25 times flutter of a filament; less for an arm crushed before."""
-NEAR = 200.0
+FIRST_SEARCH_END = 200.0
 """Largest force of a first search, in k3/L^2, which takes half of the time. Few arms flutter at larger
 forces."""
-ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, FARTHEST)
+ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
 """Largest forces of the search for an arm that is not uniform or not of linear material, in k3/L^2 at its
 base, tried in turn: a search far beyond the first flutter, where many modes are unstable, takes up to half a
 minute for each drag."""
@@ -93,7 +93,7 @@ def first_hopf_force(rod: Rod) -> float:
     path = Path(rod, "F")
     first_up_to = _first_up_to if rod.standard else _first_of_varied
     try:
-        for end in (NEAR, FARTHEST) if rod.standard else ENDS_OF_VARIED:
+        for end in (FIRST_SEARCH_END, SEARCH_END) if rod.standard else ENDS_OF_VARIED:
             first = first_up_to(path, end_below_crushing(rod, end))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")

@@ -24,7 +24,7 @@ DIGITS_OF_FACTORS = 2
 """Digits of the factors in remedies, which are rounded conservatively."""
 THINNING_STEPS = 20
 """Maximum iterations for a thickness; ten suffice if inertia of arm and fluid are comparable."""
-AIM = 0.995
+VISCOSITY_TARGET = 0.995
 """Target of the iteration for a thickness: required viscosity over viscosity of the fluid."""
 CLOSE_TO_LIMIT = 0.99
 """The iteration for a thickness stops between this ratio of required to actual viscosity and 1, where the
@@ -113,7 +113,7 @@ def thickness_factor(arm: SlenderArm) -> float:
             applies = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if applies else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
-        factor *= (excess / AIM) ** (-1 / 3)
+        factor *= (excess / VISCOSITY_TARGET) ** (-1 / 3)
     return nan
 
 

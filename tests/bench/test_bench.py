@@ -117,7 +117,7 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
 
 
 def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
-    monkeypatch.setattr("rodsweep.bench.study.SHORT", np.inf)
+    monkeypatch.setattr("rodsweep.bench.study.SHORT_RUN_SECONDS", np.inf)
     order = []
     raced = race([lambda: order.append("a"), lambda: order.append("b") or 7], [2, 1])
     assert order == ["a", "b", "a", "a", "b", "b", "a", "a"]
@@ -126,7 +126,7 @@ def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
 
 
 def test_race_makes_long_runs_once_a_round(monkeypatch):
-    monkeypatch.setattr("rodsweep.bench.study.SHORT", 0.0)
+    monkeypatch.setattr("rodsweep.bench.study.SHORT_RUN_SECONDS", 0.0)
     order = []
     race([lambda: order.append("a"), lambda: order.append("b")], [2, 0])
     assert order == ["a", "b", "a", "a"]

@@ -24,7 +24,7 @@ from rodsweep.bench.sweep.launch import (
     spectrum_case,
     uneven_forces,
 )
-from rodsweep.bench.sweep.study import APART, growth_table, instant_table, measured, sweep_study
+from rodsweep.bench.sweep.study import TWO_COMMANDS, growth_table, instant_table, measured, sweep_study
 from rodsweep.cli.benching import MEASURED
 from rodsweep.errors import EnvironmentIncomplete
 
@@ -64,7 +64,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
-    assert (f"| {APART} | 16 | 1 |" in study.text) == bool(launcher(2))
+    assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher(2))
     assert "| no solver | 400 | 1 |" in study.text
     assert "| resumed | 400 | 1 |" in study.text
     assert growth_table([]) in study.text

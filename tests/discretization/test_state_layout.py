@@ -9,7 +9,7 @@ from rodsweep.discretization.state_layout import StateLayout
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.orbit.symmetry import NONE, REFLECTION, Symmetry
+from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION, Symmetry
 
 FORMS = {
     "Omega eliminated": StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7), mesh(2, 4)),
@@ -53,7 +53,7 @@ def test_a_field_is_known_by_its_name():
 
 
 @EACH
-@pytest.mark.parametrize("symmetry", [NONE, REFLECTION], ids=["none", "reflection"])
+@pytest.mark.parametrize("symmetry", [NO_SYMMETRY, REFLECTION], ids=["none", "reflection"])
 def test_a_symmetry_maps_motions_to_motions(form, symmetry):
     def motion(x):
         V, G = np.empty((2, 3, form.mesh.nodes + 1))

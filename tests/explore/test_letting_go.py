@@ -9,7 +9,7 @@ from PIL import Image
 
 import rodsweep as rs
 from rodsweep.explore.page import AT_ONCE, Page
-from rodsweep.explore.pictures.beating import SECONDS
+from rodsweep.explore.pictures.beating import PERIOD_SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
 from rodsweep.explore.solving.letting_go import filmed
 from rodsweep.explore.solving.questions import SHAPES, Question, Reply, answer_to
@@ -47,9 +47,9 @@ def test_a_fluttering_arm_that_is_let_go_moves_from_there_into_its_cycle():
     assert ends(picture.reached)[:, 1] == pytest.approx(cycle.data["shape_y"].values[:, -1], abs=1e-5)
     assert picture.card.figure.title.text == "Let go at (0.6, 0.5) L: it beats"
     per_shape, period = picture.motion.tags
-    assert period == SECONDS
+    assert period == PERIOD_SECONDS
     # Returns of a motion that is not settled yet differ from the period by some percent.
-    assert per_shape == pytest.approx(SECONDS / 32, rel=0.1)
+    assert per_shape == pytest.approx(PERIOD_SECONDS / 32, rel=0.1)
 
 
 def test_an_arm_below_flutter_that_is_let_go_comes_to_rest():

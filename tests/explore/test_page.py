@@ -10,7 +10,7 @@ from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
-from rodsweep.explore.page import AT_ONCE, STOPPED, Page
+from rodsweep.explore.page import AT_ONCE, STOPPED_SENTENCE, Page
 from rodsweep.explore.pictures.diagram import DiagramCell, cells, in_words
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
@@ -297,6 +297,6 @@ def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
     page.stop()
     contents = page.contents
     for picture in (contents.branches, contents.diagram, contents.beating):
-        assert picture.card.message.text == STOPPED
+        assert picture.card.message.text == STOPPED_SENTENCE
         assert not picture.card.figure.visible
     assert page.contents.sign.text == ""

@@ -17,7 +17,7 @@ from rodsweep.sweep.claims import (
     FirstRankClaims,
     OtherRankClaims,
 )
-from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, RankReport, chunk_seconds
+from rodsweep.sweep.handout import CHUNK_SECONDS, NO_WORK_LEFT, Handout, RankReport, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import SolvePosition
 
@@ -43,7 +43,7 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
             done += range(start, at)
             handout.settle(rank, RankReport(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
         chunk = None if chunks else handout.take(rank)
-        if chunk == OVER:
+        if chunk == NO_WORK_LEFT:
             assert sorted(done) == units
             del held[rank]
         elif chunk:
@@ -78,7 +78,7 @@ def test_idle_rank_waits_while_another_may_give_back():
     assert handout.take(1) == (0, 1)
     assert handout.take(0) is None
     handout.settle(1, RankReport(1, 0.1))
-    assert handout.take(0) == handout.take(1) == OVER
+    assert handout.take(0) == handout.take(1) == NO_WORK_LEFT
 
 
 def test_two_threads_share_the_work_without_losing_any():
@@ -91,7 +91,7 @@ def test_two_threads_share_the_work_without_losing_any():
             handout.settle(rank, report)
             while (chunk := handout.take(rank)) is None:
                 time.sleep(1e-4)
-            if chunk == OVER:
+            if chunk == NO_WORK_LEFT:
                 return
             seen[rank] += range(*chunk)
             report = RankReport(chunk[1] - chunk[0], 1e-5 * (chunk[1] - chunk[0]))
@@ -115,9 +115,9 @@ def test_after_a_stop_nobody_gets_more_and_nobody_waits():
     handout = Handout([(0, 100)], ranks=2)
     assert handout.take(0) == (0, 1)
     handout.stop()
-    assert handout.take(1) == OVER
+    assert handout.take(1) == NO_WORK_LEFT
     handout.settle(0, RankReport(0, 1.0, (0, 1)))
-    assert handout.take(0) == OVER
+    assert handout.take(0) == NO_WORK_LEFT
 
 
 def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
@@ -142,7 +142,7 @@ def test_next_chunk_is_given_ahead_while_plenty_is_left():
     handout.settle(1, RankReport(0, 9.0, (1, 2)))
     assert handout.take(0) == (1, 2)
     handout.settle(0, RankReport(1, 9.0))
-    assert handout.take(0) == OVER
+    assert handout.take(0) == NO_WORK_LEFT
 
 
 class Mail:
@@ -203,15 +203,15 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
         mail.post(REQUEST_TAG, report)
         first.between_points()
     assert first.stop.name == "SIGTERM"
-    assert mail.sent == [(0, 1), "SIGTERM", OVER]
-    assert first.handout.take(0) == OVER
+    assert mail.sent == [(0, 1), "SIGTERM", NO_WORK_LEFT]
+    assert first.handout.take(0) == NO_WORK_LEFT
 
 
 def test_what_the_first_rank_gives_back_when_stopped_is_for_another_run(monkeypatch):
     first = claims(Mail(), [(0, 1)], monkeypatch)
     assert first.claim(RankReport()) == (0, 1)
     first.stop.name = "SIGUSR1"
-    assert first.claim(RankReport(0, 9.0, (0, 1), 1)) == OVER
+    assert first.claim(RankReport(0, 9.0, (0, 1), 1)) == NO_WORK_LEFT
 
 
 @pytest.mark.parametrize("asked", ["the first", "another"])
@@ -227,8 +227,8 @@ def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
     assert mail.sent == ["SIGTERM"]
     mail.post(REQUEST_TAG, RankReport())
     first.between_points()
-    assert mail.sent == ["SIGTERM", OVER]
-    assert first.claim(RankReport()) == OVER
+    assert mail.sent == ["SIGTERM", NO_WORK_LEFT]
+    assert first.claim(RankReport()) == NO_WORK_LEFT
 
 
 def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
@@ -255,8 +255,8 @@ def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():
     mail.post(ANSWER_TAG, (4, 7))
     assert rank.claim(done) == (4, 7)
     assert mail.sent == [done, RankReport(ahead=True)]
-    mail.post(ANSWER_TAG, OVER)
-    assert rank.claim(done) == OVER
+    mail.post(ANSWER_TAG, NO_WORK_LEFT)
+    assert rank.claim(done) == NO_WORK_LEFT
     assert mail.sent[2:] == [done]
 
 

@@ -17,7 +17,7 @@ from rodsweep.post.summary.arm.validity import validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import NOT_KNOWN, VALIDITY
 from rodsweep.results.layouts.phase_diagram import CLASSES
-from rodsweep.tasks.arm.validity import HOPF_POINTS, MOTIONS, ArmValidity
+from rodsweep.tasks.arm.validity import HOPF_POINTS, MOTION_OF_TASK, ArmValidity
 
 SILICONE = {"radius": "5 mm", "young": "100 kPa", "viscosity": "4 Pa s"}
 LENGTHS = ["4 cm", "6 cm", "10 cm", "14 cm"]
@@ -105,7 +105,7 @@ def test_a_search_that_failed_is_no_arm_at_rest():
 def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
     record = {"crossing_kind": np.zeros((1, 3)), "crossing_frequency": np.full((1, 3), np.nan)}
     record |= {"crossing_at": np.full((1, 3), np.nan)}
-    row = MOTIONS["phase_diagram"]
+    row = MOTION_OF_TASK["phase_diagram"]
     flutter, oscillatory = (
         next(v for v, name in CLASSES if name == kind) for kind in ("flutter", "oscillatory")
     )
@@ -140,7 +140,7 @@ def test_the_motion_is_that_of_the_task(task, more):
 
 def test_the_leading_mode_that_oscillates_is_not_always_the_first():
     frequency = np.array([[0, 3, -3], [2, -2, 0], [0, 0, 0]])
-    motion = MOTIONS["spectrum"]({"frequency": frequency}).frequency
+    motion = MOTION_OF_TASK["spectrum"]({"frequency": frequency}).frequency
     assert motion == pytest.approx(np.array([3, 2, np.nan]), nan_ok=True)
 
 

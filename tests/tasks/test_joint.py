@@ -16,7 +16,7 @@ from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalf
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.sweep.handout import OVER, Pool, RankReport
+from rodsweep.sweep.handout import NO_WORK_LEFT, Pool, RankReport
 
 DIAGRAM = """
 task: phase_diagram
@@ -204,7 +204,7 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
             pool.settle(rank, RankReport(results=results))
             held.pop(rank, None)
             chunk = pool.take(rank)
-            if chunk == OVER:
+            if chunk == NO_WORK_LEFT:
                 break
             if chunk is not None:
                 held[rank] = chunk[0]
@@ -229,7 +229,7 @@ def test_unit_that_a_stop_ended_is_wanted_again():
     pool.settle(0, RankReport(given_back=first))
     assert pool.take(0) == first
     pool.stop()
-    assert pool.take(1) == OVER
+    assert pool.take(1) == NO_WORK_LEFT
 
 
 def test_results_of_units_are_read_whole_or_not_at_all(tmp_path):

@@ -213,7 +213,7 @@ def test_frequency_follows_from_tau2():
 def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     """The range's corners bound it: the threshold is monotonic in gamma3."""
     from rodsweep.solve.changes.thresholds import solve_thresholds
-    from rodsweep.verdict.flutter import REQUEST
+    from rodsweep.verdict.flutter import SEARCH_REQUEST
 
     rod = arm()
     flutter = rod.flutter.force(ChangeKind.hopf)
@@ -221,7 +221,7 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):
         found = solve_thresholds(
-            Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), REQUEST
+            Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), SEARCH_REQUEST
         )
         first = next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
         assert flutter.low <= first <= flutter.high

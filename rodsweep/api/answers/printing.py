@@ -20,7 +20,7 @@ MIN_ROWS = 3
 """Number of numbers, or of rows of a list, that are printed even if the lines above are many."""
 PROOFS = ("not certified", "certified")
 """Words for the completeness of the list of an answer."""
-BETWEEN = "+-"
+ERROR_SIGN = "+-"
 """Sign between a number and its error."""
 
 
@@ -133,7 +133,7 @@ def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
         column = printed.rod.column(name)
         if column is not None:
             ((value, error),) = printed.rod.points.pairs(column.name)
-            pairs.append((column.name, value, f"{BETWEEN} {error}" if error else "", _unit(column)))
+            pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", _unit(column)))
     return pairs
 
 
@@ -166,7 +166,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     for column in columns if count else ():
         values, errors = zip(*digits.pairs(column.name)[:room], strict=True)
         added = [column_cells((column.name, _unit(column)), values)]
-        added += [column_cells((BETWEEN, ""), errors)] if any(errors) else []
+        added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(GAP) for cells in added)
         if width > WIDTH:
             break

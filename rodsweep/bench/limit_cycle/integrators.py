@@ -68,11 +68,11 @@ def by_petsc(family: str, variant: str, tolerance: float, leg: IntegrationTask) 
     return run
 
 
-CAREFUL = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
+WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances for waiting until a cycle is reached."""
 DEFAULT = IntegratorFamily(
     "ARKIMEX 5 (default)",
     partial(by_petsc, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),
-    CAREFUL,
+    WAITING_TOLERANCES,
 )

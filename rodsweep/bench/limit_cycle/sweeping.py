@@ -23,7 +23,7 @@ from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ...solve.orbit.orbit_mesh import mesh_of
 from ..study import Contender, JudgedCase, Measurement, grouped, middle, table, tournament
-from .tracking import EXACT, cycle_request, orbit_of
+from .tracking import REFERENCE_TOLERANCE, cycle_request, orbit_of
 
 RODS = (
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
@@ -42,17 +42,17 @@ QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01
 """Ratio of the parameter from one point of the sweep to the next."""
-BEFORE = 6
+WARM_UP_POINTS = 6
 """Number of points solved before the timed points, so that the mesh is already chosen."""
-STRETCH = 22
+TIMED_POINTS = 22
 """Number of timed points: one calibration of the mesh errors, and all points served by it."""
 ACCURACY = 1e-7
 REFERENCE_ACCURACY = 1e-11
 SWEEP = "sweep over "
-COLD = "cold, "
+COLD_START = "cold, "
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
 """Starts without a neighbour, by their values of the option `start`."""
-NOTHING = dict.fromkeys(
+FAILED_COLUMNS = dict.fromkeys(
     ("period_error", "amplitude_error", "estimate", "multipliers", "order", "intervals", "stages"), nan
 )
 """Columns of a failed point."""
@@ -76,7 +76,7 @@ class ExactCycle:
         """The exact cycle of the rod at a nearby force."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
-        orbit = newton(near, EXACT, NewtonWorkspace()).orbit
+        orbit = newton(near, REFERENCE_TOLERANCE, NewtonWorkspace()).orbit
         return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
@@ -106,8 +106,8 @@ def swept(point: Rod, accuracy: float) -> SweptRod:
     workspace = NewtonWorkspace()
     for axis in SWEPT:
         before: Neighbour | None = None
-        for k in range(BEFORE, 0, -1):
-            there = beyond(point, axis, k + STRETCH - 1)
+        for k in range(WARM_UP_POINTS, 0, -1):
+            there = beyond(point, axis, k + TIMED_POINTS - 1)
             before = settled(solve_cycle(there, cycle_request(accuracy), before, axis, workspace)).neighbour
         neighbours[axis] = before
     here = solve_cycle(point, cycle_request(accuracy), along=SWEPT[0])
@@ -122,7 +122,7 @@ def beyond(point: Rod, axis: str, steps: int) -> Rod:
 def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves a stretch of a sweep over an axis; returns its last cycle."""
     start = rod.neighbours[axis]
-    for k in range(STRETCH - 1, -1, -1):
+    for k in range(TIMED_POINTS - 1, -1, -1):
         there = beyond(rod.point, axis, k)
         cycle = settled(solve_cycle(there, cycle_request(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
@@ -150,7 +150,7 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
         Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy)) for axis in SWEPT
     ]
     cold = [
-        Contender(COLD + name, setting, COLD, partial(from_cold, start, accuracy))
+        Contender(COLD_START + name, setting, COLD_START, partial(from_cold, start, accuracy))
         for name, start in COLD_STARTS.items()
     ]
     return warm + cold
@@ -190,8 +190,8 @@ def sweep_introduction() -> str:
     """Description of the measurements for the report."""
     return (
         f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
-        f"{STEP - 1:.0%} between neighbours. The time is the mean of {STRETCH} points up to the rod, with "
-        "the finer meshes that calibrate errors. It includes the straight rod's spectrum, the choice of "
+        f"{STEP - 1:.0%} between neighbours. The time is the mean of {TIMED_POINTS} points up to the rod, "
+        "with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the choice of "
         "the mesh, the verdict, and the error estimate, which is the larger of the estimates for the period "
         "and for the extrema. Errors of the period and of the largest tip y are relative to a solution on "
         f"meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers are counted above rounding. The order "
@@ -202,19 +202,21 @@ def sweep_introduction() -> str:
 
 def milliseconds(m: Measurement) -> float:
     """Time of one point in milliseconds; nan for a failed point."""
-    points = STRETCH if m.method.startswith(SWEEP) else 1
+    points = TIMED_POINTS if m.method.startswith(SWEEP) else 1
     return nan if m.failure else 1e3 * m.seconds / points
 
 
 def sweep_table(measurements: Sequence[Measurement]) -> str:
     """Table with a line for each rod and start, and the medians over the rods."""
     lines = [
-        {"rod": m.case, "way": m.method, "ms": milliseconds(m), "failure": m.failure} | NOTHING | m.extra
+        {"rod": m.case, "way": m.method, "ms": milliseconds(m), "failure": m.failure}
+        | FAILED_COLUMNS
+        | m.extra
         for m in measurements
     ]
     medians = [
         {"rod": "median", "way": way, "ms": middle(map(milliseconds, own)), "failure": ""}
-        | {name: middle(m.extra.get(name, nan) for m in own) for name in NOTHING}
+        | {name: middle(m.extra.get(name, nan) for m in own) for name in FAILED_COLUMNS}
         for (way,), own in grouped(measurements, "method").items()
     ]
     return table(

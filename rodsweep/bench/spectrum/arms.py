@@ -40,7 +40,7 @@ COARSE = 1e-2
 """Accuracy for which the edges of the elements are chosen; the order gives the accuracy."""
 TARGET = 1e-10
 """Error at which the methods are compared."""
-FINER = 16.0
+EXACT_REFINEMENT = 16.0
 """The exact D of an arm has the elements for |w| times this factor."""
 NEWTON_STEPS = 3
 
@@ -66,7 +66,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     determinant = ArmDeterminant(rod)
     roots: list[complex] = own_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEPS):
-        values = [determinant.value_at_level(w, FINER) for w in roots]
+        values = [determinant.value_at_level(w, EXACT_REFINEMENT) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
 

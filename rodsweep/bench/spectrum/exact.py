@@ -13,7 +13,7 @@ from ...solve.spectrum.status import SpectrumStatus
 
 DIGITS = 30
 """Digits of the eigenvalues."""
-GUARD = 25
+GUARD_DIGITS = 25
 """Additional digits of the computation, more than the cancellation in D costs."""
 STEP = mp.mpf(10) ** -12
 """Relative distance of the first two points of the secant method."""
@@ -48,7 +48,7 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     if found.status != SpectrumStatus.ok or not found.certified:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
     roots = []
-    with mp.workdps(DIGITS + GUARD):
+    with mp.workdps(DIGITS + GUARD_DIGITS):
         D = determinant(rod)
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))

@@ -37,7 +37,7 @@ QUICK_CYCLES = 10
 ROUNDS = 3
 CYCLE_ROUNDS = 2
 QUICK_ROUNDS = 1
-APART = "spectra, two commands"
+TWO_COMMANDS = "spectra, two commands"
 """Case of two commands, each with half of the spectra on one rank: the upper bound for two ranks."""
 MEGABYTE = 1e6
 INTRODUCTION = """
@@ -82,7 +82,7 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
     run(cycle_case(place / "first_cycle", 1, SOLVED), 1)
     entries = [(spectra, n, rounds) for n in ranks]
     if len(ranks) > 1:
-        halves = [spectrum_case(place / f"half{i}", APART, count // 2, SOLVED) for i in (0, 1)]
+        halves = [spectrum_case(place / f"half{i}", TWO_COMMANDS, count // 2, SOLVED) for i in (0, 1)]
         apart = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
         entries.append((apart, 1, rounds))
     return interleaved(run, entries + [(cycles, n, cycle_rounds) for n in ranks])

@@ -19,7 +19,7 @@ from ..study import Contender, Measurement, Study, contest, grouped, middle, plu
 
 ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds: fields of ThresholdCase and names in rodsweep's results."""
-ANOTHER = 0.3
+WRONG_THRESHOLD = 0.3
 """Relative distance from the exact value beyond which the result is a different change."""
 
 
@@ -46,7 +46,7 @@ class ThresholdCase:
         if isnan(exact):
             return nan if isnan(found) else inf
         error = abs(found - exact) / exact
-        return error if error < ANOTHER else inf
+        return error if error < WRONG_THRESHOLD else inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import AllPoints, Arrays
-from ...tasks.running.unforeseen import PASSING, UnitNote
+from ...tasks.running.unforeseen import PASSED_ON, UnitNote
 from ...watch import Stopped, reporting_to
 
 NOUN = "halves of curves"
@@ -98,7 +98,7 @@ class JointWork:
     def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, Arrays]]:
         try:
             yield unit, self.together.solve(units, unit)
-        except PASSING:
+        except PASSED_ON:
             raise
         except Exception as error:
             forget_all()

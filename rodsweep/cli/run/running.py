@@ -32,7 +32,7 @@ from .joint import JointDue, JointWork
 from .options import RunOptions
 from .point_work import PointWork
 
-CONTINUE = 75
+STOPPED_STATUS = 75
 """Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues."""
 
 
@@ -45,7 +45,7 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
         flutter = flutter_beforehand(config, team, stop)
         if flutter is None:
             say_stopped(team, stop)
-            return CONTINUE
+            return STOPPED_STATUS
         job = team.on_first(lambda: job_of(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
         return _RankRun(team, job, output, options, stop).run()
@@ -97,7 +97,7 @@ class _RankRun:
             plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 say_stopped(self.team, self.stop)
-                return CONTINUE
+                return STOPPED_STATUS
             self.plan = plan
         missing = self.team.on_first(self._open)
         units, count = self.work.units(missing)
@@ -162,8 +162,8 @@ class _RankRun:
         """Stores the BLAS kernels that compute the points, and prints a warning if there are several."""
         before = self.store.attributes()
         kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
-        if kernels != before.get(provenance.KERNELS):
-            self.store.fold({provenance.KERNELS: kernels})
+        if kernels != before.get(provenance.KERNELS_ATTRIBUTE):
+            self.store.fold({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
@@ -233,7 +233,7 @@ class _RankRun:
         if left or lacks_curves:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"
             click.echo(f"{how}; {ending.kept_words()}, the same command continues")
-            return CONTINUE
+            return STOPPED_STATUS
         if amiss:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return int(amiss)

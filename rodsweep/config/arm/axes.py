@@ -26,7 +26,7 @@ STORED_ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """Quantities that change no parameter: times are proportional to the viscosity, and the densities decide
 whether the model applies."""
-SECTION = (
+ALL_BUT_LOAD = (
     "length",
     "young",
     "radius",
@@ -53,7 +53,7 @@ def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
     sizes: number of values of each given quantity, and of each parameter beside the arm. in_diagram: whether
     the points are the rows of a phase diagram.
     """
-    given = (name for name in (*SECTION, *LOAD_AXES) if name in sizes)
+    given = (name for name in (*ALL_BUT_LOAD, *LOAD_AXES) if name in sizes)
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE]
     if all(name in (STORED_ALONG if in_diagram else AXIS_OF) for name in quantities):
         return ()
@@ -65,7 +65,7 @@ def parameter_of_axis(axis: str) -> str:
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
 
 
-UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+STATUS_OF_ERROR = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
 """Status of a point by the error of its arm."""
 
 
@@ -74,4 +74,4 @@ class UncoveredArm(ValueError):
 
     def __init__(self, error: InputError):
         super().__init__(f"parameters.arm.{error}")
-        self.status = UNCOVERED[type(error)]
+        self.status = STATUS_OF_ERROR[type(error)]

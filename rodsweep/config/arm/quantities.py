@@ -11,7 +11,7 @@ from ...model.arm.quantities import RELATIVE, UNITS
 from ...model.units import in_si, share_of_flutter, split_quantity, written_in
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
-ENDS = ("start", "stop")
+RANGE_ENDS = ("start", "stop")
 """Keys of the ends of a range."""
 
 
@@ -74,7 +74,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
                 f"parameters.arm.{load} and parameters.arm.{name} are both given; give one of them"
             )
         is_range = isinstance(given[load], Mapping)
-        found[name] = {**given[load], **dict(zip(ENDS, shares, strict=True))} if is_range else shares
+        found[name] = {**given[load], **dict(zip(RANGE_ENDS, shares, strict=True))} if is_range else shares
         del found[load]
     return found
 
@@ -133,7 +133,7 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
 def _each(written: Any) -> list[Any]:
     """Values that a user wrote for a quantity; the ends of a range."""
     if isinstance(written, Mapping):
-        return [written.get(end) for end in ENDS]
+        return [written.get(end) for end in RANGE_ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]
 
 

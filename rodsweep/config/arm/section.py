@@ -16,7 +16,7 @@ from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..material import LawName, SectionName
 from ..values import Axis, StrictSection, Values
-from .axes import AXIS_OF, LOAD_AXES, SECTION, UNCOVERED, UncoveredArm
+from .axes import ALL_BUT_LOAD, AXIS_OF, LOAD_AXES, STATUS_OF_ERROR, UncoveredArm
 from .quantities import Drags, Quantities, drags_written, with_relative_load
 from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
@@ -137,7 +137,7 @@ class ArmSection(StrictSection):
     @property
     def given(self) -> dict[str, Axis]:
         """Given quantities by name, the load last."""
-        names = (*SECTION, *LOAD_AXES)
+        names = (*ALL_BUT_LOAD, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
@@ -218,7 +218,7 @@ class ArmSection(StrictSection):
 
     def sections(self) -> Iterator[dict[str, float]]:
         """Yields length, material and cross-section of every arm, in SI units by name, in row-major order."""
-        names = [name for name in SECTION if name in self.given]
+        names = [name for name in ALL_BUT_LOAD if name in self.given]
         for values in product(*(self.given[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
@@ -228,13 +228,13 @@ class ArmSection(StrictSection):
 
         UncoveredArm if no rod covers the arm. A load relative to flutter is left out.
         """
-        section: dict[str, Any] = {name: value for name, value in values.items() if name in SECTION}
+        section: dict[str, Any] = {name: value for name, value in values.items() if name in ALL_BUT_LOAD}
         has_load = loaded and self.load_axis in LOADS
         section |= {str(self.load_axis): values[str(self.load_axis)]} if has_load else NO_LOAD
         (drag,) = drags_written([section.pop("drag", 0.0)])
         try:
             return SlenderArm(**section, **self.material, drag=drag)
         except InputError as error:
-            if type(error) in UNCOVERED:
+            if type(error) in STATUS_OF_ERROR:
                 raise UncoveredArm(error) from None
             raise ValueError(f"parameters.arm.{error}") from None

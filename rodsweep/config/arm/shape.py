@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 OF_MATERIAL = ("segments", "law", "section")
 """Keys of an arm with the content of the section `material` of a dimensionless rod."""
-SHAPES = ("tip_radius", "segments")
+SHAPE_KEYS = ("tip_radius", "segments")
 """Keys of an arm that varies along its length."""
 RUBBER_POISSON = 0.5
 """Poisson's ratio of rubber, which a section needs in order to swell."""
@@ -47,7 +47,7 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 def build_of(arm: "ArmSection") -> Build:
     """Law of all arms, profile of the first with a rod; ValueError for several profiles in a grid."""
     alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
-    if all(getattr(arm, name) is None for name in SHAPES):
+    if all(getattr(arm, name) is None for name in SHAPE_KEYS):
         return alike
     if arm.is_grid and len(set(builds_of(arm))) > 1:
         raise ValueError(
@@ -82,7 +82,7 @@ def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
         raise ValueError(
             "parameters.arm.length has several values, but the segments fix the length; leave it out"
         )
-    for name in SHAPES:
+    for name in SHAPE_KEYS:
         if getattr(arm, name) is not None and "taper" in beside:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
 

@@ -17,13 +17,13 @@ from ..values import named, overflows, short
 
 LARGEST_FILE = 100_000
 """Maximum file size in bytes: about 15,000 numbers, read in a second. Longer lists are CSV files."""
-LONGEST = 1000
+MAX_TEXT_LENGTH = 1000
 """Maximum length of a key or value, in characters."""
-RESULT = b"\x89HDF"
+HDF5_SIGNATURE = b"\x89HDF"
 """First bytes of an HDF5 file, hence of a result file."""
-TABLES = (".csv", ".tsv")
+TABLE_ENDINGS = (".csv", ".tsv")
 """Endings of lists of points and of the tables written by `rodsweep export`."""
-DEEPEST = 20
+MAX_DEPTH = 20
 """Maximum depth of nested lists and mappings."""
 
 
@@ -37,9 +37,9 @@ def read_text(path: Path) -> str:
             data = file.read(LARGEST_FILE + 1)
     except OSError as error:
         raise InputError(f"{where} cannot be read: {error.strerror}") from error
-    if data.startswith(RESULT):
+    if data.startswith(HDF5_SIGNATURE):
         raise InputError(f"{where} is a result file and no config; `rodsweep show` says what it holds")
-    if path.suffix in TABLES:
+    if path.suffix in TABLE_ENDINGS:
         raise InputError(
             f"{where} is a table, not a config; name the table in a config, as parameters.points"
         )
@@ -92,7 +92,7 @@ class _DataOnly(Parser):
             _refuse_scalar(event)
         name = type(event).__name__
         self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
-        if self.depth > DEEPEST:
+        if self.depth > MAX_DEPTH:
             raise InputError("nested deeper than any config is")
         return event
 
@@ -100,7 +100,7 @@ class _DataOnly(Parser):
 def _refuse_scalar(event: ScalarEvent) -> None:
     """Raises InputError for a scalar that can be neither a key nor a value."""
     text = event.value
-    if len(text) > LONGEST:
+    if len(text) > MAX_TEXT_LENGTH:
         raise InputError(f"{short(text)} has {len(text)} characters, more than any value of a config")
     if not text.isprintable():
         raise InputError(f"{short(text)} has characters that cannot be printed")

@@ -20,7 +20,7 @@ from ..material import with_profile_read
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import Axis, axis_of, named, short
-from .parsing import DEEPEST, parse, read_text
+from .parsing import MAX_DEPTH, parse, read_text
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 
 LONGEST_HEADER = 10_000
@@ -144,7 +144,7 @@ def _override(tree: dict, override: str) -> None:
     path = key.strip().split(".")
     if not equals or not all(path):
         raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
-    if len(path) > DEEPEST:
+    if len(path) > MAX_DEPTH:
         raise InputError(f"{where}: nested deeper than any config is")
     node = tree
     for i, name in enumerate(path[:-1]):

@@ -17,14 +17,14 @@ from ..axes import DEFAULTS, NonlinearParameters
 from ..schema import Config
 from ..values import Number, StrictSection
 
-FOLLOWED = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+CONTINUATION_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which branches can be followed: those on which Hopf points depend, so not gamma1."""
 
 
 class BranchOptions(StrictSection):
     """Parameter and range of the branches, and the number of cycles and special points that are stored."""
 
-    along: Literal[FOLLOWED] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
+    along: Literal[CONTINUATION_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
     """Parameter along which branches are followed. All other parameters are axes."""
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
     """Smallest value of the parameter `along`; a branch ends there."""

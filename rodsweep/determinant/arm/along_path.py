@@ -20,8 +20,8 @@ from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY, ArmFamily, eigenvalue_in, value_in
 from .newton import refined_root
 
-CENTRAL = ((1, 0.5), (-1, -0.5))
-FORWARD = ((0, -1.5), (1, 2.0), (2, -0.5))
+CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
+FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Central and forward difference of second order: (offset in steps, weight times step) of each value."""
 
 
@@ -159,12 +159,12 @@ class ArmAlongPath:
         """
         step = min(ROOT_NEWTON.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
-            return FORWARD, step
+            return FORWARD_DIFFERENCE, step
         for _ in range(ARM_DOUBLES.max_shortenings):
             if self._exists(p + step) and self._exists(p - step):
                 break
             step /= ARM_DOUBLES.shortening
-        return CENTRAL, step
+        return CENTRAL_DIFFERENCE, step
 
     def _exists(self, p: float) -> bool:
         """Whether the arm at p is valid."""

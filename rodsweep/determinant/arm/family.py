@@ -26,7 +26,7 @@ from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENTS
 from .value import ARM_VALUE, chain_along, chain_value
 
-LINEAR = math.inf
+LINEAR_SCALE = math.inf
 """Scale of equal spacing."""
 
 
@@ -37,7 +37,7 @@ class ArmFamilySettings(CompiledSettings):
     numbers: tuple[int, ...] = (12, 17, 24, 24, 34)
     """Number of arms of each trial. For 21 of 24 random paths from 0 to three times a load the first trial is
     enough."""
-    scales: tuple[float, ...] = (LINEAR, LINEAR, LINEAR, 0.05, 0.05)
+    scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
     """Scale of the spacing of each trial's arms, in units of the interval. The stretch of compressed rubber
     has branch points at complex forces of the size of its stiffness; beside them a spacing that grows needs
     fewer arms."""
@@ -64,7 +64,7 @@ ARM_FAMILY = ArmFamilySettings()
 class ArmFamily(NamedTuple):
     """Propagators of all arms from p = low to p = high, for |w| <= W, as Chebyshev polynomials in p.
 
-    scale: the polynomials are in log(1 + (p - low)/scale), or in p if scale is `LINEAR`. coefficients:
+    scale: the polynomials are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`. coefficients:
     Chebyshev coefficients, (nodes, elements, terms, ENTRIES).
     """
 
@@ -117,7 +117,7 @@ def _resolves(samples: Samples) -> bool:
 def _places(low: float, high: float, scale: float, number: int) -> Array:
     """The path variables of the arms of an interval, (number,), increasing; both ends exactly."""
     t = (chebyshev_points(number) + 1) / 2
-    if scale < LINEAR:
+    if scale < LINEAR_SCALE:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
     # Beyond the interval, by rounding, the model may have no arm.
     return np.minimum(low + (high - low) * t, high)
@@ -148,7 +148,7 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
     """Fills the propagators at p and their derivatives by p, both (elements, terms, 16)."""
     half = (family.high - family.low) / 2
     t = (p - (family.low + family.high) / 2) / half
-    if family.scale < LINEAR:
+    if family.scale < LINEAR_SCALE:
         whole = math.log1p(2 * half / family.scale)
         t = 2 * math.log1p((p - family.low) / family.scale) / whole - 1
         half = (p - family.low + family.scale) * whole / 2

@@ -16,7 +16,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
-from ..exponents import UNIT
+from ..exponents import NOISE_UNIT
 from ..parameter_path import ValueAlong
 from ..value import DeterminantValue
 from .elements.minor_rates import ENTRIES, SM
@@ -204,7 +204,7 @@ def chain_size(w: complex, W: float, polynomials: Array) -> float:
 def chain_value(w: complex, W: float, polynomials: Array) -> DeterminantValue:
     """D and D' = dD/dw times exp(-S), from propagators for |w| <= W, shape (elements, terms, ENTRIES)."""
     D, D_w, _, S = _swept(w / W, W, polynomials, polynomials[:0])
-    return DeterminantValue(D, D_w, S, (len(polynomials) + 2) * UNIT)
+    return DeterminantValue(D, D_w, S, (len(polynomials) + 2) * NOISE_UNIT)
 
 
 @compiled
@@ -214,4 +214,4 @@ def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> Val
     Both have the shape (elements, terms, ENTRIES) and hold for |w| <= W.
     """
     D, D_w, D_p, S = _swept(w / W, W, polynomials, changes)
-    return ValueAlong(D, D_w, D_p, S, (len(polynomials) + 2) * UNIT)
+    return ValueAlong(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)

@@ -23,7 +23,7 @@ from ..parameter_path import CoefficientDerivatives
 from ..value import branches, scaled_determinant
 from .discs import DISCS, bound_on_bidisc, centre_at
 
-STILL = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+ZERO_CHANGES = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Zero changes along a path, for bounds of a single rod."""
 
 
@@ -84,7 +84,7 @@ def node_at(w: complex, coefficients: Coefficients) -> ReachNode:
     if not room > 0:
         return ReachNode(w, D, 0j, 0.0)
     L = D_w / D
-    centre = centre_at(w, coefficients, STILL, S)
+    centre = centre_at(w, coefficients, ZERO_CHANGES, S)
     best = 0.0
     rho = radius(w, coefficients, L, S)
     for _ in range(2):

@@ -32,7 +32,7 @@ from ..nodal_rod import NodalRod, nodal_rod
 from ..state_layout import COMPONENTS, StateLayout, plane_layout
 from .law_at_rest import LawAtRest, law_at_rest
 
-MIRROR = np.array([1.0, -1.0, -1.0])
+MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of the components of a stress or a velocity under reflection in the straight rod's axis."""
 
 
@@ -77,7 +77,7 @@ class MixedForm:
     @cached_property
     def parity(self) -> Array:
         """Diagonal of R, which maps X to its mirror image; +-1, (unknowns,). R X solves the equations too."""
-        signs = np.repeat(MIRROR[:, None], self.mesh.nodes + 1, axis=1)
+        signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.nodes + 1, axis=1)
         return self.layout.state(signs, signs)
 
     @cached_property

@@ -28,7 +28,7 @@ class StressFormSettings:
 
 STRESS_FORM = StressFormSettings()
 
-OMEGA = (2,)
+OMEGA_COMPONENT = (2,)
 """Index of Omega among the components of V, as a tuple."""
 
 
@@ -48,7 +48,7 @@ class StressForm(RodOnMesh):
 
     @property
     def kept(self) -> tuple[int, ...]:
-        return OMEGA if self.omega_unknown else ()
+        return OMEGA_COMPONENT if self.omega_unknown else ()
 
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)

@@ -13,7 +13,7 @@ from ..scales import PictureAxis
 from ..solving.letting_go import Tip
 from .card import NEUTRAL, POINT, STABLE, Card, columns, empty_source, new_figure, sentence_of, show_range
 
-SECONDS = 2.0
+PERIOD_SECONDS = 2.0
 """Duration of one period on the screen."""
 ENDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
 """Words for ends of motions; for all further ends the sentence of the status is shown."""
@@ -52,7 +52,7 @@ class BeatingPicture:
         """Code that the browser runs once when the page is ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, name) for name in names}
-        more = {"period": SECONDS, "figure": self.card.figure, "colour": STABLE}
+        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE}
         return CustomJS(args=sources | more, code=read("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
@@ -102,7 +102,7 @@ class BeatingPicture:
         shape_x = found["shape_x"] * factor
         shape_y = found["shape_y"] * factor
         turn = found["period"] if len(shape_x) else step * found["frames"]
-        self.motion.tags = [SECONDS * step / turn, SECONDS]
+        self.motion.tags = [PERIOD_SECONDS * step / turn, PERIOD_SECONDS]
         self.reached.data = source_of(shape_x, shape_y)
         self.motion.data = source_of(x, y)
         self.path.data = columns(x=x[:, -1], y=y[:, -1])

@@ -23,7 +23,7 @@ from .card import (
 COLOURS = {1: STABLE, 0: UNSTABLE, -1: NEUTRAL}
 NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
 """Single cycles of an answer that has branches only."""
-SIDES = 0.03
+SIDE_MARGIN = 0.03
 """Relative margin beside single cycles, whose dots would be cut at the edge of the figure."""
 DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 
@@ -80,7 +80,7 @@ class BranchPicture:
         if pieces or len(cycles["F"]):
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
-            margin = SIDES if len(cycles["F"]) else 0.0
+            margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
             show_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
             show_range(self.card.figure.y_range, *limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label

@@ -17,7 +17,7 @@ BOUNDARIES = {"double": NEUTRAL, "onset": NEUTRAL, "hopf": UNSTABLE}
 """Colours of boundaries; areas have the colours of stable states."""
 OF_CYCLES = {"fold": ("folds of cycles", FOLD, "solid"), "torus": ("torus points", TORUS, "dashed")}
 """Words, colour and dash of curves of special points of cycles."""
-DEEPEST = 6
+DARKEST_COUNT = 6
 """Number of unstable modes from which the colour stays the same."""
 
 
@@ -58,7 +58,7 @@ def shade(count: int) -> tuple[str, float]:
     """Colour and opacity for a number of unstable modes."""
     if count in (CRUSHED, NOT_KNOWN):
         return NEUTRAL, 0.55 if count == CRUSHED else 0.25
-    return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DEEPEST) / DEEPEST)
+    return (STABLE, 0.18) if count == 0 else (UNSTABLE, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
 
 
 def in_words(count: int) -> str:

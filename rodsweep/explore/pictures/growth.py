@@ -21,11 +21,11 @@ from .card import (
 )
 from .numbers import IN_SI
 
-NAMED = ("F_onset", "F_hopf", "F_restabilization")
+NAMED_THRESHOLDS = ("F_onset", "F_hopf", "F_restabilization")
 """Thresholds named above the picture."""
 OF_ROD = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
 OF_ARM = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
-"""Words for `NAMED`, of a rod over F and of an arm over the pressure."""
+"""Words for `NAMED_THRESHOLDS`, of a rod over F and of an arm over the pressure."""
 KINDS = {
     "onset": ("oscillates from F*", NEUTRAL),
     "hopf": ("flutters, Hopf point F**", UNSTABLE),
@@ -97,7 +97,7 @@ def named(found: dict[str, Any], load: PictureAxis) -> str:
     words = OF_ARM if IN_SI["F_hopf"] in found else OF_ROD
     parts = [
         word.format(load.factor * float(found[name]))
-        for word, name in zip(words, NAMED, strict=True)
+        for word, name in zip(words, NAMED_THRESHOLDS, strict=True)
         if np.isfinite(found[name])
     ]
     proved = "certified" if found["certified"] else "not certified"

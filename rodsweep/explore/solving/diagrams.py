@@ -33,7 +33,7 @@ NOT_KNOWN = -1
 """Value of `unstable_count` where the number is not known."""
 CRUSHED = -2
 """Value of `unstable_count` for a load that crushes the rod."""
-SPAN = 10.0
+SPAN_RATIO = 10.0
 """Ratio of the largest value of the second parameter to the present value, and of the present to the
 smallest."""
 TAPERS = (0.4, 1.6)
@@ -82,7 +82,7 @@ def span(state: PageState, rows: int = ROWS) -> np.ndarray:
     value = number(state.rod[state.second])
     if not (0 < value < np.inf):
         raise InputError(f"{state.second} = {value:g} has no diagram; it must be finite and above 0")
-    return np.geomspace(value / SPAN, value * SPAN, rows)
+    return np.geomspace(value / SPAN_RATIO, value * SPAN_RATIO, rows)
 
 
 def _fixed(state: PageState) -> dict[str, Any]:

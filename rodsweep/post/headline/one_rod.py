@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
-from ..summary.errors import ABSOLUTE, RELATIVE, errors_of
+from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, errors_of
 from ..summary.ranges import error_text, number_and_error, rounded
 from ..tables import Tables
 from ..tables.columns import Column
@@ -49,7 +49,7 @@ class Digits:
         if name in self._beside:
             return self._beside[name]
         known = errors_of(self._values, name)
-        has_error = any(table.get(name, "") in self.columns for table in (RELATIVE, ABSOLUTE))
+        has_error = any(table.get(name, "") in self.columns for table in (RELATIVE_ERRORS, ABSOLUTE_ERRORS))
         return known if has_error else np.where(known > 0, known, np.nan)
 
     def pairs(self, name: str) -> list[tuple[str, str]]:
@@ -69,7 +69,7 @@ class Digits:
     def _rounding(self, error: str) -> Array:
         """Largest rounding of the printed numbers with an error, (rows,): relative where the error is."""
         largest = np.zeros_like(self._values[error])
-        for table, relative in ((ABSOLUTE, False), (RELATIVE, True)):
+        for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
             for name in (name for name, known in table.items() if known == error and name in self.columns):
                 values = self._values[name]
                 printed = np.array([float(text) if text else np.nan for text in self.texts(name)])

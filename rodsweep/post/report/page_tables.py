@@ -8,7 +8,7 @@ import numpy as np
 from ...results.file.view import View
 from ..tables import Table, Tables
 from ..tables.columns import Column
-from ..tables.contents import FIRST, POINTS
+from ..tables.contents import DEFAULT_TABLE, POINTS
 
 MAX_ROWS = 60
 """Largest number of rows of a table on the page; `rodsweep export` writes all."""
@@ -42,7 +42,7 @@ class PageTable:
 def page_tables(view: View) -> Iterator[PageTable]:
     """Yields the tables of a result that have a row: the task's own table, the points, all further lists."""
     tables = Tables(view)
-    names = dict.fromkeys((FIRST[view.task], POINTS, *tables.contents.tables))
+    names = dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables))
     for name in names:
         if name in tables.contents.tables:
             table = tables.table(name)

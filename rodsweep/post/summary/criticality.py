@@ -6,7 +6,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...results.layouts.variables import ANGULAR
+from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .errors import errors_of
@@ -20,7 +20,7 @@ NAMED_RODS = 8
 """Largest number of rods with subcritical Hopf points that are listed."""
 NUMBERS = {
     "crossing_F": "F, k3/L^2",
-    "crossing_frequency": f"frequency, {ANGULAR}",
+    "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
     "landau_real": "Re c, 1/(tau2 L^2)",
     "landau_imag": "Im c, 1/(tau2 L^2)",
     "growth_slope_real": "Re dw/dF, L^2/(k3 tau2)",

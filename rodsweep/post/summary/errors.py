@@ -6,9 +6,9 @@ import numpy as np
 
 from .ranges import span
 
-EIGENVALUE = 1e-9
+EIGENVALUE_ERROR = 1e-9
 """Relative error of the eigenvalue of the straight rod in results of limit cycles: its solver's tolerance."""
-RELATIVE = {
+RELATIVE_ERRORS = {
     "period": "period_error",
     "frequency": "period_error",
     "period_tau1": "period_error",
@@ -23,7 +23,7 @@ RELATIVE = {
     "longitudinal_rate": "longitudinal_error",
 }
 """Variables with a stored relative error, and the name of the error."""
-ABSOLUTE = {
+ABSOLUTE_ERRORS = {
     "growth_rate": "error_estimate",
     "frequency": "error_estimate",
     "numerical_abscissa": "abscissa_error",
@@ -61,7 +61,7 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of a variable, in its shape; numpy warns if a value is infinite."""
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
-        return EIGENVALUE * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
+        return EIGENVALUE_ERROR * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
     if name in POWERS and "amplitude_error" in v:
         return values * power_error(v, fluctuation=name.endswith("rms"))
     if name in EXTREMA and "extrema_error" in v:
@@ -71,9 +71,9 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
         # The growth is quadratic near its maximum, and is 1 at t = 0.
         rise = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
         return values * np.sqrt(v["growth_error"] / rise)
-    if RELATIVE.get(name, "") in v:
-        return values * v[RELATIVE[name]]
-    return v[ABSOLUTE[name]] if ABSOLUTE.get(name, "") in v else np.zeros_like(values, float)
+    if RELATIVE_ERRORS.get(name, "") in v:
+        return values * v[RELATIVE_ERRORS[name]]
+    return v[ABSOLUTE_ERRORS[name]] if ABSOLUTE_ERRORS.get(name, "") in v else np.zeros_like(values, float)
 
 
 def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
-from ...results.layouts.variables import ANGULAR
+from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .arm.arm import region_of_arms
@@ -20,7 +20,7 @@ OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 """Words for outcomes; unlisted statuses are words already."""
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
-    ("frequency", "frequency", ANGULAR),
+    ("frequency", "frequency", ANGULAR_UNIT),
     ("largest y of the tip", "tip_y_max", "L"),
     ("largest Floquet multiplier", "multiplier", ""),
 )

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.rods import estimates_counts, has_covering
-from ...results.layouts.variables import ANGULAR
+from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .ranges import number_and_error, span
@@ -69,7 +69,7 @@ def eigenvalue_table(view: View) -> TextTable | None:
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)
         if np.isfinite(growth)
     ]
-    headings = ("mode", "growth rate\n1/tau2", "+-", f"frequency\n{ANGULAR}", "+-")
+    headings = ("mode", "growth rate\n1/tau2", "+-", f"frequency\n{ANGULAR_UNIT}", "+-")
     return TextTable(headings, tuple(rows)) if rows else None
 
 

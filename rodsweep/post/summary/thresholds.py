@@ -8,21 +8,25 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...results.layouts.variables import ANGULAR
+from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span
 from .summary_lines import SummaryLines, TextTable, at_point, completeness, in_brackets
 
 EVENTS = {
-    "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR),
-    "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR),
+    "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
+    "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR_UNIT),
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
 """(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
 ENDED_EARLY = "ended_early"
 """Status of a search that ended before the requested force."""
-FIRSTS = {"onset": "oscillates from", "hopf": "beats from", "restabilization": "stable again from"}
+FIRST_CROSSING_WORDS = {
+    "onset": "oscillates from",
+    "hopf": "beats from",
+    "restabilization": "stable again from",
+}
 """Words before the force of the first crossing of a kind, for a single rod."""
 
 
@@ -75,7 +79,7 @@ def crossing_lines(view: View) -> list[str]:
     v = view.of_point(0)
     end = f"F = {v['F_end']:.15g}{not_known_beyond(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
-        firsts = {word: v[f"F_{event}"] for event, word in FIRSTS.items()}
+        firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
         words = ", ".join(f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F))
         count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
@@ -97,7 +101,14 @@ def crossing_table(view: View) -> TextTable | None:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         rows.append((kind, *F, *rates, str(after) if after >= 0 else "not known"))
     unit = PARAMETERS["F"].unit
-    headings = ("kind", f"F\n{unit}", "+-", "growth rate\n1/tau2", f"frequency\n{ANGULAR}", "unstable\nabove")
+    headings = (
+        "kind",
+        f"F\n{unit}",
+        "+-",
+        "growth rate\n1/tau2",
+        f"frequency\n{ANGULAR_UNIT}",
+        "unstable\nabove",
+    )
     return TextTable(headings, tuple(rows)) if rows else None
 
 

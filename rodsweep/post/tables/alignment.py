@@ -12,7 +12,7 @@ MIN_PROSE = 24
 """Smallest width of a last column of prose; narrower prose has a line of its own below the row."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
 NO_BREAK = "\xa0"
-GLUED = re.compile(r" = \S+| \(\+- [^)]*\)")
+UNBREAKABLE = re.compile(r" = \S+| \(\+- [^)]*\)")
 """Parts of a sentence that stay on one line: a value beside its name, an error beside its number."""
 Line = tuple[str, ...]
 
@@ -28,7 +28,7 @@ def refolded(line: str, width: int = WIDTH) -> str:
     A name and its value, and a number and its error, stay on one line. Names of files are not broken.
     """
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    whole = GLUED.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
+    whole = UNBREAKABLE.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
     lines = textwrap.wrap(
         whole, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )

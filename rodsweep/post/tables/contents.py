@@ -41,7 +41,7 @@ NAMES = {
     ("transient",): "motion",
 }
 """Names of tables, by dimensions without the dimensions of the points."""
-FIRST = {
+DEFAULT_TABLE = {
     "spectrum": "modes",
     "modes": "modes",
     "thresholds": POINTS,
@@ -127,7 +127,7 @@ def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str
     refuse_unknown(view.path, columns, every, "")
     if lists:
         return lists[0]
-    return POINTS if columns else FIRST[view.task]
+    return POINTS if columns else DEFAULT_TABLE[view.task]
 
 
 def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str) -> None:

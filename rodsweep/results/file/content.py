@@ -16,7 +16,7 @@ import numpy as np
 
 from ...config.values import named
 
-SEAL = "seal"
+SEAL_ATTRIBUTE = "seal"
 """Name of the attribute with the digests."""
 USER_PREFIX = "user_"
 """Prefix of the names of variables and attributes of the user."""
@@ -25,7 +25,7 @@ DIGITS = 16
 BOOKKEEPING = frozenset(
     {
         "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "DIMENSION_LABELS", "_Netcdf4Dimid",
-        "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL,
+        "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL_ATTRIBUTE,
     }
 )  # fmt: skip
 """Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions."""
@@ -78,9 +78,9 @@ def digests_of(file: h5py.File) -> Digests:
 
 def refuse_changed(file: h5py.File) -> None:
     """Raises ValueError, as a clause, if the content of an open file differs from the sealed content."""
-    if SEAL not in file.attrs:
+    if SEAL_ATTRIBUTE not in file.attrs:
         raise ValueError("its seal is gone")
-    sealed = json.loads(file.attrs[SEAL])
+    sealed = json.loads(file.attrs[SEAL_ATTRIBUTE])
     found = digests_of(file)
     for noun in ("attribute", "variable"):
         before = sealed[f"{noun}s"]

@@ -21,7 +21,7 @@ LONGEST_ATTRIBUTE = 60_000
 """Largest number of characters of an attribute; HDF5 allows 64 kB."""
 RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 """Attributes with the work of each rank of the last run."""
-KERNELS = "blas_kernels"
+KERNELS_ATTRIBUTE = "blas_kernels"
 """Attribute with the BLAS kernels that computed the points of a file in all runs, a kernel a line, named by
 `rodsweep.solve.backend.blas_kernel`."""
 FAILURE_REASONS = "failure_reasons"
@@ -57,7 +57,7 @@ def provenance() -> dict[str, str]:
 
 def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
     """Kernels named by the attributes of a file."""
-    return str(attributes.get(KERNELS, KERNEL_NOT_RECORDED)).splitlines()
+    return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
 
 def united_kernels(*several: Iterable[str]) -> str:
@@ -106,7 +106,7 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a merged file about the computation of the points, from the attributes of the sources."""
     history: dict[str, Any] = {
         "shard": "",
-        KERNELS: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
+        KERNELS_ATTRIBUTE: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
     }
     history |= united_reasons(*(str(each.get(FAILURE_REASONS, "")) for each in several))
     runs = [attributes for attributes in several if "ranks" in attributes]

@@ -15,7 +15,7 @@ from typing import BinaryIO
 
 import h5py
 
-from .content import SEAL, digests_of
+from .content import SEAL_ATTRIBUTE, digests_of
 
 FRAME_HEAD = b"\nrodsweep seal 2 "
 """First bytes of the checksum, behind HDF5's end of the file."""
@@ -42,7 +42,7 @@ class BrokenSeal(ValueError):
 def seal(path: Path) -> None:
     """Adds new seals to a closed file that rodsweep has just written."""
     with h5py.File(path, "r+") as file:
-        file.attrs[SEAL] = json.dumps(digests_of(file))
+        file.attrs[SEAL_ATTRIBUTE] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:
         pieces = _large_pieces(file)
     with path.open("r+b") as stream:

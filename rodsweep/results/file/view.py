@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
-from ..layouts.variables import TYPED
+from ..layouts.variables import TYPED_UNIT
 from .content import is_users
 from .recent import journalled_points, journalled_reasons, put_in, read_unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
@@ -177,7 +177,7 @@ def _view(path: Path) -> View:
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
         stored = (name for name in ALL_QUANTITIES if name in file)
-        typed = {name: str(file[name].attrs[TYPED]) for name in stored if TYPED in file[name].attrs}
+        typed = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
     layout = header.layout
     attributes = header.attributes | journalled_reasons(header)
     return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)

@@ -24,7 +24,7 @@ from ...model.arm.neglected import Validity
 from ...model.arm.quantities import ALL_QUANTITIES, LOADS, RELATIVE, SCALE_OF, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
-from .variables import ANGULAR, DIMENSIONS, Filled, Layout, Variable, real, word
+from .variables import ANGULAR_UNIT, DIMENSIONS, Filled, Layout, Variable, real, word
 
 SI_SUFFIX = "_si"
 """Suffix of the name of a variable in SI units."""
@@ -55,7 +55,7 @@ NO_UNIT = SIUnit()
 SI_UNITS = {
     "tau2": SIUnit("s", ("tau2",)),
     "1/tau2": SIUnit("1/s", (), ("tau2",)),
-    ANGULAR: SIUnit(HERTZ, (), ("tau2",)),
+    ANGULAR_UNIT: SIUnit(HERTZ, (), ("tau2",)),
     "L": SIUnit("m", ("length",)),
     "k3/L": SIUnit("J", ("force_scale", "length")),
     "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
@@ -218,7 +218,7 @@ def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray
     return found
 
 
-def in_si(
+def si_record(
     record: Mapping[str, Any],
     index: int | NDArray[np.int64],
     layout: Layout,

@@ -6,17 +6,17 @@ from typing import Any
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .rods import with_certified_meaning
 from .thresholds import MORE_CROSSINGS, search_variables
-from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
+from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
 
-FORCE = PARAMETERS["F"].unit
-SLOPE = "L^2/(k3 tau2)"
+FORCE_UNIT = PARAMETERS["F"].unit
+SLOPE_UNIT = "L^2/(k3 tau2)"
 """Unit of the slope dw/dF of an eigenvalue."""
-LANDAU = "1/(tau2 L^2)"
+LANDAU_UNIT = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
 ALONG = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
 """Variables of a search for crossings that a search for Hopf points lacks: its growth rate is 0."""
-SIDES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
+CRITICALITY_WORDS = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
 """Stored numbers and words of the criticality: the sign of Re c; NaN if c is not known."""
 
 
@@ -27,17 +27,17 @@ def criticality_variable(name: str, decided_by: str) -> Variable:
         "unstable; subcritical: cycles exist where the pair is stable; "
         f"undecided: the sign of {decided_by} is within its error"
     )
-    return Variable(name, "<f8", nan, "1", meaning, flags=SIDES)
+    return Variable(name, "<f8", nan, "1", meaning, flags=CRITICALITY_WORDS)
 
 
 NORMAL_FORM = along_dimension(
     ALONG,
-    real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency"),
-    real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the Hopf point"),
-    real("growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair at the Hopf point"),
+    real("crossing_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of crossing_frequency"),
+    real("growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
+    real("growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair at the Hopf point"),
     real("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF"),
-    real("landau_real", LANDAU, "real part of the Landau coefficient c, for tip y = Re Z"),
-    real("landau_imag", LANDAU, "imaginary part of the Landau coefficient c"),
+    real("landau_real", LANDAU_UNIT, "real part of the Landau coefficient c, for tip y = Re Z"),
+    real("landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
     real("landau_error", "1", "estimate of the relative error of the complex c"),
     real(
         "amplitude_coefficient",
@@ -48,7 +48,7 @@ NORMAL_FORM = along_dimension(
     real("amplitude_coefficient_error", "1", "estimate of the relative error of amplitude_coefficient"),
     real(
         "frequency_slope",
-        SLOPE,
+        SLOPE_UNIT,
         "coefficient b: to leading order the angular frequency of the cycles is that of the Hopf point "
         "+ b (F - F_H)",
     ),
@@ -65,7 +65,7 @@ def layout(config: dict[str, Any]) -> Layout:
     search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
     after = [v.name for v in search].index("unstable_after") + 1
     ends = (
-        real("F_end", FORCE, "largest F of the search"),
+        real("F_end", FORCE_UNIT, "largest F of the search"),
         integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
     variables = with_certified_meaning(

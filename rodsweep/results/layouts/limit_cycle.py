@@ -9,7 +9,7 @@ from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONA
 from .rods import has_covering, optional_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
-    ANGULAR,
+    ANGULAR_UNIT,
     MESH,
     NEEDS_NEW_SOLVE,
     NOT_KNOWN,
@@ -24,7 +24,7 @@ from .variables import (
     word,
 )
 
-POWER = "k3/(L tau2)"
+POWER_UNIT = "k3/(L tau2)"
 """Unit of a power."""
 STORED_MULTIPLIERS = 6
 """Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.number`; NaN stands for a
@@ -35,11 +35,11 @@ SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cyc
 """Knowledge of a second stable state, besides the state in which a point ended."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
-    real("frequency", ANGULAR, "angular frequency of the limit cycle, 2 pi/period"),
+    real("frequency", ANGULAR_UNIT, "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
     real(
         "linear_frequency",
-        ANGULAR,
+        ANGULAR_UNIT,
         "angular frequency of the leading mode of the straight rod, imaginary part of the eigenvalue",
     ),
     word(
@@ -58,10 +58,10 @@ CYCLE = (
     real("amplitude_error", "1", "estimate of the relative error of tip_y_max"),
     real("extrema_error", "1", "estimate of the error of the tip's other extrema, in units of tip_y_max"),
     real("harmonic_amplitude", "L", "amplitude of a harmonic of the tip's deflection y", "harmonic"),
-    real("injection_mean", POWER, "power of the follower force, mean over a period"),
-    real("injection_rms", POWER, "power of the follower force, root mean square of its fluctuation"),
-    real("dissipation_mean", POWER, "power lost to the fluid, mean over a period"),
-    real("dissipation_rms", POWER, "power lost to the fluid, root mean square of its fluctuation"),
+    real("injection_mean", POWER_UNIT, "power of the follower force, mean over a period"),
+    real("injection_rms", POWER_UNIT, "power of the follower force, root mean square of its fluctuation"),
+    real("dissipation_mean", POWER_UNIT, "power lost to the fluid, mean over a period"),
+    real("dissipation_rms", POWER_UNIT, "power lost to the fluid, root mean square of its fluctuation"),
     real("energy_imbalance", "1", "relative difference of energy injected and dissipated over a period"),
     real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
     real("multiplier_error", "1", "estimate of the absolute error of multiplier"),
@@ -83,8 +83,8 @@ TIP_UNITS = {"x": "L", "y": "L", "theta": "rad"}
 TIP = tuple(real(f"tip_{name}", units, f"{name} of the tip", "sample") for name, units in TIP_UNITS.items())
 ENERGY = (
     real("energy", "k3/L", "elastic energy", "sample"),
-    real("injection", POWER, "power of the follower force", "sample"),
-    real("dissipation", POWER, "power lost to the fluid", "sample"),
+    real("injection", POWER_UNIT, "power of the follower force", "sample"),
+    real("dissipation", POWER_UNIT, "power lost to the fluid", "sample"),
 )
 SHAPE = tuple(
     real(f"shape_{name}", units, f"{name} along the rod", "shape", "u") for name, units in TIP_UNITS.items()
@@ -119,8 +119,8 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
             word("hopf_kind", f"change of stability {at} as the parameter hopf_along grows", kinds),
             *(real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {at}") for p in HOPF_ALONG if p in names),
             real("hopf_error", "1", f"estimate of the relative error of the parameter hopf_along {at}"),
-            real("hopf_frequency", ANGULAR, "angular frequency of the pair that crosses"),
-            real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency"),
+            real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair that crosses"),
+            real("hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"),
             integer(
                 "hopf_unstable_after",
                 f"number of modes with positive growth rate beyond the Hopf point{NOT_KNOWN}",

@@ -5,12 +5,12 @@ from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
-from .criticality import LANDAU, SLOPE, criticality_variable
+from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import MORE_CROSSINGS, search_variables
 from .variables import (
-    ANGULAR,
+    ANGULAR_UNIT,
     NEEDS_NEW_SOLVE,
     NEEDS_NO_SOLVE,
     Layout,
@@ -159,7 +159,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         integer("curve_number", "number of the curve, from 1", "curve_point"),
         word("curve_kind", kind, CURVE_KINDS, "curve_point"),
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in units),
-        real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
+        real("curve_frequency", ANGULAR_UNIT, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
         *end_variables("curve", CURVE_ENDS, "curve_point"),
         integer("fold_curve", "number of the curve on which the fold lies", "fold"),
@@ -167,7 +167,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         word("fold_of", "parameter that has an extremum along the curve at the fold", units, "fold"),
         *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in units),
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
-        real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
+        real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
         real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range "
              f"of {line}"),
@@ -194,10 +194,14 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
             ),
             *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0") for name in units),
             *(real(f"bautin_{name}_error", units[name], f"{error}{name}") for name in units),
-            real("bautin_frequency", ANGULAR, "angular frequency of the pair at the generalised Hopf point"),
-            real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair"),
-            real("bautin_growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair"),
-            real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c"),
+            real(
+                "bautin_frequency",
+                ANGULAR_UNIT,
+                "angular frequency of the pair at the generalised Hopf point",
+            ),
+            real("bautin_growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair"),
+            real("bautin_growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair"),
+            real("bautin_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
         ),
         integer(
             "bautin_unlocated", "number of sign changes of Re c along Hopf curves that could not be located"
@@ -219,8 +223,8 @@ def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variabl
         integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
         *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", at) for name in names),
         *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
-        real("bautin_along_frequency", ANGULAR, "angular frequency of the pair", at),
-        real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c", at),
+        real("bautin_along_frequency", ANGULAR_UNIT, "angular frequency of the pair", at),
+        real("bautin_along_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c", at),
         *end_variables("bautin_along", BAUTIN_ENDS, at),
     )
     return {variable.name: variable for variable in variables}

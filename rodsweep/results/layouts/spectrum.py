@@ -10,7 +10,7 @@ from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .rods import estimates_counts, has_covering, is_linear, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
-    ANGULAR,
+    ANGULAR_UNIT,
     MESH,
     NEEDS_NEW_SOLVE,
     NEEDS_NO_SOLVE,
@@ -36,7 +36,9 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
 UNSTABLE_COUNT = integer("unstable_count", "number of modes with positive growth rate; -1: not known")
 EACH_MODE = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
-    real("frequency", ANGULAR, "angular frequency of the mode, imaginary part of the eigenvalue", "mode"),
+    real(
+        "frequency", ANGULAR_UNIT, "angular frequency of the mode, imaginary part of the eigenvalue", "mode"
+    ),
     real(
         "error_estimate",
         "1/tau2",
@@ -101,7 +103,7 @@ FORCE_CHANGES = (
     *(real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", CHANGE) for p in LINEAR_PARAMETERS),
     real("change_error", "1", "estimate of the relative error of change_F", CHANGE),
     real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE),
-    real("change_frequency", ANGULAR, "angular frequency of the modes that change", CHANGE),
+    real("change_frequency", ANGULAR_UNIT, "angular frequency of the modes that change", CHANGE),
 )
 """Forces at which rods start to oscillate, become unstable or stable again; located after the last point."""
 SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")

@@ -5,7 +5,7 @@ from typing import Any
 from ...model.parameters import PARAMETERS, all_but
 from .rods import with_certified_meaning
 from .variables import (
-    ANGULAR,
+    ANGULAR_UNIT,
     NEEDS_NEW_SOLVE,
     SECONDS,
     STATUS,
@@ -18,15 +18,15 @@ from .variables import (
     word,
 )
 
-FORCE = PARAMETERS["F"].unit
+FORCE_UNIT = PARAMETERS["F"].unit
 THRESHOLDS = (
-    real("F_onset", FORCE, "smallest F at which two real leading eigenvalues merge into a complex pair"),
+    real("F_onset", FORCE_UNIT, "smallest F at which two real leading eigenvalues merge into a complex pair"),
     real("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
-    real("F_hopf", FORCE, "smallest F at which a pair becomes unstable"),
-    real("hopf_frequency", ANGULAR, "angular frequency of the pair at F_hopf"),
-    real("F_restabilization", FORCE, "smallest F at which the last unstable pair becomes stable again"),
-    real("restabilization_frequency", ANGULAR, "angular frequency of the pair at F_restabilization"),
-    real("F_end", FORCE, "largest F of the search"),
+    real("F_hopf", FORCE_UNIT, "smallest F at which a pair becomes unstable"),
+    real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_hopf"),
+    real("F_restabilization", FORCE_UNIT, "smallest F at which the last unstable pair becomes stable again"),
+    real("restabilization_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_restabilization"),
+    real("F_end", FORCE_UNIT, "largest F of the search"),
     integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
 CROSSING_MEANINGS = {
@@ -50,7 +50,7 @@ def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
     return (
         real(at, units, f"{line} at the crossing", "crossing"),
         word("crossing_kind", "kind of the crossing", CROSSING_KINDS, "crossing"),
-        real("crossing_frequency", ANGULAR, "angular frequency of the modes that cross", "crossing"),
+        real("crossing_frequency", ANGULAR_UNIT, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
         real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),
         integer(

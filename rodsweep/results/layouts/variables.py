@@ -16,11 +16,11 @@ from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
 """Default of `recorded`: fields have the names of their variables."""
-TYPED = "typed_unit"
+TYPED_UNIT = "typed_unit"
 """Attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
 """Status of a point that has not been computed."""
-ANGULAR = "rad/tau2"
+ANGULAR_UNIT = "rad/tau2"
 """Unit of every dimensionless frequency. Frequencies are angular: the imaginary part of an eigenvalue, or 2
 pi/period. For an arm a second variable, with a name ending in `_hz`, has cycles per second."""
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
@@ -70,7 +70,7 @@ class Variable:
     @property
     def attributes(self) -> dict[str, Any]:
         """Attributes of the variable in a file."""
-        typed = {TYPED: self.typed} if self.typed else {}
+        typed = {TYPED_UNIT: self.typed} if self.typed else {}
         flags = flag_attributes(self.flags) if self.flags else {}
         return {"units": self.units, "long_name": self.long_name} | typed | flags
 

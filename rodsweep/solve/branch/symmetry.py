@@ -20,7 +20,7 @@ from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
-from ..orbit.symmetry import NONE
+from ..orbit.symmetry import NO_SYMMETRY
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_between
 from .beginning import DEFLECTION
@@ -110,7 +110,7 @@ def over_whole_period(orbit: Orbit) -> Orbit:
     # The second half of the period is the mirror image of the first.
     points[later] = orbit.symmetry.of(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
-    return replace(orbit, symmetry=NONE, intervals=intervals, values=values)
+    return replace(orbit, symmetry=NO_SYMMETRY, intervals=intervals, values=values)
 
 
 def asymmetry(orbit: Orbit) -> Array:

@@ -161,7 +161,7 @@ def _distance(predicted: Orbit, found: ConvergedOrbit) -> float:
     return relative_change(predicted, found.orbit.values - predicted.values)
 
 
-def in_steps(
+def orbit_in_steps(
     start: CyclePredictor, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
     """The orbit of a distant rod, in steps that Newton's method can follow; raises Unsolvable.

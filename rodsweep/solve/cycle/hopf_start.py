@@ -26,7 +26,7 @@ from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATES
 from ..spectrum.problem import problem_of
-from .along_parameter import in_steps, predictor_from
+from .along_parameter import orbit_in_steps, predictor_from
 from .straight_rod import straight_rod
 from .transient.motion_mesh import coarse_mesh
 
@@ -216,7 +216,9 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
         raise Unsolvable(f"no cycle near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
-    return in_steps(predictor_from(found, None, "F"), form, "F", HOPF_START.branch_tolerance, workspace).orbit
+    return orbit_in_steps(
+        predictor_from(found, None, "F"), form, "F", HOPF_START.branch_tolerance, workspace
+    ).orbit
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:

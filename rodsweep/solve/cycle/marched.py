@@ -26,7 +26,7 @@ from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
 from ..orbit.orbit import Orbit, node_times
-from ..orbit.symmetry import NONE
+from ..orbit.symmetry import NO_SYMMETRY
 from ..point import solved
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
@@ -216,7 +216,7 @@ class _MarchedMotion:
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
-            Orbit.of(form, NONE, period, stressed(self.beam, form, states), MARCHING.measured_stages)
+            Orbit.of(form, NO_SYMMETRY, period, stressed(self.beam, form, states), MARCHING.measured_stages)
         )
 
     def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:

@@ -21,12 +21,18 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, at_orbit, newton
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.symmetry import NONE, REFLECTION
+from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
-from .along_parameter import CyclePredictor, in_steps, near_prediction, predictor_from, relative_distance
+from .along_parameter import (
+    CyclePredictor,
+    near_prediction,
+    orbit_in_steps,
+    predictor_from,
+    relative_distance,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +106,7 @@ class Neighbour:
         next_mesh = OrbitMesh.from_numbers(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
         rod = Rod(**parameters, build=Build.from_text(bytes(arrays["build"]).decode()))
-        symmetry = REFLECTION if arrays["symmetric"] else NONE
+        symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
         form = StressForm(rod, mesh.grid)
         orbit = Orbit(form, symmetry, mesh.intervals, mesh.stages, arrays["orbit"])
         branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
@@ -168,6 +174,6 @@ def _converged(
         found = near_prediction(neighbour.branch.on(target).at(form, name), tolerance, workspace, name)
     except Unsolvable:
         # Steps on a coarser mesh lead to the cycle; only the last correction is made on the wanted mesh.
-        start = in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)
+        start = orbit_in_steps(neighbour.branch.on(target.coarser), form, name, tolerance, workspace)
         found = newton(target.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)

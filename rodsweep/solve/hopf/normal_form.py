@@ -59,7 +59,7 @@ ITERATIONS_PER_SHIFT = 2
 leave it in c, beyond the stated error."""
 
 
-HARMONIC = 2
+HARMONIC_WAVES = 2
 """Wave number of h20 and h11, which determine c, in units of the wave number of q."""
 
 
@@ -150,7 +150,7 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements that give c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
     accuracy *= NORMAL_FORM.accuracy_share
-    waves = HARMONIC * wave_number(rod, w)
+    waves = HARMONIC_WAVES * wave_number(rod, w)
     if not rod.standard:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM.largest_order)
     resolution = resolution_for(waves, accuracy, NORMAL_FORM.largest_order)

@@ -79,7 +79,7 @@ GROWTH_BY_STABILITY = {
 }
 """Growth of a rod as far as stability alone determines it; None for a stable rod, whose growth is
 computed."""
-UNBOUNDED = Growth(growth_error=inf)
+UNKNOWN_GROWTH = Growth(growth_error=inf)
 """Placeholder for an unknown growth."""
 
 
@@ -88,7 +88,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
 
     stable: False gives unlimited growth; None, if stability is unknown, gives growth nan.
     """
-    best = UNBOUNDED
+    best = UNKNOWN_GROWTH
     least = inf
     abscissa = numerical_abscissa(rod, pencil_on(mesh))
     coarse = None
@@ -132,7 +132,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     """The largest growth on the finer mesh; the coarser mesh gives its error. abscissa: an upper bound >
     0."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
-        return UNBOUNDED
+        return UNKNOWN_GROWTH
     patience = log(1 / accuracy) + GROWTH.truncation_margin
     tolerance = max(GROWTH.search_share * accuracy, GROWTH.min_search_tolerance)
     best = (1.0, 0.0)

@@ -12,13 +12,15 @@ from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import COLUMNS
 from ..backend.c_functions import floats, floats_in, integers
-from .time_scheme import POINTS
+from .time_scheme import EXTRAPOLATION_POINTS
 
-SIDE = len(COLUMNS)
+NUMBERS_PER_SIDE = len(COLUMNS)
 """Numbers of each side of a jump."""
-MAX_STAGES = 1 + max(max(stages) for stages in POINTS.values())
+MAX_STAGES = 1 + max(max(stages) for stages in EXTRAPOLATION_POINTS.values())
 """Maximum number of stored stages of a step."""
-MAX_STAGE_POINTS = max(len(this) + len(last) for stages in POINTS.values() for this, last in stages.values())
+MAX_STAGE_POINTS = max(
+    len(this) + len(last) for stages in EXTRAPOLATION_POINTS.values() for this, last in stages.values()
+)
 """Maximum number of points through which a stage is extrapolated."""
 FLOAT = "<f8"
 WHOLE = "<i8"
@@ -68,8 +70,8 @@ CONTEXT = np.dtype(
     ]
 )
 """Record that every callback receives."""
-PLACES: Mapping[str, Any] = CONTEXT.fields or {}
-OUTPUTS, MATRIX_STATE = (PLACES[name][1] for name in ("outputs", "matrix_state"))
+CONTEXT_FIELDS: Mapping[str, Any] = CONTEXT.fields or {}
+OUTPUTS, MATRIX_STATE = (CONTEXT_FIELDS[name][1] for name in ("outputs", "matrix_state"))
 """Offsets in bytes of the fields that PETSc writes."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
@@ -93,7 +95,7 @@ def rod_of(c: Any) -> NodalRod:
     second = floats_in(c.second, (d, m, m))
     none = integers(c.rest, 0)
     jumps = integers(c.jumps, c.jump_count)
-    sides = floats_in(c.sides, (c.jump_count, 2, SIDE))
+    sides = floats_in(c.sides, (c.jump_count, 2, NUMBERS_PER_SIDE))
     tip_stress = floats(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 

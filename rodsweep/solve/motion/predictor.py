@@ -18,7 +18,7 @@ from ...model.compiled.settings import CompiledSettings
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
 from .context import AT_BASE, CONTEXT, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
-from .time_scheme import POINTS
+from .time_scheme import EXTRAPOLATION_POINTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +45,7 @@ def points_of(variant: str) -> NDArray[np.int64]:
     Points of the last step have MAX_STAGES added.
     """
     points = np.full((MAX_STAGES, MAX_STAGE_POINTS), NO_POINT)
-    for stage, (this, last) in POINTS.get(variant, {}).items():
+    for stage, (this, last) in EXTRAPOLATION_POINTS.get(variant, {}).items():
         known = [*this, *(MAX_STAGES + k for k in last)]
         points[stage, : len(known)] = known
     return points

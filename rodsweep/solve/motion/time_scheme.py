@@ -6,7 +6,7 @@ from dataclasses import dataclass
 CYCLE_PREFIX = "cycle_"
 """Prefix of the PETSc options that override the scheme, for example -cycle_ts_type bdf."""
 
-POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
+EXTRAPOLATION_POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
     "3": {1: ((), (0, 1, 2)), 2: ((0, 1), (0, 2)), 3: ((1,), (0, 1, 2))},
     "4": {
         1: ((), (1, 3, 4)),
@@ -30,7 +30,7 @@ Stage 0 is the state at the start. These sets had the smallest errors of all set
 dozen motions, mostly of stiff rods."""
 
 
-NEWTON: Mapping[str, str] = {
+SNES_TYPES: Mapping[str, str] = {
     "rosw": "ksponly",
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
@@ -60,7 +60,9 @@ class TimeScheme:
         if family == self.family and self.variant:
             own[f"ts_{family}_{kind}"] = self.variant
         if family == "arkimex":
-            linear = "false" if self.variant in POINTS else "true"  # PETSc's prediction where POINTS has none
+            linear = (
+                "false" if self.variant in EXTRAPOLATION_POINTS else "true"
+            )  # PETSc's prediction where POINTS has none
             own |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
         adapt = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
         return {
@@ -68,7 +70,7 @@ class TimeScheme:
             "pc_type": "lu",
             "ts_adapt_type": "dsp",  # rejects almost no step, while `basic` rejects a tenth
             "ts_adapt_clip": "0.2,4.0",
-            "snes_type": NEWTON.get(family, "newtonls"),
+            "snes_type": SNES_TYPES.get(family, "newtonls"),
             "snes_linesearch_type": "basic",
             "snes_max_it": "20" if self.equal_steps else "10",
             **own,

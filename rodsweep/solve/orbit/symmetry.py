@@ -53,7 +53,7 @@ def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)
 
 
-NONE = Symmetry(np.eye(3), 1)
+NO_SYMMETRY = Symmetry(np.eye(3), 1)
 """Symmetry of an orbit that closes only after its whole period."""
 REFLECTION = Symmetry(np.diag([1.0, -1.0, -1.0]), 2)
 """Symmetry of an orbit that equals its mirror image half a period later."""

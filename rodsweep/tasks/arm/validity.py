@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import SECTION, SLENDER
+from ...config.arm.axes import ALL_BUT_LOAD, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
@@ -99,7 +99,7 @@ def _of_branches(record: Record) -> ArmMotion:
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
 
 
-MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
+MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
     "spectrum": _of_modes,
     "modes": _of_modes,
     "thresholds": _of_flutter,
@@ -123,7 +123,7 @@ class ArmValidity:
         at_rest = AT_REST.get(self.task, ())
         self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Statuses of points at which no motion was missed."""
-        sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
+        sections = [axis.size for name, axis in self.section.given.items() if name in ALL_BUT_LOAD]
         self.each = points.count // int(np.prod(sections)) if points.over else points.count
         """Number of consecutive points with the same arm."""
         self.arm = lru_cache(ARMS_KEPT)(_arm_of_number(self.section))
@@ -132,7 +132,7 @@ class ArmValidity:
         """The variables of VALIDITY for a point, or for n points of one arm; records (n, ...), result
         (n,).
         """
-        motion = MOTIONS[self.task](record)
+        motion = MOTION_OF_TASK[self.task](record)
         missed = motion.missed | ~np.isin(record[STATUS.name], self.searched)
         arm = self._arm_of(int(np.ravel(index)[0]))
         return self._validity(arm, replace(motion, missed=missed), index)
@@ -211,7 +211,7 @@ def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
     Numbers count in row-major order of the section's axes, which are made once: a point must not take the
     time of an axis.
     """
-    axes = {name: axis.array() for name, axis in section.given.items() if name in SECTION}
+    axes = {name: axis.array() for name, axis in section.given.items() if name in ALL_BUT_LOAD}
 
     def arm(number: int) -> SlenderArm:
         places = np.unravel_index(number, [len(column) for column in axes.values()])

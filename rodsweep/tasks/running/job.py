@@ -16,7 +16,7 @@ from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...results.layouts import LAYOUTS, layout_of
-from ...results.layouts.arm import at_points, in_si, quantities_of
+from ...results.layouts.arm import at_points, quantities_of, si_record
 from ...results.layouts.variables import Filled, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
@@ -86,7 +86,7 @@ class Job:
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
-            return values | in_si(values, index, layout, quantities) | validity.of(values, index)
+            return values | si_record(values, index, layout, quantities) | validity.of(values, index)
 
         def together(indices: NDArray[np.int64]) -> StretchResult:
             assert solver.stretched is not None
@@ -191,7 +191,7 @@ def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> di
         "petsc_options": petsc.options(),
         "shard": "",
         "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in statuses),
-        provenance.KERNELS: kernels,
+        provenance.KERNELS_ATTRIBUTE: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return attributes | job.config.parameters.numbers | versions | provenance.provenance()

@@ -25,7 +25,7 @@ from ...sweep.points.chains import State
 from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
-PASSING = (Refusal, OSError)
+PASSED_ON = (Refusal, OSError)
 """Exceptions that concern the whole run, not a point: the run ends with a sentence."""
 MAX_NOTES = 1000
 """Maximum number of exceptions written to the log per rank; a larger number would repeat one bug."""
@@ -73,7 +73,7 @@ class _Guard:
         try:
             found, state = solve()
             return Outcome(found.status, found.message, self.inner.record(index, found)), state
-        except PASSING:
+        except PASSED_ON:
             raise
         except Exception as error:
             forget_all()
@@ -90,7 +90,7 @@ class _Guard:
         assert self.inner.stretched is not None
         try:
             return self.inner.stretched[1](indices)
-        except PASSING:
+        except PASSED_ON:
             raise
         except Exception as error:
             forget_all()

@@ -31,7 +31,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
 from rodsweep.solve.orbit.newton import at_orbit, newton
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
-from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
+from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
 from rodsweep.solve.point import Unsolvable
 
@@ -332,7 +332,7 @@ def repeated(half, times):
     states = half.at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
     states[later] = REFLECTION.of(states[later], half.form.layout)
-    return Orbit.of(half.form, NONE, times * half.period / 2, states, half.stages)
+    return Orbit.of(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():

@@ -23,7 +23,7 @@ from rodsweep.solve.motion.integrator import (
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.motion.predictor import extrapolate
 from rodsweep.solve.motion.step_record import STEP_RECORD
-from rodsweep.solve.motion.time_scheme import POINTS, TimeScheme
+from rodsweep.solve.motion.time_scheme import EXTRAPOLATION_POINTS, TimeScheme
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -223,16 +223,16 @@ def test_stages_of_a_polynomial_motion_are_predicted_exactly():
     assert out == pytest.approx(np.polynomial.polynomial.polyval(1.3, coefficients), abs=1e-11)
 
 
-@pytest.mark.parametrize("variant", POINTS)
+@pytest.mark.parametrize("variant", EXTRAPOLATION_POINTS)
 def test_predicted_stages_are_known_by_then(variant):
-    stages = len(POINTS[variant]) + 1
-    for stage, (this, last) in POINTS[variant].items():
+    stages = len(EXTRAPOLATION_POINTS[variant]) + 1
+    for stage, (this, last) in EXTRAPOLATION_POINTS[variant].items():
         assert all(k < stage for k in this)
         assert all(k < stages for k in last)
         assert 0 < len(this) + len(last) <= MAX_STAGE_POINTS
 
 
-@pytest.mark.parametrize("variant", POINTS)
+@pytest.mark.parametrize("variant", EXTRAPOLATION_POINTS)
 def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
     beam = Beam(ROD, mesh(1, 14))
     start, scheme = 0.3 * leading_mode(beam).z.real, TimeScheme("arkimex", variant, 1e-6)

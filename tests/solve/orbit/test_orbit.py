@@ -10,10 +10,10 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
-from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
+from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 
 
-@pytest.mark.parametrize("symmetry", [NONE, REFLECTION], ids=["whole period", "half period"])
+@pytest.mark.parametrize("symmetry", [NO_SYMMETRY, REFLECTION], ids=["whole period", "half period"])
 def test_an_orbit_from_another_rank_is_the_same_to_the_last_bit(symmetry):
     """On its own mesh, of which the other rank has a copy, and on a finer one."""
     form = StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(2, 9))

@@ -32,12 +32,12 @@ from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
-from .region import HULL, UNKNOWN, Hull, PathHulls
+from .region import HULL, NO_BOUND, Hull, PathHulls
 from .weights import clamp_integrals, constant_weight_norm, constant_weights, varying_weight_norms
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest known region that contains the spectrum of the arm; `UNKNOWN` without a bound."""
+    """The smallest known region that contains the spectrum of the arm; `NO_BOUND` without a bound."""
     return _hull(_arms([rod]))
 
 
@@ -55,7 +55,7 @@ def hulls_along(rods: Sequence[Rod], places: Array) -> PathHulls:
 def _hull(arms: "SampledArms") -> Hull:
     largest = 1 - HULL.least_remainder
     a, c = _smallest(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
-    return Hull((1 + HULL.margin) * a, c) if isfinite(a) else UNKNOWN
+    return Hull((1 + HULL.margin) * a, c) if isfinite(a) else NO_BOUND
 
 
 class SampledArms(NamedTuple):

@@ -59,7 +59,7 @@ class Hull(NamedTuple):
         return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
 
 
-UNKNOWN = Hull(inf, 0.0)
+NO_BOUND = Hull(inf, 0.0)
 """The whole plane, when no bound applies."""
 
 

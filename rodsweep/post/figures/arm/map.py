@@ -26,7 +26,7 @@ from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
 from .panels import PANELS, Panel
-from .quantities import in_typed, quantity_text
+from .quantities import in_typed_unit, quantity_text
 
 MAPS = ("map", "maps")
 """Names of this figure for tasks with several figures."""
@@ -93,7 +93,7 @@ def _axis(view: View, name: str) -> tuple[Array, str]:
     values = view.variables[name]
     if name in style.LABELS:
         return values, style.LABELS[name]
-    values, unit = in_typed(view, name, values)
+    values, unit = in_typed_unit(view, name, values)
     return values, word(name) + (f" ({unit})" if unit else "")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....results.file.view import View
-from .quantities import in_typed
+from .quantities import in_typed_unit
 
 EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
 """Words for the kinds of thresholds."""
@@ -37,7 +37,7 @@ def _of_thresholds(view: View) -> list[Panel]:
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
-        lines[EVENTS[event]], unit = in_typed(view, typed, view.variables[f"{load}_{event}"], si)
+        lines[EVENTS[event]], unit = in_typed_unit(view, typed, view.variables[f"{load}_{event}"], si)
     flutter = lines[EVENTS["hopf"]]
     return [
         Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
@@ -55,7 +55,7 @@ def _of_modes(view: View) -> list[Panel]:
 
 def _of_cycles(view: View) -> list[Panel]:
     """Frequency and amplitude of the limit cycle."""
-    amplitude, unit = in_typed(view, "length", view.variables["tip_y_max_si"])
+    amplitude, unit = in_typed_unit(view, "length", view.variables["tip_y_max_si"])
     return [
         Panel("frequency (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),
         Panel(f"largest deflection of the tip ({unit})", amplitude, empty_label="no cycle"),

@@ -21,7 +21,7 @@ SAME_NUMBER = 1e-9
 """Largest relative difference between a stored parameter and the parameter computed from the arm again."""
 
 
-def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
+def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """(values of a quantity, of any shape, in the unit typed by the user; this unit)."""
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed.get(name, si)
@@ -32,7 +32,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
     """A quantity with its value in the unit typed by the user: `length 12 cm`."""
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAGS[int(value)].replace('_', NO_BREAK)}"
-    shown, unit = in_typed(view, name, np.array([value]))
+    shown, unit = in_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
     return f"{word(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
 

@@ -22,7 +22,7 @@ from ....arrays import Array
 from ....results.file.view import View
 from ..style import FIRST, SECOND
 from .selection import SHAPES, StoredCycle, chosen_cycles
-from .transient import draw_emergence, label_time, label_tip
+from .transient import draw_start_of_motion, label_time, label_tip
 
 MAX_SHAPES = 12
 """Largest number of shapes that a reader can distinguish."""
@@ -75,7 +75,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
         axes.set_xlabel(cycle.units.along("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if emerging:
-            draw_emergence(upper, lower, cycle)
+            draw_start_of_motion(upper, lower, cycle)
         else:
             _tip(upper, lower, cycle, end)
     set_frame(shapes, cycles)

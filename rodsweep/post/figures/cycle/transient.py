@@ -27,7 +27,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
     figure = Figure(figsize=(4.2 * count + 1.6, 5.0), layout="constrained")
     rows = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
     for (upper, lower), cycle in zip(rows.T, selection.cycles, strict=True):
-        draw_emergence(upper, lower, cycle)
+        draw_start_of_motion(upper, lower, cycle)
         ends = [cycle.word.replace("_", " ")]
         if cycle.word in CYCLE_WORDS:
             ends[0] += "" if narrow else " (extrema dashed)"
@@ -39,7 +39,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
     return figure, "the tip from the start on" + selection.left_out
 
 
-def draw_emergence(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
+def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Draws x and y of the tip from the start, with the extrema of the cycle if any."""
     time, *tip = (cycle.values[name] for name in TRACE)
     v = cycle.values

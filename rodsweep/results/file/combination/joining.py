@@ -19,7 +19,7 @@ from ....config.values import Axis
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ...layouts.variables import MISSING, SECONDS
-from ..content import SEAL
+from ..content import SEAL_ATTRIBUTE
 from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
 from ..provenance import LONGEST_ATTRIBUTE, kernels_of
@@ -28,7 +28,8 @@ from .extension import SAME_VALUE, StoredPlaces
 from .identity import config_difference
 
 OF_ONE_FILE = (
-    "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot", SEAL,
+    "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
+    SEAL_ATTRIBUTE,
 )  # fmt: skip
 """Attributes that a joined file does not inherit."""
 ROUNDING_FACTOR = 1e3

@@ -17,7 +17,7 @@ from ...run.journal import JOURNALS, journal_directory
 from ..creation import Plan, add_variables, create_file
 from ..exchange import FileReplacement, disk_refusals
 from ..points import missing_ranges, parameters_of, points_to_add, write_points
-from ..provenance import KERNELS, kernels_sentence, merged_history, now
+from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, now
 from ..validation import ResultHeader, read_header
 from .joining import JoinedFile, Planner, joined_file_of
 
@@ -87,7 +87,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
         file.attrs.update(history)
         points = file["status"].size
     return MergeResult(
-        points - index_count(left), index_count(left), finished, kernels_sentence(history[KERNELS])
+        points - index_count(left), index_count(left), finished, kernels_sentence(history[KERNELS_ATTRIBUTE])
     )
 
 

@@ -65,11 +65,11 @@ CYCLE_CURVES = CycleCurveSettings()
 ALONG_BRANCH = np.array([1.0, 0.0])
 
 
-EDGES = 4
+EDGE_COUNT = 4
 """Number of edges of the plane; the margins of a curve begin with the distances from these."""
 ROW_EDGES = (2, 3)
 """Indices of the margins whose edges are rows."""
-END_AT_MARGIN = (*EDGES * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+END_AT_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
 """Reason for the end of a curve, by the margin that becomes 0."""
 
 

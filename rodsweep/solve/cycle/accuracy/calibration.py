@@ -23,7 +23,7 @@ from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
 MULTIPLIER = 4
 """Index of the largest multiplier's error, behind the indices of `path_differences`."""
-PARTS = 5
+ERROR_COUNT = 5
 """Number of error quantities."""
 
 
@@ -191,8 +191,8 @@ def calibration_of(
     tails = _tails(orbit)
     if before is None:
         decay = CALIBRATION.fall_by_decay * tails_of(orbit).decay
-        fall = np.full(PARTS, min(max(decay, CALIBRATION.min_fall), CALIBRATION.max_fall))
-        power = np.full(PARTS, CALIBRATION.power_by_stages * orbit.stages)
+        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_fall), CALIBRATION.max_fall))
+        power = np.full(ERROR_COUNT, CALIBRATION.power_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
     fall = before.fall

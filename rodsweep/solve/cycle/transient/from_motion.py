@@ -10,7 +10,7 @@ from ....discretization.plane import balance
 from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
 from ...orbit.orbit import Orbit, node_times
-from ...orbit.symmetry import NONE, REFLECTION
+from ...orbit.symmetry import NO_SYMMETRY, REFLECTION
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +42,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     times = begin + period * np.arange(FROM_MOTION.phases) / FROM_MOTION.phases
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
-    symmetry = REFLECTION if asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NONE
+    symmetry = REFLECTION if asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY
     intervals = FROM_MOTION.intervals * turns // symmetry.parts
     duration = period / symmetry.parts
     at = top + duration * node_times(intervals, FROM_MOTION.stages)
