@@ -139,7 +139,9 @@ AllAxes: Any = _section(Axes, BEYOND_LINEAR, Values)
 
 
 class LinearParameters(AxesAndNumbers):
-    """Parameters of the linear problem. A parameter of the nonlinear rod only may be one number."""
+    """Parameters of the linear problem as axes; a parameter that only cycles depend on may be given as one
+    number.
+    """
 
 
 class DiagramParameters(LinearParameters):

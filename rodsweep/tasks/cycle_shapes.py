@@ -54,8 +54,8 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
     allowed = SAME_PERIOD * stored * (error + float(record["period_error"]))
     if not abs(float(record["period"]) - stored) <= allowed:
         raise InputError(
-            f"{view.path} holds no shapes of cycles, and point {number}, started on its own, comes to "
-            "another state than the one stored; run with limit_cycle.shapes > 0, which stores them"
+            f"{view.path} holds no shapes of cycles, and point {number}, solved without its neighbour, ends "
+            "in another state than the stored one; run with limit_cycle.shapes > 0 to store shapes"
         )
     return job, record
 

@@ -110,7 +110,7 @@ def dotted(location: Sequence[str]) -> str:
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
-    """The section of a config at a place."""
+    """Class of the section of a config in which a place, given by the names of keys, lies."""
     section: type[BaseModel] = config
     for name in location:
         kind = model_of(section.model_fields[name])

@@ -46,7 +46,7 @@ RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 
 @compiled
 def _powers(z: complex, terms: int) -> Array:
-    """z^n and n z^(n-1), (terms, 4)."""
+    """The powers z^n and their derivatives n z^(n-1), as real and imaginary parts, (terms, 4)."""
     powers = np.zeros((terms, 4))
     powers[0, RE] = 1.0
     for n in range(1, terms):
@@ -62,7 +62,11 @@ def _powers(z: complex, terms: int) -> Array:
 
 @compiled_for_vectors
 def _propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """C and dC/dz, (4, ENTRIES), of a polynomial, (terms, ENTRIES); powers: (terms, 4)."""
+    """Writes a propagator C and dC/dz at one z into out, (4, ENTRIES), from its coefficients in powers of z,
+    (terms, ENTRIES).
+
+    powers: result of `_powers` for z, (terms, 4).
+    """
     for k in range(ENTRIES):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
@@ -81,7 +85,11 @@ def _propagator(polynomial: Array, powers: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def _propagator_alone(polynomial: Array, powers: Array, out: Array) -> None:
-    """C, (2, ENTRIES), of a polynomial, (terms, ENTRIES); powers: (terms, 4)."""
+    """Writes a propagator C at one z into out, (2, ENTRIES), from its coefficients in powers of z, (terms,
+    ENTRIES).
+
+    powers: result of `_powers` for z, (terms, 4).
+    """
     for k in range(ENTRIES):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = 0.0

@@ -13,7 +13,7 @@ from ..figures import draw
 from ..figures.request import KINDS_OF_TASK, Shapes
 from .vector_picture import VectorPicture, vector_picture
 
-FILM = "animation"
+ANIMATION_KIND = "animation"
 """The kind of figure that consists of several pictures."""
 UNWRITTEN = Path("figure.svg")
 """Name that requests a figure in SVG, which goes into the page, not into a file."""
@@ -43,7 +43,7 @@ def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[in
     """
     # Without its folders, so that no sentence on the page names them.
     views = [replace(view, path=Path(view.path.name)) for view in views]
-    kinds = [kind for kind in KINDS_OF_TASK.get(views[0].task, ()) if kind != FILM]
+    kinds = [kind for kind in KINDS_OF_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
     found: dict[str, CaptionedPicture] = {}
     refusal = ""
     for kind in (None, *kinds):

@@ -211,7 +211,9 @@ def breaking_between(
 
 
 def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
-    """Index of the symmetry breaking at the extrapolated place where the asymmetry vanishes, -1 for none."""
+    """Index of the known symmetry breaking at the place where the asymmetry, extrapolated along the branch,
+    vanishes; -1 for none.
+    """
     orbit = start.orbit
     present = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))

@@ -16,12 +16,12 @@ from ..continuation.follower import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, at_orbit, newton, relative_change
 from ..orbit.normalised import (
-    combined,
     normalised,
     normalised_tangent,
     polynomial_weights,
     reflected,
     values_of,
+    with_weighted_data,
 )
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -87,7 +87,7 @@ class CyclePredictor:
         name: the parameter. Raises Unsolvable if the predicted squared size is not positive.
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
-        values = combined(self.values, self.data, self.orders, self.weights(step))
+        values = with_weighted_data(self.values, self.data, self.orders, self.weights(step))
         # The squared size is among the values: near a Hopf point it goes linearly through 0, where cycles
         # end.
         if not values[-1] > 0:

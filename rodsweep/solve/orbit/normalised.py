@@ -41,8 +41,9 @@ def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
 
 
 def normalised(orbit: Orbit) -> Array:
-    """Normalised values of an orbit, (N + 1,): reversed values in units of the size, other values, the
-    squared size."""
+    """Normalised values of an orbit, (N + 1,): components that the reflection reverses, divided by the size;
+    all other values; the squared size.
+    """
     values: Array = normalised_values(orbit.values, reflected(orbit))
     return values
 
@@ -96,7 +97,7 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 
 @compiled_for_vectors
-def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array:
+def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array) -> Array:
     """An orbit's values, (N + 1,), plus a weighted sum of data, (m, N + 1): slopes, and other orbits' values
     minus its own.
 
@@ -116,7 +117,9 @@ def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array
 
 @compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
-    """`normalised_tangent` for values and their tangent, (N,) each."""
+    """Derivative of the normalised values, (N + 1,), from an orbit's values and their derivative, (N,) each;
+    compiled.
+    """
     squared = squared_size(values, values, r)
     change = 2 * squared_size(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.

@@ -18,7 +18,9 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 
 @compiled_for_vectors
 def add_start_value(minor: int, start: float, values: Array) -> None:
-    """Adds the start value of a minor, where it is the initial value, to values, (MINORS, STAGES, WIDTH)."""
+    """Adds a minor's start value to values, (MINORS, STAGES, WIDTH), of the solution that starts with this
+    minor.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
             values[minor, i, minor * ARM_ELEMENTS.lanes + lane] += start
@@ -26,7 +28,9 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`add_start_value` of theta^s or y^theta, (STAGES, WIDTH), where a minor is eliminated."""
+    """`add_start_value` for theta^s or y^theta, (STAGES, WIDTH), from whose equation another minor is
+    eliminated.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
             c = minor * ARM_ELEMENTS.lanes + lane
@@ -35,7 +39,10 @@ def add_eliminated_start_value(minor: int, start: float, turning: Array, values:
 
 @compiled_for_vectors
 def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None:
-    """Rates of one power of w by the values of the power before, both (MINORS, STAGES, WIDTH)."""
+    """Writes the rates of the minors by the drags, proportional to w, from the values one power of w lower.
+
+    values, rates: (MINORS, STAGES, WIDTH). W: unit of w.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             push = W * local[GAMMA2, i, c]
@@ -47,7 +54,7 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
 
 @compiled_for_vectors
 def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s, (STAGES, WIDTH), what s^m and the start value of theta^m contribute."""
+    """Adds to the rates of theta^s, (STAGES, WIDTH), the terms with s^m and the start value of theta^m."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
@@ -58,7 +65,7 @@ def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates
 
 @compiled_for_vectors
 def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
-    """Fills the rates of theta^m, (STAGES, WIDTH)."""
+    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
@@ -66,7 +73,7 @@ def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, what theta^m and s^m contribute."""
+    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m and s^m."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             turn = values[TM, i, c]
@@ -80,7 +87,7 @@ def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, ra
 
 @compiled_for_vectors
 def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
-    """Fills the rates of y^theta, (STAGES, WIDTH)."""
+    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH)."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
@@ -88,7 +95,7 @@ def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), what y^theta contributes by the force."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term of the force with y^theta."""
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]

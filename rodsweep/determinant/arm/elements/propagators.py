@@ -34,7 +34,7 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 @cache
 def _method() -> IntegrationMatrices:
-    """The collocation of `ARM_ELEMENTS.stages` points, for compiled code."""
+    """The collocation method of `ARM_ELEMENTS.stages` Gauss points, as arrays for compiled code."""
     _, integrals, weights = gauss_method(ARM_ELEMENTS.stages)
     return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 
@@ -70,9 +70,10 @@ def _last_terms(stages: int) -> Array:
 
 
 def tail_of(local: LocalCoefficients) -> Array:
-    """The last two coefficients of the Legendre series of the coefficients, relative, (n, elements).
+    """Largest modulus of the last two Legendre coefficients of any coefficient on each element, relative to
+    its values, (n, elements).
 
-    local: at Gauss points, (n, elements, stages).
+    local: coefficients at the Gauss points, (n, elements, stages).
     """
     # The sixth, g, follows from the others and the force.
     values = np.array(local[:5])

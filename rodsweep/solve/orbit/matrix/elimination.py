@@ -149,10 +149,11 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 def _subtract_parts(
     out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
 ) -> None:
-    """Subtracts the effect of the first two stages from rows of another stage's block, (n, n).
+    """Subtracts from another stage's block the terms that the elimination of the first two stages brings, (n,
+    n).
 
-    parts: Z, W, Z W, W Z and Z W Z, (5, n, n). place: the stage, and the column of d, (s, s + 1), of the
-    block. rows: first and last row. scale: factors of the block's columns, (n,).
+    parts: Z, W, Z W, W Z and Z W Z of the module, (5, n, n). place: (stage, column of d, (s, s + 1)) of the
+    block. rows: first row, and the row behind the last. scale: factors of the block's columns, (n,).
     """
     i, c = place
     first = d[0, c]

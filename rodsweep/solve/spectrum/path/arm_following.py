@@ -77,8 +77,9 @@ def two_roots_of_arm(middle: complex, level: Level) -> tuple[complex, complex]:
 
 @compiled
 def _correct_all(track: Track, i: int, p: float, guess: Complex, modes: int, level: Level) -> bool:
-    """Refines the guesses for point i, at p, and writes the roots to the track. True if all converged and
-    every pair stayed a pair.
+    """Corrects the guesses for all eigenvalues of point i, at p, and writes the roots to the track.
+
+    True if all converged and every pair stayed a pair.
     """
     w = track.w[i]
     error = track.error[i]
