@@ -22,7 +22,7 @@ from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 STOPPED = ("no_cycle_found", "list_full")
 """Reasons for an end beyond which a branch goes on."""
-JOINED_RANGES = 1e-9
+RANGE_GAP_TOLERANCE = 1e-9
 """Largest relative distance between two ranges that are joined."""
 Range = tuple[float, float]
 """(smallest, largest) value of the parameter."""
@@ -78,9 +78,11 @@ class StoredBranch:
         return self.special[-1].reason not in STOPPED and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """The branch from each Hopf point with known a to its first fold: (|at/at_H - 1|, y/|a|, stability).
+        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) up to the first
+        fold.
 
-        Shapes (n,), (n,) and (n - 1,), n > 1; the Hopf point itself, at distance 0, is left out.
+        at_H and a: position and amplitude coefficient of the Hopf point, which itself is left out; Hopf
+        points without a are left out. Shapes (n,), (n,) and (n - 1,), n > 1.
         """
         found = []
         for special, order in ((self.special[0], slice(None)), (self.special[-1], slice(None, None, -1))):
@@ -234,7 +236,7 @@ def union(ranges: Iterable[Range]) -> list[Range]:
     """Union of ranges, in increasing order; ranges that touch or overlap are joined."""
     found: list[Range] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
-        if found and low <= found[-1][1] * (1 + JOINED_RANGES):
+        if found and low <= found[-1][1] * (1 + RANGE_GAP_TOLERANCE):
             found[-1] = found[-1][0], max(high, found[-1][1])
         else:
             found.append((low, high))
@@ -244,4 +246,4 @@ def union(ranges: Iterable[Range]) -> list[Range]:
 def intersection(first: list[Range], second: list[Range]) -> list[Range]:
     """Intersection of two unions of ranges."""
     common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
-    return [(low, high) for low, high in common if high > low * (1 + JOINED_RANGES)]
+    return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]

@@ -61,7 +61,7 @@ HOPF_CERTIFICATE_MS = 3.0
 """Time of the certificate of the Hopf points, in ms: mean over the 90 rods."""
 HOPF_POINTS_MS = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
-TWO_MESHES = 8.0
+COST_OF_TWO_MESHES = 8.0
 """Time of a spectrum on two meshes, in units of a spectrum that begins on one: mean over 800 rods."""
 FINER_MESH = 4 / 3
 """Ratio of the unknowns of the second mesh to the unknowns of the first."""
@@ -157,7 +157,7 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
     """Cost of spectra by Krylov-Schur on two meshes."""
     alone = estimate_spectra(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
-    return replace(alone, seconds=TWO_MESHES * alone.seconds, unknowns=unknowns)
+    return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:

@@ -92,7 +92,7 @@ class ArmSection(StrictSection):
 
     @property
     def material(self) -> dict[str, Any]:
-        """The keys among segments, law and section that are given."""
+        """The values given for segments, law and section, by key."""
         return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
 
     @property

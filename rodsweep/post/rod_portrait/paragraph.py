@@ -157,8 +157,10 @@ def _branches(results: RodResults) -> Iterator[str]:
 
 
 def _beside(ranges: str, is_decided: bool, kind: str) -> str:
-    """Sentence on the loads with a stable cycle and a stable straight rod, empty without. is_decided: whether
-    all stabilities are known. kind: rod or arm.
+    """Sentence on loads with both a stable cycle and a stable straight rod, or on their absence.
+
+    ranges: the loads as text, empty if none are known. is_decided: whether all stabilities are known. kind:
+    rod or arm.
     """
     if ranges:
         return f"A stable cycle exists beside the stable straight {kind} at {ranges}."

@@ -83,7 +83,11 @@ def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.nd
 
 
 def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Mask of known values of a variable, of its shape: the time of a maximum barely above 1 is unknown."""
+    """Mask of the known values of a variable, in its shape.
+
+    Only the time of the largest transient growth may be unknown: its error is large where the growth barely
+    exceeds 1.
+    """
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
         return np.ones(values.shape, bool)

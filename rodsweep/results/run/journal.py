@@ -196,7 +196,10 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
 
 
 def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
-    """The whole lines of text in records with their checksums, blocks of rows, (records, bytes)."""
+    """The complete lines of text stored in a journal; a line with a damaged record is left out.
+
+    blocks: records with their checksums, as rows of bytes, (records, bytes).
+    """
     lines = []
     line = b""
     for rows in blocks:
