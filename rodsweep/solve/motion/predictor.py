@@ -2,7 +2,7 @@
 
 PETSc's own prediction is linear, with errors of thousands of tolerances. The polynomial has errors of ten
 tolerances and saves every second Newton iteration. Stages of a method have different errors, so the best
-extrapolation points depend on the method's tableau: `time_scheme.POINTS`.
+extrapolation points depend on the method's tableau: `time_scheme.EXTRAPOLATION_POINTS`.
 """
 
 from dataclasses import dataclass
