@@ -134,7 +134,7 @@ class OnCurve:
     error: float = nan
     """Absolute error of `at`."""
     errors: CurveErrors | None = None
-    """Errors measured at an earlier point, which still apply here."""
+    """Errors that apply to the point, measured here or at an earlier point of the curve."""
     rates: NormalDerivatives | None = None
     """Derivatives across the curve, if known."""
 
