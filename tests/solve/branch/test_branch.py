@@ -10,8 +10,8 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch import beginning as begun
 from rodsweep.solve.branch import branches, following
-from rodsweep.solve.branch import first_cycle as begun
 from rodsweep.solve.branch.beginning import first_cycle, hopf_point
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
