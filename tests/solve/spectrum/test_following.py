@@ -113,7 +113,7 @@ def no_width_in_p(at, y, direction, half, tilt):
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("remainder", holds_always), ("free_of_zeros", no_width_in_p)],
+    [("remainder_fits", holds_always), ("free_of_zeros", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
