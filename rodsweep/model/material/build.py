@@ -180,7 +180,8 @@ class Build:
         factors = dict(zip(FACTORS, values, strict=True))
         if np.ndim(taper) or taper != 1:
             radius = 1 - (1 - taper) * u
-            powers = {power: radius**power for power in set(RADIUS_POWERS.values())}
+            square = radius * radius
+            powers = {2: square, 4: square * square}
             for name, power in RADIUS_POWERS.items():
                 factors[name] = factors[name] * powers[power] if self.profile else powers[power]
         return factors
