@@ -5,7 +5,8 @@ import scipy.linalg
 
 from rodsweep.arrays import Array, Complex
 from rodsweep.discretization.elements.resolution import Resolution
-from rodsweep.discretization.straight.arm_pencil import ArmMesh, ArmPencil
+from rodsweep.discretization.straight.arm_pencil import ArmPencil
+from rodsweep.discretization.straight.arm_resolution import ArmMesh
 from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.rod import Rod

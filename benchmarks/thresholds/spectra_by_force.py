@@ -17,8 +17,7 @@ from rodsweep.bench.spectrum.own import leading
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
-from rodsweep.discretization.straight.arm_pencil import ArmMesh
-from rodsweep.discretization.straight.arm_resolution import arm_mesh
+from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh
 from rodsweep.model.dispersion import most_amplified_wave
 
 from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from .material.build import LocalCoefficients
+from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
 SAMPLES = 64
@@ -57,10 +57,17 @@ class SampledArm(NamedTuple):
 @lru_cache(maxsize=KEPT)
 def sampled(rod: Rod) -> SampledArm:
     """The samples of an arm, kept for the next question about it."""
-    breaks = rod.build.breaks
+    points, weights = _points_of(rod.build)
+    return SampledArm(points, weights, rod.local(points))
+
+
+@lru_cache(maxsize=KEPT)
+def _points_of(build: Build) -> tuple[Array, Array]:
+    """`points` and `weights` of `SampledArm` for the arms of a build."""
+    lengths = np.diff(build.breaks)
     inside = (np.arange(PIECE_SAMPLES) + 0.5) / PIECE_SAMPLES
-    points = (breaks[:-1, None] + np.diff(breaks)[:, None] * inside).ravel()
-    return SampledArm(points, np.repeat(np.diff(breaks) / PIECE_SAMPLES, PIECE_SAMPLES), rod.local(points))
+    points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
+    return points, np.repeat(lengths / PIECE_SAMPLES, PIECE_SAMPLES)
 
 
 @lru_cache(maxsize=KEPT)
@@ -71,10 +78,10 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
     """
     nu, c2, c3, gamma2, gamma3, g = sampled(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
-    K, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
-    best = np.argmax(rates, axis=-1)[:, None]
-    largest, at = (np.take_along_axis(table, best, axis=-1)[:, 0] for table in (rates, K))
-    return largest / (gamma2 * c3), np.where(largest > 0, np.sqrt(at), 0.0)
+    _, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
+    largest = rates.max(axis=-1)
+    wave = np.where(largest > 0, np.sqrt(top * FRACTIONS[rates.argmax(axis=-1)]), 0.0)
+    return largest / (gamma2 * c3), wave
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
@@ -91,6 +98,8 @@ def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Arra
         spread = np.sqrt(linear**2 + 4 * square * drive)
         # The root of square r^2 + linear r = drive; each formula is free of cancellation for one sign of
         # `linear`.
-        slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)
-        rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)
+        rates = 2 * drive / (linear + spread)
+        if not (linear > 0).all():
+            slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)
+            rates = np.where(linear > 0, rates, slow)
     return K, np.where(rates > 0, rates, 0.0)

@@ -7,8 +7,8 @@ from reference.random_arms import random_arm
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.newton import refined
 from rodsweep.discretization.elements.elements import Elements
-from rodsweep.discretization.straight.arm_pencil import ArmMesh, ArmPencil
-from rodsweep.discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh
+from rodsweep.discretization.straight.arm_pencil import ArmPencil
+from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.material.build import Build

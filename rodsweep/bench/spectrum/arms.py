@@ -10,8 +10,7 @@ from math import inf, nextafter
 
 from ...arrays import Complex
 from ...determinant.arm.determinant import ArmDeterminant
-from ...discretization.straight.arm_pencil import ArmMesh
-from ...discretization.straight.arm_resolution import arm_mesh
+from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh
 from ...model.material.build import Build
 from ...model.material.profile import Profile
 from ...model.rod import Rod

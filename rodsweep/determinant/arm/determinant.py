@@ -6,38 +6,25 @@ exp(`ARM_ELEMENTS.longest`) and that the Gauss points resolve the coefficients; 
 an end of an element.
 """
 
-import cmath
-import math
 from functools import cached_property, lru_cache
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array
-from ...model.compiled.compilation import compiled
-from ...model.dispersion import PIECE_SAMPLES, sampled
+from ...arrays import Array, Complex
+from ...model.dispersion import sampled
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
-from ..exponents import EXPONENTS
 from ..value import DeterminantValue
-from .elements.propagators import element_propagators, gauss_method, tail_of
+from .elements.edges import element_edges, halved_where_coarse
+from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENTS
+from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
 from .value import chain_value
 
 Level = tuple[float, Array]
 """W, and propagators for |w| <= W, (elements, terms, 25)."""
-
-
-class ArmSamples(NamedTuple):
-    """Samples along one arm: the force F, `LocalCoefficients` at points, (6, points), and quadrature weights,
-    (points,).
-    """
-
-    F: float
-    local: Array
-    weights: Array
 
 
 class ArmDeterminant:
@@ -51,9 +38,9 @@ class ArmDeterminant:
         self.rod = rod
         self._levels: list[Level] = [] if known is None else [known]
         points, weights, local = sampled(rod)
-        sampled_coefficients = np.array(local)
-        self.samples = ArmSamples(float(rod.F), sampled_coefficients, weights)
-        self._samples = Samples(points, weights, LocalCoefficients(*sampled_coefficients[:, None]))
+        self.samples = arm_samples(float(rod.F), local, weights)
+        each = LocalCoefficients(*(x[None] for x in local))
+        self._samples = Samples(points, each, self.samples.squares[:, None])
 
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -81,13 +68,17 @@ class ArmDeterminant:
         """(wave number, length) at w."""
         return scales_at(w, self.samples)
 
+    def scales_of_all(self, w: Complex) -> Array:
+        """Wave numbers and lengths at n numbers, (2, n)."""
+        return scales_at_all(w, self.samples)
+
     @cached_property
     def gauss_samples(self) -> ArmSamples:
         """The arm at the Gauss points of each smooth piece."""
         points, _, weights = gauss_method(ARM_ELEMENTS.stages)
         lengths = np.diff(self.rod.build.breaks)[:, None]
         local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
-        return ArmSamples(float(self.rod.F), np.array(local), (lengths * weights).ravel())
+        return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
     def level(self, size: float, highest: float | None = None) -> Level:
         """(W >= size, propagators for |w| <= W, (elements, terms, 25)) with the smallest W that exists.
@@ -113,103 +104,46 @@ class ArmDeterminant:
 class Samples(NamedTuple):
     """Samples of n arms between the breaks of their profile.
 
-    Points, (points,); the length that each point stands for, (points,); coefficients of each arm, (n,
-    points).
+    Points, (points,); `LocalCoefficients` there, each (n, points); squares of `ArmSamples`, (4, n, points).
     """
 
     points: Array
-    weights: Array
     local: LocalCoefficients
+    squares: Array
 
 
 class PropagatorElements(NamedTuple):
-    """Lengths of elements, (elements,), and coefficients of n arms at Gauss points, (n, elements, stages)."""
+    """Lengths of elements, (elements,), and `LocalCoefficients` of n arms at the Gauss points, (6, n,
+    elements, stages)."""
 
     lengths: Array
-    local: LocalCoefficients
+    local: Array
 
 
 def samples_of(rods: list[Rod]) -> Samples:
     """Samples of arms of one build."""
     points, weights, _ = sampled(rods[0])
-    return Samples(points, weights, Rod.local_of_all(rods, points))
+    local = Rod.local_of_all(rods, points)
+    forces = np.array([[rod.F] for rod in rods])
+    return Samples(points, local, arm_samples(forces, local, weights).squares)
 
 
 def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
     """Elements that resolve every arm of a list, all of one build, for |w| <= W."""
-    edges = _edges(rods, samples, W)
+    tapers = np.array([rod.taper for rod in rods])
+    edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].build.breaks)
     points, _, _ = gauss_method(ARM_ELEMENTS.stages)
     for _ in range(ARM_ELEMENTS.max_halvings):
         if not len(edges) <= ARM_ELEMENTS.max_elements:
             break
-        lengths = np.diff(edges)
-        local = Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points)
-        coarse = tail_of(local).max(axis=0) > ARM_ELEMENTS.largest_tail
-        if not coarse.any():
+        lengths = edges[1:] - edges[:-1]
+        local = np.array(Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points))
+        finer = halved_where_coarse(edges, local)
+        if finer is edges:
             return PropagatorElements(lengths, local)
-        middles = (edges[:-1] + edges[1:])[coarse] / 2
-        edges = np.sort(np.append(edges, middles))
+        edges = finer
     most = ARM_ELEMENTS.max_elements
     raise FloatingPointError(f"{most} elements are too few to resolve this arm at |w| = {W:g}")
-
-
-def _edges(rods: list[Rod], samples: Samples, W: float) -> Array:
-    """Ends of elements for |w| <= W: equal shares of the density that the local exponents ask for."""
-    F, tapers = (np.array([getattr(rod, name) for rod in rods]) for name in ("F", "taper"))
-    density: Array = bound_of_waves(W, F[:, None], samples.local).max(axis=0) / ARM_ELEMENTS.longest
-    for taper in (tapers.min(), tapers.max()):
-        if taper != 1:
-            apex = 1 / (1 - taper)
-            density = np.maximum(density, 1 / (ARM_ELEMENTS.to_apex * np.abs(apex - samples.points)))
-    edges = [np.zeros(1)]
-    breaks = rods[0].build.breaks
-    shares = density.reshape(len(breaks) - 1, -1)
-    for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
-        # The samples are midpoints of equal parts: the sum is the integral at the ends of the parts.
-        mass = np.append(0.0, np.cumsum(share)) * (stop - start) / PIECE_SAMPLES
-        count = max(1, math.ceil(mass[-1]))
-        places = start + (stop - start) * np.arange(PIECE_SAMPLES + 1) / PIECE_SAMPLES
-        edges.append(np.interp(mass[-1] * np.arange(1, count + 1) / count, mass, places))
-        # Exactly on the break: beyond it the coefficients jump.
-        edges[-1][-1] = stop
-    return np.concatenate(edges)
-
-
-def _as_uniform(w: complex, F: Any, local: LocalCoefficients) -> tuple[NDArray, Array, Array, Array]:
-    """(w, F, c2, gamma3) of the uniform rods with k3 = gamma2 = 1 that equal the arm at each point."""
-    return w * local.gamma2 * local.c3, F * local.c3, local.c2 / local.c3, local.gamma3 / local.gamma2
-
-
-def bound_of_waves(W: float, F: Any, local: LocalCoefficients) -> Array:
-    """An upper bound of |q| for all |w| <= W, at the points of `local`, (..., points); F: (..., 1)."""
-    w, force, c2, gamma3 = _as_uniform(W, F, local)
-    square = w * (np.abs(local.g) * local.nu + c2 * gamma3 * w)
-    return np.sqrt((c2 + gamma3) * w + np.abs(force * local.g) + 2 * np.sqrt(square))
-
-
-@compiled
-def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
-    """(mean |q| of both pairs of exponents, 1 / mean of the larger |dq/dw|) along an arm."""
-    F, local, weights = samples
-    number = 0.0
-    rate = 0.0
-    for i in range(len(weights)):
-        nu, c2, c3, gamma2, gamma3, g = local[:, i]
-        v = w * gamma2 * c3
-        T = c2 / c3 + gamma3 / gamma2
-        X = c2 / c3 * gamma3 / gamma2
-        P = cmath.sqrt(v * (g * nu + X * v))
-        M = T * v - F * c3 * g
-        size = abs(P)
-        first = math.sqrt(abs(M + 2 * P))
-        second = math.sqrt(abs(M - 2 * P))
-        towards = P.conjugate() / size if size > 0 else 1 + 0j
-        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
-        turn = (g * nu + 2 * X * v) * towards / max(size, 1.0, first, second)
-        fast = max(abs(T + turn) / max(1.0, first), abs(T - turn) / max(1.0, second)) / 2
-        number += weights[i] * (first + second) / 2
-        rate += weights[i] * fast * gamma2 * c3
-    return number, 1 / max(rate, EXPONENTS.least_divisor)
 
 
 @lru_cache(maxsize=ARM_ELEMENTS.arms_kept)

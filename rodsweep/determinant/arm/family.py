@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ...arrays import Array
-from ...model.compiled.compilation import compiled
+from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENTS
 from ..parameter_path import Path
@@ -152,20 +152,17 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
         whole = math.log1p(2 * half / family.scale)
         t = 2 * math.log1p((p - family.low) / family.scale) / whole - 1
         half = (p - family.low + family.scale) * whole / 2
-    values = polynomials.reshape(-1)
-    slopes = changes.reshape(-1)
+    nodes = len(family.coefficients)
+    T = np.empty(nodes)
+    rates = np.empty(nodes)
     # T_0 and T_(-1), as T_(-1) = T_1
     here = 1.0
     before = t
     rate = 0.0
     rate_before = -1.0
-    values[:] = 0.0
-    slopes[:] = 0.0
-    for k in range(len(family.coefficients)):
-        own = family.coefficients[k].reshape(-1)
-        for i in range(len(own)):
-            values[i] += here * own[i]
-            slopes[i] += rate / half * own[i]
+    for k in range(nodes):
+        T[k] = here
+        rates[k] = rate / half
         if k == 0:
             here = t
             before = 1.0
@@ -174,6 +171,32 @@ def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Arr
         else:
             rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
             here, before = 2 * t * here - before, here
+    series = family.coefficients.reshape(nodes, -1)
+    _sum_series(series, T, rates, polynomials.reshape(-1), changes.reshape(-1))
+
+
+@compiled_for_vectors
+def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Array) -> None:
+    """values = T series and slopes = rates series, (n,) each; series: (nodes, n); T, rates: (nodes,)."""
+    nodes, n = series.shape
+    values[:] = 0.0
+    slopes[:] = 0.0
+    for k in range(nodes % 4):
+        t = T[k]
+        p = rates[k]
+        for i in range(n):
+            values[i] += t * series[k, i]
+            slopes[i] += p * series[k, i]
+    for k in range(nodes % 4, nodes, 4):  # four at a time save passes over the sums
+        t, u, v, w = T[k], T[k + 1], T[k + 2], T[k + 3]
+        p, q, r, s = rates[k], rates[k + 1], rates[k + 2], rates[k + 3]
+        for i in range(n):
+            a = series[k, i]
+            b = series[k + 1, i]
+            c = series[k + 2, i]
+            d = series[k + 3, i]
+            values[i] += t * a + u * b + v * c + w * d
+            slopes[i] += p * a + q * b + r * c + s * d
 
 
 @compiled

@@ -35,27 +35,28 @@ def roots(
     """
     first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_below * abs(w) else w for w in raw.tolist()]
     inside = [i for i, w in enumerate(first) if _inside(w, hull)]
-    scales = dict(zip(inside, _of_each([first[i] for i in inside], determinant.scales), strict=True))
-    resolved = [i for i in inside if scales[i][0] <= most_waves]
+    waves, lengths = determinant.scales_of_all(np.array([first[i] for i in inside], complex))
+    scale = dict(zip(inside, lengths.tolist(), strict=True))
+    resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= most_waves]
     start = [first[i] for i in resolved]
     _make_elements(determinant, max(map(abs, start), default=0.0), largest)
     errors = dict(zip(resolved, _of_each(start, lambda w: root_error(w, determinant)), strict=True))
-    chosen = [i for i in resolved if errors[i] <= ROOTS.largest_of_pair * scales[i][1]]
+    chosen = [i for i in resolved if errors[i] <= ROOTS.largest_of_pair * scale[i]]
     close = [errors[i] for i in chosen]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     moved, reach = _separated([first[i] for i in chosen], close, determinant)
     stands = [
         k
         for k, i in enumerate(chosen)
-        if reach[k] < math.inf or close[k] <= ROOTS.largest_correction * scales[i][1]
+        if reach[k] < math.inf or close[k] <= ROOTS.largest_correction * scale[i]
     ]
     found = _refined_all([(moved[k], reach[k]) for k in stands], determinant)
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))
     kept = np.array([chosen[stands[root.place]] for root in found], np.int64)
     w: Complex = np.array([root.w for root in found], complex)
-    wave: Array = np.array(_of_each(w.tolist(), determinant.wave_number), float)
+    wave = determinant.scales_of_all(w)[0]
     error = _with_equal_roots(found, determinant)
-    length: Array = np.array([scales[i][1] for i in kept.tolist()], float)
+    length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
     axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.on_the_axis * np.abs(w))
     leader = w[0].real if len(w) else -math.inf

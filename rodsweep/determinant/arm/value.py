@@ -70,17 +70,21 @@ def _propagator(polynomial: Array, powers: Array, out: Array) -> None:
     for k in range(ENTRIES):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
-    for n in range(1, polynomial.shape[0]):
-        a = powers[n, RE]
-        b = powers[n, IM]
-        c = powers[n, RE_SLOPE]
-        d = powers[n, IM_SLOPE]
+    terms = polynomial.shape[0]
+    for n in range(1, terms - 1, 2):  # two terms at a time save passes over `out`
+        a, b, c, d = powers[n, RE], powers[n, IM], powers[n, RE_SLOPE], powers[n, IM_SLOPE]
+        p, q, r, s = powers[n + 1, RE], powers[n + 1, IM], powers[n + 1, RE_SLOPE], powers[n + 1, IM_SLOPE]
         for k in range(ENTRIES):
-            term = polynomial[n, k]
-            out[RE, k] += a * term
-            out[IM, k] += b * term
-            out[RE_SLOPE, k] += c * term
-            out[IM_SLOPE, k] += d * term
+            x = polynomial[n, k]
+            y = polynomial[n + 1, k]
+            out[RE, k] += a * x + p * y
+            out[IM, k] += b * x + q * y
+            out[RE_SLOPE, k] += c * x + r * y
+            out[IM_SLOPE, k] += d * x + s * y
+    if terms % 2 == 0:
+        for row in range(4):
+            for k in range(ENTRIES):
+                out[row, k] += powers[terms - 1, row] * polynomial[terms - 1, k]
 
 
 @compiled_for_vectors
@@ -93,13 +97,23 @@ def _propagator_alone(polynomial: Array, powers: Array, out: Array) -> None:
     for k in range(ENTRIES):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = 0.0
-    for n in range(1, polynomial.shape[0]):
-        a = powers[n, RE]
-        b = powers[n, IM]
+    terms = polynomial.shape[0]
+    first = 1
+    for n in range(1, terms - 3, 4):  # four terms at a time save passes over `out`
+        a, b, c, d = powers[n, RE], powers[n + 1, RE], powers[n + 2, RE], powers[n + 3, RE]
+        p, q, r, s = powers[n, IM], powers[n + 1, IM], powers[n + 2, IM], powers[n + 3, IM]
         for k in range(ENTRIES):
-            term = polynomial[n, k]
-            out[RE, k] += a * term
-            out[IM, k] += b * term
+            x = polynomial[n, k]
+            y = polynomial[n + 1, k]
+            z = polynomial[n + 2, k]
+            last = polynomial[n + 3, k]
+            out[RE, k] += a * x + b * y + c * z + d * last
+            out[IM, k] += p * x + q * y + r * z + s * last
+        first = n + 4
+    for n in range(first, terms):
+        for row in range(2):
+            for k in range(ENTRIES):
+                out[row, k] += powers[n, row] * polynomial[n, k]
 
 
 @compiled_for_vectors

@@ -6,24 +6,40 @@ solution is smooth within each element. The matrix is not affine in any paramete
 arm.
 """
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
-from ..elements.elements import Elements
 from ..elements.quadrature import gauss, gauss_lobatto
+from .arm_resolution import ArmMesh
 from .pencil import PENCIL_NORM, Matrices
 
 
-class ArmMesh(Elements):
-    """Elements for `ArmPencil`; an element must end wherever a coefficient jumps."""
+class _Pieces(NamedTuple):
+    """What `_filled` needs of a mesh of elements of order p.
 
-    @property
-    def unknowns(self) -> int:
-        """The total number of unknowns y, theta and s."""
-        return 3 * self.nodes
+    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value, (p + 1,
+    p + 1). constant: entries of the first two blocks, which are those of every arm, (n,). bending, weight:
+    Gauss weights over and times half the length of each element, (elements, p). lumped: mass of the nodes,
+    (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows, columns: (nnz,).
+    """
+
+    value: Array
+    slope: Array
+    both: Array
+    constant: Array
+    bending: Array
+    weight: Array
+    lumped: Array
+    where: NDArray[np.int64]
+    rows: NDArray[np.int32]
+    columns: NDArray[np.int32]
 
 
 class ArmPencil:
@@ -39,26 +55,31 @@ class ArmPencil:
         self.nodes = mesh.nodes
         self.unknowns = mesh.unknowns
         edges = np.array(mesh.edges)
-        self._h = mesh.lengths
-        self._x, self._w = gauss_lobatto(mesh.order)
-        xg, self._wg = gauss(mesh.order)
-        self._value = interpolation(self._x, xg)
-        self._slope = self._value @ differentiation(self._x)
-        gauss_points: Array = edges[:-1, None] + self._h[:, None] * (xg + 1) / 2
+        h = mesh.lengths
+        x, w = gauss_lobatto(mesh.order)
+        xg, wg = gauss(mesh.order)
+        value = interpolation(x, xg)
+        slope = value @ differentiation(x)
+        gauss_points: Array = edges[:-1, None] + h[:, None] * (xg + 1) / 2
         # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
         self._points = np.concatenate([gauss_points, mesh.points_inside], axis=1)
-        slopes = self._slope.T * self._wg
-        self._slope_by_value: Array = slopes @ self._value
-        # The first two blocks of `_pattern`, which are those of every arm.
-        self._constant = np.concatenate([np.tile(x.ravel(), mesh.elements) for x in (-slopes, slopes.T)])
+        slopes = slope.T * wg
         self._y: NDArray[np.int64] = (
             np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
-        self._node = (self._y + 1).ravel()
-        self._weight: Array = self._wg * self._h[:, None] / 2
-        self._lumped: Array = self._w * self._h[:, None] / 2
-        self._least = PENCIL_NORM.least_angle_weight**2 * self._at_nodes(self._lumped)
-        self.rows, self.columns, self._where = self._pattern()
+        self.rows, self.columns, where = self._pattern()
+        self._pieces = _Pieces(
+            value=value,
+            slope=slope,
+            both=slopes @ value,
+            constant=np.concatenate([np.tile(x.ravel(), mesh.elements) for x in (-slopes, slopes.T)]),
+            bending=wg * (2 / h[:, None]),
+            weight=wg * h[:, None] / 2,
+            lumped=w * h[:, None] / 2,
+            where=where,
+            rows=self.rows,
+            columns=self.columns,
+        )
 
     @property
     def positions(self) -> Array:
@@ -67,41 +88,11 @@ class ArmPencil:
 
     def matrices(self, rod: Rod) -> Matrices:
         """The pencil of an arm."""
-        local = np.array(rod.local(self._points))
-        nu, c2, c3, _, _, g = local[:, :, : self.order]
-        _, _, _, gamma2, gamma3, _ = local[:, :, self.order :]
-        weight = self._weight
-        S = self._slope
-        V = self._value
-        bending = self._wg / c3 * (2 / self._h[:, None])
-        blocks = [
-            -S.T * bending[:, None, :] @ S,
-            np.broadcast_to(rod.F * self._slope_by_value, (self.mesh.elements, *self._slope_by_value.shape)),
-            V.T * (weight * g)[:, None, :],
-            -(weight * nu)[:, :, None] * V,
-            -weight * c2,
-        ]
-        # The last entry is the follower force at the tip, -F a(1) theta(1).
-        entries = np.concatenate([self._constant, *(block.ravel() for block in blocks), [-rod.F]])
-        # Entries of the clamp are summed behind the pattern and dropped.
-        summed = np.bincount(self._where, entries, minlength=len(self.rows) + 1)[: len(self.rows)]
-        push = self._at_nodes(self._lumped * gamma2)
-        turn = self._at_nodes(self._lumped * gamma3)
-        # Without rotational drag theta has no mass, and its scale would be infinite.
-        angle = np.maximum(turn, self._least)
-        masses = np.concatenate([push, angle, weight.ravel() * PENCIL_NORM.shear_weight**2])
-        scale = 1 / np.sqrt(masses)
-        B = np.concatenate([np.ones(self.nodes), turn / angle, np.zeros(self.nodes)])
-        A = summed * scale[self.rows] * scale[self.columns]
-        return Matrices(A, B, scale[: 2 * self.nodes].reshape(2, -1))
+        return Matrices(*_filled(float(rod.F), np.array(rod.local(self._points)), self._pieces))
 
     def evaluation(self, points: Array) -> Array:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
         return self.mesh.evaluation(points)
-
-    def _at_nodes(self, values: Array) -> Array:
-        """Values of the elements, (elements, order + 1), summed at each node except the clamp, (nodes,)."""
-        return np.asarray(np.bincount(self._node, values.ravel(), minlength=self.nodes + 1)[1:], float)
 
     def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
         """(rows, columns, index in the pattern of each entry of the blocks of `matrices`).
@@ -132,3 +123,81 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
     keys = rows[:, :, None] * size + columns[:, None, :]
     clamped = (rows < 0)[:, :, None] | (columns < 0)[:, None, :]
     return np.where(clamped, -1, keys).ravel()
+
+
+@compiled
+def _filled(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
+    """The fields of `Matrices` of an arm; local: its coefficients, (6, elements, 2 order + 1)."""
+    elements, order = pieces.weight.shape
+    nodes = elements * order
+    push = np.zeros(nodes + 1)
+    turn = np.zeros(nodes + 1)
+    least = np.zeros(nodes + 1)
+    for e in range(elements):
+        for i in range(order + 1):
+            mass = pieces.lumped[e, i]
+            push[e * order + i] += mass * local[3, e, order + i]
+            turn[e * order + i] += mass * local[4, e, order + i]
+            least[e * order + i] += mass * PENCIL_NORM.least_angle_weight**2
+    scale = np.empty(3 * nodes)
+    B = np.zeros(3 * nodes)
+    for k in range(nodes):
+        # Without rotational drag theta has no mass, and its scale would be infinite.
+        angle = max(turn[k + 1], least[k + 1])
+        scale[k] = 1 / math.sqrt(push[k + 1])
+        scale[nodes + k] = 1 / math.sqrt(angle)
+        weight = pieces.weight[k // order, k % order]
+        scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM.shear_weight**2)
+        B[k] = 1.0
+        B[nodes + k] = turn[k + 1] / angle
+    # Entries of the clamp are summed behind the pattern and dropped.
+    A = np.zeros(len(pieces.rows) + 1)
+    _add_entries(F, local, pieces, A)
+    for k in range(len(pieces.rows)):
+        A[k] *= scale[pieces.rows[k]] * scale[pieces.columns[k]]
+    return A[:-1].copy(), B, scale[: 2 * nodes].copy().reshape(2, nodes)
+
+
+@compiled
+def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
+    """Adds the entries of all blocks, in the order of `where`, to those of the pattern, (nnz + 1,)."""
+    elements, order = pieces.weight.shape
+    value = pieces.value
+    where = pieces.where
+    at = _added(pieces.constant, 0, where, A)
+    for e in range(elements):
+        at = _added(_bending(pieces.slope, pieces.bending[e] / local[2, e, :order]), at, where, A)
+    for _ in range(elements):
+        at = _added(F * pieces.both, at, where, A)
+    for e in range(elements):
+        at = _added(value.T * (pieces.weight[e] * local[5, e, :order]), at, where, A)
+    for e in range(elements):
+        turned = pieces.weight[e] * local[0, e, :order]
+        at = _added(-turned.reshape(-1, 1) * value, at, where, A)
+    for e in range(elements):
+        at = _added(-pieces.weight[e] * local[1, e, :order], at, where, A)
+    A[where[at]] -= F  # the follower force at the tip, -F a(1) theta(1)
+
+
+@compiled
+def _bending(slope: Array, factors: Array) -> Array:
+    """-slope^T factors slope, (p + 1, p + 1); factors: at the Gauss points, (p,)."""
+    block = np.zeros((slope.shape[1], slope.shape[1]))
+    for q in range(len(factors)):
+        for i in range(len(block)):
+            factor = factors[q] * slope[q, i]
+            for j in range(len(block)):
+                block[i, j] -= factor * slope[q, j]
+    return block
+
+
+@compiled
+def _added(block: Array, at: int, where: NDArray[np.int64], A: Array) -> int:
+    """Adds the entries of a block, of any shape (...,), whose first one has the index `at` in `where`.
+
+    A: entries of the pattern, (nnz + 1,). Returns the index of the next entry.
+    """
+    for entry in block.flat:
+        A[where[at]] += entry
+        at += 1
+    return at

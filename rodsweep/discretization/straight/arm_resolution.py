@@ -10,7 +10,6 @@ from ...model.dispersion import local_growth, sampled
 from ...model.rod import Rod
 from ..elements.elements import Elements
 from ..elements.resolution import RESOLUTION, required_order
-from .arm_pencil import ArmMesh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +23,15 @@ class ArmResolutionSettings:
 
 
 ARM_RESOLUTION = ArmResolutionSettings()
+
+
+class ArmMesh(Elements):
+    """Elements for an `ArmPencil`; an element must end wherever a coefficient jumps."""
+
+    @property
+    def unknowns(self) -> int:
+        """The total number of unknowns y, theta and s."""
+        return 3 * self.nodes
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
+from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.elements import ELEMENTS, Elements, equal_edges
@@ -32,7 +33,7 @@ from ..elements.quadrature import gauss, gauss_lobatto
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PencilNormSettings:
+class PencilNormSettings(CompiledSettings):
     """Settings of the norm of a pencil: weights of the unknowns, and normalisation at the tip."""
 
     shear_weight: float = 1e-9

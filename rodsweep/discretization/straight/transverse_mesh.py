@@ -8,8 +8,8 @@ from functools import lru_cache
 from ...model.rod import Rod
 from ..elements.elements import ELEMENTS
 from ..elements.resolution import Resolution, finer, resolution_for
-from .arm_pencil import ArmMesh, ArmPencil
-from .arm_resolution import arm_elements, finer_arm_mesh
+from .arm_pencil import ArmPencil
+from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh
 from .dense_form import AnyPencil
 from .pencil import assemble
 

@@ -176,11 +176,14 @@ class Build:
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
         """Factors of stiffnesses and drags at points u, by name; all arrays have the shape of u, (...,)."""
-        values = [np.ones(u.shape)] * len(FACTORS) if self.profile is None else self.profile.factors(u)
-        factors = dict(zip(FACTORS, values, strict=True))
-        if np.ndim(taper) or taper != 1:
+        if self.profile is None:
+            factors = dict.fromkeys(FACTORS, np.ones(u.shape))
+        else:
+            factors = dict(zip(FACTORS, self.profile.factors(u), strict=True))
+        if isinstance(taper, np.ndarray) or taper != 1:
             radius = 1 - (1 - taper) * u
-            powers = {power: radius**power for power in set(RADIUS_POWERS.values())}
+            square = radius * radius  # a power of NumPy takes as long as ten products
+            powers = {2: square, 4: square * square}
             for name, power in RADIUS_POWERS.items():
                 factors[name] = factors[name] * powers[power] if self.profile else powers[power]
         return factors

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Complex
-from ...discretization.straight.arm_pencil import ArmMesh, ArmPencil
+from ...discretization.straight.arm_pencil import ArmPencil
+from ...discretization.straight.arm_resolution import ArmMesh
 from ...discretization.straight.pencil import Matrices, fields_of, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.kept import LruPool

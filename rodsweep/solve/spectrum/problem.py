@@ -23,8 +23,7 @@ from ...determinant.certificate.box import squared_amplification
 from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.roots.roots import Roots, roots
 from ...discretization.elements.resolution import Resolution, expected_wave_number, finer, resolution_for
-from ...discretization.straight.arm_pencil import ArmMesh
-from ...discretization.straight.arm_resolution import arm_mesh, finer_arm_mesh
+from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import local_growth, most_amplified_wave
 from ...model.rod import Rod

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +46,10 @@ class Job:
     """The config as the user wrote it: the text of a YAML file, or the tree of keys of a call in Python."""
     points: Points
     task: Task
+    resolved: dict[str, Any]
+    """The config with all defaults."""
+    layout: Layout
+    """Variables of the results."""
 
     @property
     def text(self) -> str:
@@ -57,11 +60,6 @@ class Job:
     def name(self) -> str:
         """The config's title, or else the name of the config's file."""
         return self.config.title or self.path.stem
-
-    @cached_property
-    def resolved(self) -> dict[str, Any]:
-        """The config with all defaults."""
-        return canonical(self.config)
 
     @property
     def quantities(self) -> tuple[Filled, ...]:
@@ -99,11 +97,6 @@ class Job:
             stretched=solver.stretched and (solver.stretched[0], together),
         )
 
-    @cached_property
-    def layout(self) -> Layout:
-        """Variables of the results."""
-        return layout_of(self.resolved)
-
 
 def memory() -> int:
     """Memory of this machine in bytes."""
@@ -127,7 +120,9 @@ def job_of(
             "machine; use fewer values"
         )
     count = grid_size(config)
-    each = layout_of(canonical(config)).bytes_per_point
+    resolved = canonical(config)
+    layout = layout_of(resolved)
+    each = layout.bytes_per_point
     if count * each > LARGEST_FILE:
         raise InputError(
             f"{path}: parameters make a grid of {count:.6g} points, whose results take "
@@ -140,18 +135,20 @@ def job_of(
             f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)
-    return Job(path, config, source, points, TASKS[config.task](config, points))
+    return Job(path, config, source, points, TASKS[config.task](config, points), resolved, layout)
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
     """Plan of a config on given points, without attributes and flags."""
-    return _plan(TASKS[config.task](config, replace(points, build=config.build)), canonical(config))
+    resolved = canonical(config)
+    task = TASKS[config.task](config, replace(points, build=config.build))
+    return _plan(task, resolved, layout_of(resolved))
 
 
-def _plan(task: Task, resolved: dict[str, Any]) -> Plan:
+def _plan(task: Task, resolved: dict[str, Any], layout: Layout) -> Plan:
     return Plan(
         points=task.points,
-        layout=layout_of(resolved),
+        layout=layout,
         coordinates=task.coordinates(),
         constants=task.constants,
         afterwards=task.afterwards,
@@ -166,7 +163,7 @@ def _plan(task: Task, resolved: dict[str, Any]) -> Plan:
 def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
     """Plan of the results of a job, without the attributes of a file."""
     return replace(
-        _plan(job.task, job.resolved),
+        _plan(job.task, job.resolved, job.layout),
         quantities=job.quantities,
         flags=tuple((int(s), s.name) for s in statuses),
     )

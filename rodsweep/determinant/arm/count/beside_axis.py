@@ -14,7 +14,8 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
-from ..determinant import ArmDeterminant, ArmSamples, Level
+from ..determinant import ArmDeterminant, Level
+from ..local_waves import ArmSamples
 from ..value import chain_value
 from .dominant_wave import slope_of_wave
 from .settings import ARM_COUNT

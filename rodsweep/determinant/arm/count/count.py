@@ -19,9 +19,10 @@ from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ...certificate.winding_number import COUNT, Count
 from ..completeness import has_conjugate
-from ..determinant import ArmDeterminant, ArmSamples, Level, scales_at
+from ..determinant import ArmDeterminant, Level
 from ..elements.settings import ARM_ELEMENTS
 from ..hull.region import Hull
+from ..local_waves import ArmSamples, scales_at
 from .phase_node import PhaseNode, phase_node, tangent
 from .settings import ARM_COUNT
 

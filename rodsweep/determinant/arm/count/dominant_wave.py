@@ -1,10 +1,7 @@
 """The fastest growing exponential of D along an arm: how D changes over distances of the size of |w|.
 
-With the local exponents of the minors, +-sqrt(z+-), D is about exp(Phi), Phi = int sqrt(z+) du, times a
-factor that changes slowly where no eigenvalue is near:
-
-    z+- = T x - F c3 g +- 2 P,   P = sqrt(x) sqrt(g nu + X x),   x = w gamma2 c3,
-    T = c2/c3 + gamma3/gamma2,   X = (c2/c3) (gamma3/gamma2).
+With the local exponents of the minors, +-sqrt(z+-) of `rodsweep.determinant.arm.local_waves`, D is about
+exp(Phi), Phi = int sqrt(z+) du, times a factor that changes slowly where no eigenvalue is near.
 
 For Im w > 0 is Im P > 0 and Im z+ > 0: Phi has no branch point in the upper half plane. Nothing rests on Phi
 being close to log D: the count divides D by exp(Phi), and Phi is analytic, whatever its quadrature.
@@ -12,34 +9,37 @@ being close to log D: the count divides D by exp(Phi), and Phi is analytic, what
 
 import cmath
 
-from ....model.compiled.compilation import compiled
-from ..determinant import ArmSamples
+from ....model.compiled.compilation import compiled, compiled_for_vectors
+from ..local_waves import ArmSamples, root_of_upper_half
 
 
-@compiled
+@compiled_for_vectors
 def dominant_wave(w: complex, samples: ArmSamples) -> complex:
     """Phi at w, Im w > 0."""
-    exponent = 0j
+    root = cmath.sqrt(w)
+    a = root.real
+    b = root.imag
+    real = 0.0
+    imag = 0.0
     for i in range(len(samples.weights)):
-        nu, c2, c3, gamma2, gamma3, g = samples.local[:, i]
-        X = c2 / c3 * gamma3 / gamma2
-        x = w * gamma2 * c3
-        P = cmath.sqrt(x) * cmath.sqrt(g * nu + X * x)
-        square = (c2 / c3 + gamma3 / gamma2) * x - samples.F * c3 * g + 2 * P
-        exponent += samples.weights[i] * cmath.sqrt(square)
-    return exponent
+        drag, load, rate, bend = samples.squares[:, i]
+        x, y = root_of_upper_half(rate + bend * w.real, bend * w.imag)
+        x, y = root_of_upper_half(
+            drag * w.real - load + 2 * (a * x - b * y), drag * w.imag + 2 * (a * y + b * x)
+        )
+        real += samples.weights[i] * x
+        imag += samples.weights[i] * y
+    return complex(real, imag)
 
 
 @compiled
 def slope_of_wave(w: complex, samples: ArmSamples) -> complex:
     """dPhi/dw at w, Im w > 0."""
+    root = cmath.sqrt(w)
     slope = 0j
     for i in range(len(samples.weights)):
-        nu, c2, c3, gamma2, gamma3, g = samples.local[:, i]
-        T = c2 / c3 + gamma3 / gamma2
-        X = c2 / c3 * gamma3 / gamma2
-        x = w * gamma2 * c3
-        P = cmath.sqrt(x) * cmath.sqrt(g * nu + X * x)
-        root = cmath.sqrt(T * x - samples.F * c3 * g + 2 * P)
-        slope += samples.weights[i] * (T + (g * nu + 2 * X * x) / P) / (2 * root) * gamma2 * c3
+        drag, load, rate, bend = samples.squares[:, i]
+        P = root * cmath.sqrt(rate + bend * w)
+        fastest = cmath.sqrt(drag * w - load + 2 * P)
+        slope += samples.weights[i] * (drag + (rate + 2 * bend * w) / P) / (2 * fastest)
     return slope

@@ -26,8 +26,9 @@ from ....arrays import Complex
 from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENTS
 from ...value import DeterminantValue
-from ..determinant import ArmSamples, Level
+from ..determinant import Level
 from ..hull.region import Hull, clearance
+from ..local_waves import ArmSamples
 from ..value import chain_size, chain_value
 from .dominant_wave import dominant_wave, slope_of_wave
 from .settings import ARM_COUNT

@@ -33,6 +33,7 @@ from ....model.compiled.compilation import compiled, compiled_for_vectors
 from .elimination import elimination_matrix
 from .minor_rates import (
     C3,
+    ENTRIES,
     SM,
     TM,
     TS,
@@ -56,6 +57,31 @@ class IntegrationMatrices(NamedTuple):
 
     integrals: Array
     weights: Array
+
+
+@compiled
+def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
+    """Terms of w/W of the elements of n arms, (n, elements, terms, ENTRIES); no terms where MAX_TERMS are too
+    few.
+
+    F: forces, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
+    """
+    n, elements = local.shape[1:3]
+    batches = -(-elements // ARM_ELEMENTS.lanes)
+    coefficients = np.empty((n, batches, 6, ARM_ELEMENTS.stages, ARM_ELEMENTS.lanes))
+    for arm in range(n):
+        for b in range(batches):
+            for lane in range(ARM_ELEMENTS.lanes):
+                # The last batch is filled up with the last element.
+                e = min(b * ARM_ELEMENTS.lanes + lane, elements - 1)
+                for q in range(6):
+                    for i in range(ARM_ELEMENTS.stages):
+                        coefficients[arm, b, q, i, lane] = local[q, arm, e, i] * lengths[e]
+    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, ENTRIES))
+    most = fill_terms(F, W, coefficients, method, terms)
+    if most > ARM_ELEMENTS.max_terms:
+        return terms[:, :, :0].copy()
+    return terms[:, :elements, :most].copy()
 
 
 @compiled

@@ -22,7 +22,7 @@ Extremes along the arm are looked up at points between the breaks, with `HULL.ma
 """
 
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
@@ -30,6 +30,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
+from ....model.material.build import Build
 from ....model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
 from .region import HULL, NO_BOUND, Hull, PathHulls
@@ -72,15 +73,21 @@ class SampledArms(NamedTuple):
 
 
 def _arms(rods: Sequence[Rod]) -> SampledArms:
-    x = (1 - 2 * HULL.inside) * _chebyshev().points
     build = rods[0].build
-    lengths = np.diff(build.breaks)
-    u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
+    lengths, u = _points_of(build)
     F = np.array([rod.F for rod in rods])
-    lengths = lengths * (1 - 2 * HULL.inside)
     local = np.array(Rod.local_of_all(rods, u))
     averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
     return SampledArms(F, lengths, local, averaged)
+
+
+@lru_cache(maxsize=HULL.builds_kept)
+def _points_of(build: Build) -> tuple[Array, Array]:
+    """Lengths of the smooth pieces of arms, (pieces,), and points in them, (pieces, points)."""
+    x = (1 - 2 * HULL.inside) * _chebyshev().points
+    lengths = np.diff(build.breaks)
+    u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
+    return lengths * (1 - 2 * HULL.inside), u
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:

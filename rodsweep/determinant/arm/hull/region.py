@@ -30,6 +30,8 @@ class HullSettings(CompiledSettings):
     """Smallest |g/nu| that is tried as a constant weight."""
     directions: int = 48
     """Number of normals of the region to try for the distance of a point."""
+    builds_kept: int = 16
+    """Builds whose points are kept: a bound of memory, which changes no number."""
     middles: tuple[float, ...] = (0.0, 0.5, 1.0)
     """Trial factors of |F| sqrt(c2 c3 gamma3/gamma2) in alpha."""
 

@@ -1,0 +1,101 @@
+"""Ends of the elements of arms, which resolve waves and coefficients in each of them."""
+
+import math
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....model.compiled.compilation import compiled
+from ...exponents import EXPONENTS
+from .settings import ARM_ELEMENTS
+
+
+@compiled
+def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks: Array) -> Array:
+    """Ends of elements for |w| <= W, from 0 to 1: equal shares of the density that the local exponents ask
+    for.
+
+    squares: those of `ArmSamples` of n arms, (4, n, points). tapers: (n,). points: midpoints of equal parts
+    of the pieces between breaks, (points,).
+    """
+    density = _density(W, squares, tapers, points)
+    pieces = len(breaks) - 1
+    parts = len(points) // pieces
+    edges = [0.0]
+    for piece in range(pieces):
+        start = breaks[piece]
+        part = (breaks[piece + 1] - start) / parts
+        own = density[piece * parts : (piece + 1) * parts]
+        mass = own.sum() * part
+        count = max(1, math.ceil(mass))
+        below = 0.0
+        k = 0
+        for edge in range(1, count):
+            target = mass * edge / count
+            while k < parts - 1 and below + own[k] * part < target:
+                below += own[k] * part
+                k += 1
+            edges.append(start + part * (k + min((target - below) / (own[k] * part), 1.0)))
+        # Exactly on the break: beyond it the coefficients jump.
+        edges.append(breaks[piece + 1])
+    return np.array(edges)
+
+
+@compiled
+def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
+    """Elements per length at points of n arms, (points,), for the arm that needs most."""
+    density = np.empty(len(points))
+    for i in range(len(points)):
+        waves = 0.0  # an upper bound of |q| for all |w| <= W
+        for arm in range(squares.shape[1]):
+            drag, load, rate, bend = squares[:, arm, i]
+            waves = max(waves, drag * W + abs(load) + 2 * math.sqrt(W * (abs(rate) + bend * W)))
+        density[i] = math.sqrt(waves) / ARM_ELEMENTS.longest
+        for taper in (tapers.min(), tapers.max()):
+            if taper != 1:
+                apex = 1 / (1 - taper)
+                density[i] = max(density[i], 1 / (ARM_ELEMENTS.to_apex * abs(apex - points[i])))
+    return density
+
+
+def halved_where_coarse(edges: Array, local: Array) -> Array:
+    """Edges with every element halved in which the coefficients of an arm are not resolved; `edges` if none.
+
+    local: coefficients of n arms at the Gauss points, (6, n, elements, stages).
+    """
+    coarse = _is_coarse(local, _last_terms(ARM_ELEMENTS.stages))
+    if not coarse.any():
+        return edges
+    middles = (edges[:-1] + edges[1:])[coarse] / 2
+    return np.sort(np.append(edges, middles))
+
+
+@cache
+def _last_terms(stages: int) -> Array:
+    """Matrix from values at the Gauss points to the two highest Legendre coefficients, (2, stages)."""
+    x, weights = np.polynomial.legendre.leggauss(stages)
+    last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
+    return np.ascontiguousarray((weights[:, None] * last).T)
+
+
+@compiled
+def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
+    """Mask of the elements, (elements,), whose last two Legendre coefficients are too large in an arm."""
+    quantities, arms, elements, stages = local.shape
+    coarse = np.zeros(elements, np.bool_)
+    # The sixth, g, follows from the others and the force.
+    for q in range(quantities - 1):
+        for arm in range(arms):
+            for e in range(elements):
+                size = EXPONENTS.least_divisor  # a compliance or a drag may be 0
+                first = 0.0
+                second = 0.0
+                for i in range(stages):
+                    value = local[q, arm, e, i]
+                    size = max(size, abs(value))
+                    first += value * last_terms[0, i]
+                    second += value * last_terms[1, i]
+                coarse[e] |= not max(abs(first), abs(second)) <= ARM_ELEMENTS.largest_tail * size
+    return coarse

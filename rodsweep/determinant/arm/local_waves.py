@@ -1,0 +1,90 @@
+"""Local exponents of D along an arm, as of a uniform rod with the coefficients at a point.
+
+The minors of `rodsweep.determinant.arm.elements.collocation` grow like exp(+-sqrt(z+-) u), with
+
+    z+- = (c2 gamma2 + c3 gamma3) w - F c3 g +- 2 P,
+    P^2 = w (g nu gamma2 c3 + c2 c3 gamma2 gamma3 w).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ...model.compiled.compilation import compiled, compiled_for_vectors
+from ...model.material.build import LocalCoefficients
+from ..exponents import EXPONENTS
+
+
+class ArmSamples(NamedTuple):
+    """Numbers of z+- at points along an arm, and weights of a quadrature.
+
+    squares: c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3 and c2 c3 gamma2 gamma3, (4, points). weights:
+    (points,).
+    """
+
+    squares: Array
+    weights: Array
+
+
+def arm_samples(F: float | Array, local: LocalCoefficients, weights: Array) -> ArmSamples:
+    """The samples of an arm from its coefficients at points, (points,), and weights, (points,).
+
+    Of n arms with forces (n, 1) and coefficients (n, points), squares have the shape (4, n, points).
+    """
+    nu, c2, c3, gamma2, gamma3, g = local
+    shear = c2 * gamma2
+    turn = c3 * gamma3
+    return ArmSamples(np.array([shear + turn, F * c3 * g, g * nu * gamma2 * c3, shear * turn]), weights)
+
+
+@compiled_for_vectors
+def root_of_upper_half(real: float, imag: float) -> tuple[float, float]:
+    """(real, imaginary) part of the square root of a number with an imaginary part of at least 0."""
+    larger = math.sqrt((math.sqrt(real * real + imag * imag) + abs(real)) / 2)
+    smaller = imag / (2 * max(larger, EXPONENTS.least_divisor))
+    return (larger, smaller) if real >= 0 else (smaller, larger)
+
+
+@compiled_for_vectors
+def size_of(real: float, imag: float) -> float:
+    """The modulus of a number."""
+    return math.sqrt(real * real + imag * imag)
+
+
+@compiled_for_vectors
+def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
+    """(mean |q| of both pairs of exponents, 1 / mean of the larger |dq/dw|) along an arm."""
+    number = 0.0
+    fast = 0.0
+    a = w.real
+    b = w.imag
+    for i in range(len(samples.weights)):
+        drag, load, rate, bend = samples.squares[:, i]
+        x, y = root_of_upper_half(a * (rate + bend * a) - bend * b * b, b * (rate + 2 * bend * a))
+        P = size_of(x, y)
+        first = math.sqrt(size_of(drag * a - load + 2 * x, drag * b + 2 * y))
+        second = math.sqrt(size_of(drag * a - load - 2 * x, drag * b - 2 * y))
+        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
+        share = 1 / (max(P, EXPONENTS.least_divisor) * max(P, 1.0, first, second))
+        slope = rate + 2 * bend * a
+        turn = share * (slope * x + 2 * bend * b * y)
+        side = share * (2 * bend * b * x - slope * y)
+        rates = size_of(drag + turn, side) / max(1.0, first), size_of(drag - turn, side) / max(1.0, second)
+        number += samples.weights[i] * (first + second) / 2
+        fast += samples.weights[i] * max(rates[0], rates[1]) / 2
+    return number, 1 / max(fast, EXPONENTS.least_divisor)
+
+
+@compiled
+def scales_at_all(w: Complex, samples: ArmSamples) -> Array:
+    """`scales_at` of n numbers, (2, n)."""
+    found = np.empty((2, len(w)))
+    for n in range(len(w)):
+        # Conjugates, which stand next to each other, have the same scales.
+        if n > 0 and w[n] == w[n - 1].conjugate():
+            found[:, n] = found[:, n - 1]
+        else:
+            found[:, n] = scales_at(w[n], samples)
+    return found
