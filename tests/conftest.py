@@ -16,6 +16,7 @@ from faults import small
 from faults.isolated import Isolated, isolated
 from hypothesis import settings
 from ranks import kill, ranks_in, wait_for_children
+from surveyed import RODS
 
 ROOT = Path(__file__).parents[1]
 
@@ -105,6 +106,10 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: places.get(item.path.stem, len(LONGEST)))
 
 
+NOT_FITTED = "from rodsweep.post.figures import request; request.fit = lambda *_: None"
+"""Patch with which figures are drawn but not laid out, which takes most of the time."""
+
+
 class Started(subprocess.Popen):
     """A process that ends once the child of the loaded process to which it handed over has ended too."""
 
@@ -161,6 +166,10 @@ class Command:
         if ended.slow:
             raise subprocess.TimeoutExpired(list(map(str, words)), timeout, ended.out, ended.err)
         return subprocess.CompletedProcess(list(map(str, words)), ended.status, ended.out, ended.err)
+
+    def drawn(self, *words: object) -> subprocess.CompletedProcess:
+        """`plot` or `report` to its end, for what does not depend on the layout; laid out by `make survey`."""
+        return self(*words, patch="" if RODS else NOT_FITTED)
 
     def solved(self, config: str, output: str = "") -> Path:
         """The result file of a config here, as a run of its own without a launcher gives it; the path.
@@ -249,7 +258,7 @@ def command(tmp_path, request):
 
 @pytest.fixture
 def drawn(monkeypatch):
-    """The figures that are drawn, in place of their files, and not laid out, which takes most of the time."""
+    """The figures that are drawn, in place of their files, and not laid out."""
     from matplotlib.figure import Figure
 
     figures: list[Figure] = []

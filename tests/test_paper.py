@@ -30,7 +30,7 @@ def run(command, name, *overrides):
     words = [word for override in overrides for word in ("--set", override)]
     outcome = command("run", CONFIGS / f"{name}.yaml", *words)
     assert outcome.returncode == 0, outcome.stderr
-    drawn = command("plot", f"{name}.h5", "-o", f"{name}.png")
+    drawn = command.drawn("plot", f"{name}.h5", "-o", f"{name}.png")
     assert drawn.returncode == 0, drawn.stderr
     picture = matplotlib.image.imread(command.directory / f"{name}.png")
     assert np.ptp(picture[..., :3]) > 0.5

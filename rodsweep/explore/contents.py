@@ -70,12 +70,14 @@ class PageContents:
         for picture in (self.growth, self.branches):
             picture.card.figure.on_event(Tap, react["load"])
         # Add models last: a document subscribes only to events that its models already handle.
-        for root in (
-            self.controls.root, self.sharing.root, *self.buttons.values(),
-            *(card.root for card in self.cards),
-        ):  # fmt: skip
-            document.add_root(root)
-        show_texts(document, (self.sign, self.numbers.root))
+        # Freeze: otherwise each root makes the document go through all models, which takes a second in all.
+        with document.models.freeze():
+            for root in (
+                self.controls.root, self.sharing.root, *self.buttons.values(),
+                *(card.root for card in self.cards),
+            ):  # fmt: skip
+                document.add_root(root)
+            show_texts(document, (self.sign, self.numbers.root))
         document.js_on_event(DocumentReady, colours([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"

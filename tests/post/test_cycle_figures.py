@@ -303,7 +303,7 @@ def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
     if not as_list:
         figures |= {"arms.png": (), "arms.gif": ("--what", "animation")}
     for words in figures.values():
-        drawn = command("plot", "arms.h5", *words)
+        drawn = command.drawn("plot", "arms.h5", *words)
         assert (drawn.returncode, drawn.stderr) == (0, "")
     assert {f.name for f in command.directory.iterdir()} == {"arms.h5", *figures}
 

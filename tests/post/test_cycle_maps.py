@@ -275,8 +275,8 @@ def test_what_no_map_can_show_is_refused_in_one_sentence(tmp_path, views, words,
 def test_a_file_as_the_task_lays_it_out_is_mapped(command):
     view = swept(*SMALL, stored=("shapes", "samples"))
     store(view, command.directory / "arms.h5")
-    drawn = command("plot", "arms.h5", "-o", "one.png")
+    drawn = command.drawn("plot", "arms.h5", "-o", "one.png")
     assert (drawn.returncode, drawn.stderr) == (0, "")
     assert "period and amplitude over F and k2" in drawn.stdout
-    named = command("plot", "arms.h5", "--what", "maps", "-o", "two.png")
+    named = command.drawn("plot", "arms.h5", "--what", "maps", "-o", "two.png")
     assert (named.returncode, named.stderr) == (0, "")

@@ -44,7 +44,7 @@ def reported(command, name):
     solved(command, name)
     path = command.directory / f"{name}.html"
     if name not in PAGES:
-        run = command("report", f"{name}.h5")
+        run = command.drawn("report", f"{name}.h5")
         assert run.returncode == 0, run.stderr
         assert run.stdout.startswith(f"wrote {name}.html: 1 result, ")
         PAGES[name] = path.read_text()
@@ -116,7 +116,7 @@ def test_a_map_of_spectra_has_the_growth_rates_under_the_pointer(command):
     rest = "k2: 1.0e4, gamma3: 1.0e-4}"
     command.write("c.yaml", f"task: spectrum\nparameters: {axes}, {rest}\nspectrum: {{modes: 2}}\n")
     command.solved("c.yaml")
-    assert command("report", "c.h5").returncode == 0
+    assert command.drawn("report", "c.h5").returncode == 0
     rates = [float(v[0].rpartition(": ")[2]) for v in read_page(command.directory / "c.html").values()]
     stored = read_view(command.directory / "c.h5").variables["growth_rate"][..., 0].ravel()
     assert rates == pytest.approx(stored.tolist(), rel=1e-7)
@@ -126,7 +126,7 @@ def test_a_title_and_a_config_cannot_bring_markup(command):
     comment = "# <img src='http://example.org/x.png'>"
     command.write("c.yaml", f'title: "{NASTY}"\n{comment}\n{CONFIGS["thresholds"]}')
     command.solved("c.yaml")
-    assert command("report", "c.h5", "-o", "p.html").returncode == 0
+    assert command.drawn("report", "c.h5", "-o", "p.html").returncode == 0
     page = read_page(command.directory / "p.html")
     assert page.texts("h1") == [NASTY]
     assert page.texts("title")[0] == NASTY
@@ -139,7 +139,7 @@ def test_a_title_and_a_config_cannot_bring_markup(command):
 def test_a_page_of_a_part_says_what_is_missing(command):
     command.write("c.yaml", CONFIGS["thresholds"])
     assert command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5").returncode == 0
-    assert command("report", "c.h5").returncode == 0
+    assert command.drawn("report", "c.h5").returncode == 0
     page = read_page(command.directory / "c.html")
     (told,) = [text for text in page.texts("p") if text.startswith("2 rods are not here")]
     assert "rodsweep merge" in told

@@ -163,7 +163,7 @@ def test_ranges_are_joined_and_intersected():
 @pytest.mark.parametrize("suffix", few(["svg", "png", "pdf"], 1))
 def test_figure_is_drawn(command, suffix):
     shown(command, CONFIG.format(k1=150, stop=200))
-    drawn = command("plot", "c.h5", "-o", f"c.{suffix}")
+    drawn = command.drawn("plot", "c.h5", "-o", f"c.{suffix}")
     assert drawn.returncode == 0, drawn.stderr
     assert "1 branch of cycles over F" in drawn.stdout
     assert (command.directory / f"c.{suffix}").stat().st_size > 5000
@@ -201,8 +201,8 @@ def test_figure_that_shows_nothing_is_refused(command, k1, said):
 
 def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(command):
     shown(command, CONFIG.format(k1="[100, 150]", stop=90))
-    assert "1 of 2 rods has none" in " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
-    alone = command("plot", "c.h5", "--at", "k1=150", "-o", "one.png")
+    assert "1 of 2 rods has none" in " ".join(command.drawn("plot", "c.h5", "-o", "c.png").stdout.split())
+    alone = command.drawn("plot", "c.h5", "--at", "k1=150", "-o", "one.png")
     assert alone.returncode == 0, alone.stderr
     assert "none" not in alone.stdout
 
@@ -251,7 +251,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     assert "1 of 2 branches is not shown" in told
     assert "branch 1, from the Hopf point at F = 27.427194126" in told
     assert "beside a stable straight rod" not in told
-    drawn = " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
+    drawn = " ".join(command.drawn("plot", "c.h5", "-o", "c.png").stdout.split())
     assert "1 branch of cycles over F; 1 more have special points that are not stored" in drawn
 
 
@@ -301,7 +301,7 @@ def test_other_parameters_are_followed_from_the_command_line(command):
     )
     assert re.search(r"fold at k1 = 155\.37066\d* \(", told)
     assert "to the end of the range, k1 = 170" in told
-    drawn = command("plot", "c.h5", "-o", "c.png")
+    drawn = command.drawn("plot", "c.h5", "-o", "c.png")
     assert "1 branch of cycles over k1" in drawn.stdout
 
 

@@ -203,7 +203,7 @@ def test_it_is_told_and_drawn(diagram):
     assert "folds of cycles: on 1 of 2 rows" in told
     curve = r"curve of folds: from k1 = 149.616892, F = 84.4786266\d* \(\+- \de-\d+\) \(Hopf point, where"
     assert re.search(curve, told)
-    assert diagram("plot", "c.h5", "-o", "c.png").returncode == 0
+    assert diagram.drawn("plot", "c.h5", "-o", "c.png").returncode == 0
 
 
 @survey_only

@@ -323,7 +323,7 @@ def test_file_has_a_value_where_there_is_a_hopf_point_and_none_elsewhere(command
 @pytest.mark.parametrize("k1", ["[120, 150, 200, 400]", "[150, 200, .inf]"])
 def test_figure_over_one_parameter(command, k1):
     shown(command, CONFIG.format(k1=k1))
-    drawn = command("plot", "c.h5", "-o", "c.svg")
+    drawn = command.drawn("plot", "c.h5", "-o", "c.svg")
     assert drawn.returncode == 0
     assert "the normal forms of Hopf points along k1" in drawn.stdout
     assert (command.directory / "c.svg").stat().st_size > 5000
@@ -334,7 +334,7 @@ def test_figure_over_two_parameters(command):
         "gamma3: 1.0e-4", "gamma3: [0.001, 0.1], gamma1: 0.5"
     )
     shown(command, config)
-    drawn = command("plot", "c.h5", "-o", "c.pdf")
+    drawn = command.drawn("plot", "c.h5", "-o", "c.pdf")
     assert drawn.returncode == 0
     assert "the normal form of the first Hopf point over k1 and gamma3" in drawn.stdout
 

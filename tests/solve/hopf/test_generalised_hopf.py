@@ -227,7 +227,7 @@ def test_a_diagram_without_one_says_so(command):
     told = command("show", "c.h5").stdout
     assert "supercritical" in told
     assert "subcritical" not in told
-    assert command("plot", "c.h5", "-o", "c.png").returncode == 0
+    assert command.drawn("plot", "c.h5", "-o", "c.png").returncode == 0
 
 
 def test_python_gives_the_same_with_the_axial_drag_that_is_asked_for():
@@ -381,7 +381,7 @@ def test_curves_over_a_third_parameter_are_shown_drawn_and_the_same_on_two_ranks
     told = command("show", "c.h5").stdout.replace("\n", " ")
     assert "curve 1 of generalised Hopf points: " in told
     assert "k2 = 8000 to 12000; ends: range_end and range_end" in told
-    assert command("plot", "c.h5", "-o", "c.png").returncode == 0
+    assert command.drawn("plot", "c.h5", "-o", "c.png").returncode == 0
 
 
 @pytest.mark.parametrize(
