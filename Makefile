@@ -168,7 +168,7 @@ endef
 	chmod +x $(BIN)/mpiexec
 	# Compile the formulas now, not in the first run, on two cores.
 	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
-	warm_up spectrum.stretch & spectra=$$!
+	warm_up spectrum.path.stretch & spectra=$$!
 	warm_up cycle.reference_rod
 	wait $$spectra
 	touch $@

@@ -14,7 +14,7 @@ from rodsweep.tasks import TASKS
 
 PACKAGE = Path(rodsweep.__file__).parent
 STAGES = {
-    "config": CONFIGS,
+    "config/task": CONFIGS,
     "results/layouts": LAYOUTS,
     "tasks": TASKS,
     "post/summary": SUMMARIES,
