@@ -168,7 +168,7 @@ class Command:
         return subprocess.CompletedProcess(list(map(str, words)), ended.status, ended.out, ended.err)
 
     def drawn(self, *words: object) -> subprocess.CompletedProcess:
-        """`plot` or `report` to its end, for what does not depend on the layout; laid out by `make survey`."""
+        """`plot` or `report` to its end, for what does not depend on the layout; `make survey` lays it out."""
         return self(*words, patch="" if RODS else NOT_FITTED)
 
     def solved(self, config: str, output: str = "") -> Path:
