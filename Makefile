@@ -63,7 +63,7 @@ test-peers: .venv/installed  ## install what the tests use where it is there: Sl
 	apt_install $$browser
 survey: .venv/installed  ## all cases of the tests that `make test` asks of a few: RODS (300) random rods, VERDICTS (50) marched in time (some minutes)
 	surveyed=$$(grep -rl --include='test_*.py' --exclude=test_time_marched_verdicts.py --exclude=test_settings.py \
-	  'surveyed import\|import.*RODS\|RODSWEEP_RODS' tests)
+	  'surveyed import\|import.*RODS\|RODSWEEP_RODS\|\.drawn("' tests)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto $$surveyed
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py tests/hard/test_settings.py
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, damage files and configs CASES (10) times as often (half an hour)

@@ -76,8 +76,11 @@ def _slips(key: str, name: str) -> float | None:
         return 0
     if name.startswith(key) or (len(key) >= LONG_PART and key in name):
         return 0.5
+    longest = max(len(key), len(name))
+    if LETTERS_A_SLIP * abs(len(key) - len(name)) > longest:  # the edit distance is no smaller
+        return None
     distance = _edits(key, name)
-    return distance if LETTERS_A_SLIP * distance <= max(len(key), len(name)) else None
+    return distance if LETTERS_A_SLIP * distance <= longest else None
 
 
 def _edits(a: str, b: str) -> int:
