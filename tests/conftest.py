@@ -41,6 +41,12 @@ LONGEST = (
     "test_stop",
     "test_cycle_figures",
     "test_run",
+    "test_report",
+    "test_settings",
+    "test_page",
+    "test_stored",
+    "test_letting_go",
+    "test_browser",
     "test_stress",
     "test_interrupts",
     "test_start",
@@ -168,7 +174,7 @@ class Command:
         return subprocess.CompletedProcess(list(map(str, words)), ended.status, ended.out, ended.err)
 
     def drawn(self, *words: object) -> subprocess.CompletedProcess:
-        """`plot` or `report` to its end, for what does not depend on the layout; `make survey` lays it out."""
+        """`plot` or `report` to its end, for what no layout changes; `make survey` lays figures out."""
         return self(*words, patch="" if RODS else NOT_FITTED)
 
     def solved(self, config: str, output: str = "") -> Path:
