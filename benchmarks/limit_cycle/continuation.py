@@ -16,8 +16,8 @@ import numpy as np
 from rodsweep.bench.limit_cycle.sweeping import RODS, TIMED_POINTS, ExactCycle, from_neighbour, name_of, swept
 from rodsweep.bench.limit_cycle.tracking import (
     REFERENCE_INTERVALS,
+    REFERENCE_NEWTON_TOLERANCE,
     REFERENCE_STAGES,
-    REFERENCE_TOLERANCE,
     SETTLED_WITHIN,
     cycle_request,
     orbit_of,
@@ -105,7 +105,8 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     orders = {setting.order for setting in settings}
     moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
     return {
-        order: newton(orbit, REFERENCE_TOLERANCE, NewtonWorkspace()).orbit for order, orbit in moved.items()
+        order: newton(orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
+        for order, orbit in moved.items()
     }
 
 

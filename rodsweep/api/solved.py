@@ -38,7 +38,7 @@ class Result(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StoredResult:
-    """A result from its Dataset."""
+    """A result given as a Dataset, from which tables read it."""
 
     dataset: xr.Dataset
 

@@ -93,10 +93,10 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
 @click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
-    from ..results.file.recent import take_snapshot
+    from ..results.file.recent import write_snapshot
 
     output = result_file(output or with_ending(file, f"-snapshot{file.suffix}"))
-    done, points = take_snapshot(link_target(file), output)
+    done, points = write_snapshot(link_target(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
 

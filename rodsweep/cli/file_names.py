@@ -30,7 +30,7 @@ def with_ending(file: Path, ending: str) -> Path:
 def link_target(path: Path) -> Path:
     """Target of a link, where the journal and the lock of a result are; all paths but links unchanged.
 
-    InputError for a link that leads to itself and cannot be replaced.
+    Raises InputError for a link that leads to itself.
     """
     if not path.is_symlink():
         return path

@@ -13,7 +13,7 @@ from .arm_options import arm_options, parameter_options
 from .file_names import link_target, with_ending
 from .portrait_rod import LEFT_OUT, rod_from, showing
 
-PORTS = click.IntRange(0, 65535)
+PORT = click.IntRange(0, 65535)
 FILE = click.Path(path_type=Path)
 
 
@@ -168,7 +168,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path), required=False, metavar="[FILE | CONFIG]")
 @click.option(
-    "--port", type=PORTS, default=0, show_default=True, help="Port of the page; 0 chooses a free port."
+    "--port", type=PORT, default=0, show_default=True, help="Port of the page; 0 chooses a free port."
 )
 @click.option("--open", "is_opened", is_flag=True, help="Open the page in the browser.")
 def explore(source: Path | None, port: int, is_opened: bool) -> None:

@@ -29,7 +29,7 @@ def as_number(value: Any) -> float:
     except OverflowError:
         raise ValueError(f"{short(value)} is too large for a floating-point number") from None
     if isnan(number):
-        raise ValueError("nan is not a number")
+        raise ValueError("nan is not allowed; give a number")
     return number
 
 

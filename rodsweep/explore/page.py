@@ -145,7 +145,7 @@ class Page:
         self._rest()
 
     def _refuse(self, sentence: str) -> None:
-        """Shows a sentence instead of all pictures except a drawn diagram, and cancels all questions."""
+        """Shows a sentence instead of all pictures except a drawn diagram, and cancels all solves."""
         for kind in (*OF_TIP, *ON_REQUEST):
             self._drop(kind)
         for kind in (*AT_ONCE, *WHEN_IDLE):

@@ -118,7 +118,9 @@ def _first_up_to(path: Path, end: float) -> float:
 
 
 def _first_of_varied(path: Path, end: float) -> float:
-    """`_first_up_to` for an arm that is not uniform or not of linear material."""
+    """Smallest F up to `end` at which a pair becomes unstable, inf for none, by a search for crossings: for
+    arms that are not uniform or not of linear material.
+    """
     from ..solve.changes.along_path import pair_crossings
     from ..solve.point import FAILURES, cause_of
 

@@ -136,7 +136,7 @@ def test_link_that_leads_to_itself_is_left_alone(command):
     [
         ("branch.stop", ".inf", "branch.stop = inf is not allowed; it should be a finite number"),
         ("branch.start", "-.inf", "branch.start = -inf is not allowed; it should be a finite number"),
-        ("branch.stop", ".nan", "branch.stop: nan is not a number"),
+        ("branch.stop", ".nan", "branch.stop: nan is not allowed; give a number"),
         ("branch.stop", '""', "branch.stop: '' is not a number"),
         (
             "parameters",

@@ -12,7 +12,7 @@ from surveyed import few
 from rodsweep.api.dataset import open_result
 from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.results.file import recent
-from rodsweep.results.file.recent import read_unfolded, take_snapshot
+from rodsweep.results.file.recent import read_unfolded, write_snapshot
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run.journal import journal_directory
 
@@ -112,7 +112,7 @@ def test_points_that_are_folded_in_meanwhile_are_not_lost_from_sight(command, wa
     elif look == "dataset":
         status = open_result(path).status.values
     else:
-        assert take_snapshot(path, command.directory / "s.h5") == (120, 120)
+        assert write_snapshot(path, command.directory / "s.h5") == (120, 120)
         status = content(command.directory / "s.h5")["status"]
     assert folds
     assert np.count_nonzero(status == -1) == 0

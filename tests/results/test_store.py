@@ -14,7 +14,7 @@ from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.provenance import FAILURE_REASONS
-from rodsweep.results.file.recent import take_snapshot
+from rodsweep.results.file.recent import write_snapshot
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
@@ -189,7 +189,7 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
     view = read_view(path)
     assert (view.journalled, view.attributes[FAILURE_REASONS]) == (2, told)
     assert open_result(path).attrs[FAILURE_REASONS] == told
-    take_snapshot(path, tmp_path / "s.h5")
+    write_snapshot(path, tmp_path / "s.h5")
     assert read_view(tmp_path / "s.h5").attributes[FAILURE_REASONS] == told
     again = Store(path, plan())
     assert again.missing() == [(4, 12)]

@@ -23,7 +23,7 @@ from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ...solve.orbit.orbit_mesh import mesh_of
 from ..study import Contender, JudgedCase, Measurement, grouped, middle, table, tournament
-from .tracking import REFERENCE_TOLERANCE, cycle_request, orbit_of
+from .tracking import REFERENCE_NEWTON_TOLERANCE, cycle_request, orbit_of
 
 RODS = (
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
@@ -76,7 +76,7 @@ class ExactCycle:
         """The exact cycle of the rod at a nearby force."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
-        orbit = newton(near, REFERENCE_TOLERANCE, NewtonWorkspace()).orbit
+        orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:

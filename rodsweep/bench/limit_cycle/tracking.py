@@ -38,7 +38,7 @@ CYCLE_ORDER = 18
 """Order of the single element in space. Its error of period and amplitude is 1e-9 at F = 50."""
 REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
 """Mesh of the reference in time, over half a period."""
-REFERENCE_TOLERANCE = 1e-13
+REFERENCE_NEWTON_TOLERANCE = 1e-13
 """Relative tolerance of Newton's method for the reference."""
 PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
 """Scheme for locating events. The number of equal steps decides the error; Newton's is negligible."""
@@ -99,7 +99,7 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 def reference() -> ReferenceCycle:
     """The cycle on the benchmark's mesh in space, by collocation in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
-    orbit = newton(near, REFERENCE_TOLERANCE, NewtonWorkspace()).orbit
+    orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     return ReferenceCycle(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 

@@ -44,7 +44,7 @@ PAPER_RODS = {
     "Fig. 2d": (1e2, 1e4, 1e-4, 85.0),
 }
 """k1, k2, gamma3 and the largest force."""
-FORCES = 5
+FORCE_COUNT = 5
 HARD_RODS = {
     "easy: F = 30, k1 = k2 = 1e4, gamma3 = 1e-4": Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4),
     "stiff: F = 30, k1 = k2 = 1e8, gamma3 = 1e-8": Rod(F=30.0, k1=1e8, k2=1e8, gamma3=1e-8),
@@ -66,7 +66,7 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     rods = [
         Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
         for k1, k2, gamma3, top in PAPER_RODS.values()
-        for F in np.linspace(0.1 * top, top, FORCES)
+        for F in np.linspace(0.1 * top, top, FORCE_COUNT)
     ]
     exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
     every = contenders() + peers.of(RACE)

@@ -32,7 +32,7 @@ from .value import chain_value
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompletenessSettings(CompiledSettings):
-    """Settings for proofs and their points."""
+    """Settings for proofs of completeness, and for the points of w at which D'/D is summed."""
 
     spare: int = 2
     """Further eigenvalues of an arm whose list is proved complete: of 100 random arms 59 then need a count,

@@ -1,6 +1,7 @@
 """Newton's method on D of an arm without a closed form, and the errors of roots of D.
 
-Compiled functions take one level of propagators; the others choose the level for the |w| at hand.
+A level is a bound W with the propagators that hold for |w| <= W. Compiled functions are given a level; the
+others choose it by |w|.
 """
 
 import math

@@ -99,7 +99,10 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
 def _velocity_slopes(
     g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
-    """Writes mobility B at all nodes into the nonzero blocks of slopes, (d, d, nodes + 1)."""
+    """Writes the velocities' derivatives by the stresses at each node into the nonzero blocks of slopes.
+
+    slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma, without the term of D.
+    """
     E, S, _ = at
     for i in range(slopes.shape[2]):
         B = [[0.0 for _ in g.components] for _ in g.components]

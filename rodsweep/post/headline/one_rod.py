@@ -67,7 +67,10 @@ class Digits:
         return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
 
     def _rounding(self, error: str) -> Array:
-        """Largest rounding of the printed numbers with an error, (rows,): relative where the error is."""
+        """Largest rounding, by row, of the printed numbers whose error is the variable `error`, (rows,).
+
+        Relative if that error is relative.
+        """
         largest = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
             for name in (name for name, known in table.items() if known == error and name in self.columns):

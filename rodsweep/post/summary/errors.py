@@ -77,7 +77,10 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
-    """Relative error of a power of a cycle, of any shape; the mean power grows with the squared amplitude."""
+    """Relative error of the mean power of cycles, or of the rms of its fluctuation, in the arrays' shape.
+
+    The mean power grows with the squared amplitude.
+    """
     mean = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
     return mean + 2 * v["extrema_error"] if fluctuation else mean
 

@@ -1,6 +1,6 @@
 """Current state of a run: the file, and journalled points not yet in the file.
 
-Nothing is written: a running run is not disturbed, and no lock is needed.
+Neither is written to: a running run is not disturbed, and no lock is needed.
 """
 
 import os
@@ -68,7 +68,7 @@ def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 
-def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
+def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
     """Writes the points computed so far into a separate file; returns (points computed, all points).
 
     Raises InputError if `path` is no result, or if `output` exists and is not a snapshot. Raises

@@ -87,7 +87,7 @@ class ArcPoint:
 
     @property
     def at(self) -> float:
-        """The parameter's coordinate."""
+        """Coordinate of the followed parameter: 1/k for a stiffness k, otherwise the value itself."""
         return self.orbit.form.rod.coordinate(self.scale.name)
 
     @property
@@ -139,7 +139,10 @@ class ArcPoint:
 
 
 def cycle_place(found: ConvergedOrbit, scale: Scale, tangent: Array) -> CyclePlace:
-    """Place of a cycle on its branch, from a tangent of any length, (N + 1,)."""
+    """Scale and unit tangents of a cycle, from a tangent of any length, (N + 1,).
+
+    The caller replaces the curvature and the rate of the multiplier, which are 0 here.
+    """
     own = Scale.of(found.orbit, scale.name, scale.least)
     ahead = own.moved(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))

@@ -55,7 +55,7 @@ BRANCH_ERRORS = BranchErrorSettings()
 
 @dataclass(frozen=True, eq=False)
 class CyclePlace:
-    """Place of a cycle on its branch."""
+    """A cycle's scale and tangent, and how fast both and the multiplier change along the branch."""
 
     scale: Scale
     tangent: Array

@@ -168,7 +168,11 @@ class HopfCurve:
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
     def as_point(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
-        """Generalised Hopf point from its normal form; moved: position error along the chord, (3,)."""
+        """Generalised Hopf point from its normal form.
+
+        after: index of the curve's stored point before this point. moved: position error along the chord,
+        (3,).
+        """
         there = here.there
         axes = self.boundary.plane.axes
         tangent = there.tangent

@@ -78,7 +78,7 @@ def newton(
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
         # A long first step may come from a poor start; a long later step that did not shrink is divergence.
         if iteration > 1 and change > max(last, ORBIT_NEWTON.longest_step):
-            raise Unsolvable("there is no orbit near the start of Newton's method")
+            raise Unsolvable("Newton's method for the orbit diverges from its start")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         share = min(1.0, ORBIT_NEWTON.longest_step / change) if change > 0 else 1.0
         orbit = orbit.moved(step, share)

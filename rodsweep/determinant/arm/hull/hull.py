@@ -34,7 +34,7 @@ from ....model.material.build import Build
 from ....model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
 from .region import HULL, NO_BOUND, Hull, PathHulls
-from .weights import clamp_integrals, constant_weight_norm, constant_weights, varying_weight_norms
+from .weights import clamp_integrals, constant_weights, least_squared_norm, varying_weight_norms
 
 
 def hull_of(rod: Rod) -> Hull:
@@ -149,7 +149,7 @@ def _smallest(
     if not (c2 > 0).any():  # then g = nu
         best = (sqrt(push), 0.0)
     elif (gamma3 > 0).all():
-        best = (sqrt(constant_weight_norm(alphas, local.reshape(6, -1), push)), 0.0)
+        best = (sqrt(least_squared_norm(alphas, local.reshape(6, -1), push)), 0.0)
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
         for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):

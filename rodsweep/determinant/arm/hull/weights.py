@@ -11,7 +11,7 @@ from .region import HULL
 
 
 @compiled
-def constant_weight_norm(alphas: Array, local: Array, push: float) -> float:
+def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
     """The smallest a^2, over the constant weights alpha to try, (n,): the squared norm of the matrix along
     all arms.
 

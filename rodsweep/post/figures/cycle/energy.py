@@ -14,7 +14,7 @@ from ..arm.quantities import NO_BREAK
 from ..style import FIRST, SECOND, THIRD, legend_below
 from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
 
-RATE_MARKS = 24
+RATE_MARK_COUNT = 24
 """Number of times at which dU/dt is marked on the curve of injection minus dissipation."""
 
 
@@ -68,7 +68,7 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     middle.plot(time, dissipation, color=FIRST, lw=1.5, ls="--", label="dissipation")
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
-    at = np.arange(RATE_MARKS) / RATE_MARKS
+    at = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
     rate = resampled(time_derivative(cycle.values["energy"]), at) / cycle.period * cycle.units.power_of_rate
     bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
     bottom.set_xlabel(cycle.units.time_label)

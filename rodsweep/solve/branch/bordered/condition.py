@@ -31,7 +31,7 @@ class BorderCondition:
 
     @classmethod
     def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "BorderCondition":
-        """Condition at an arc length along a border, (3,), from an orbit."""
+        """The condition that the component along `border`, (3,), is larger by `length` than for an orbit."""
         return cls(scale, border, float(border @ scale.place(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:

@@ -152,8 +152,11 @@ class BorderedMatrix:
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
     def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
-        """Change, (N + 1,), for right sides of the ends, (m n + 2,), and a share of those of the stages, (K,
-        s, n)."""
+        """Solution of the bordered system, (N + 1,).
+
+        right: right sides of the ends of the legs, of the phase and of the border, (m n + 2,). sides: right
+        sides of the stages, (K, s, n), which are multiplied by `share`.
+        """
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection * deflection_row(self.orbit)

@@ -16,7 +16,9 @@ from .point import SpecialKind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveIdentitySettings:
-    """Settings for comparing a curve with special points of rows, Hopf points and further curves."""
+    """Tolerances for deciding whether a special point or Hopf point lies on a known curve, and whether two
+    curves are one.
+    """
 
     on_curve: float = 1e-6
     """A special point of a row this close to a curve lies on it; in units of the line's axis."""

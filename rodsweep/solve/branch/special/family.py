@@ -32,7 +32,7 @@ from .point import SpecialKind
 
 
 class _CycleAcross(NamedTuple):
-    """A cycle at a length across a curve, with its test function and the vectors of that function."""
+    """A cycle at the distance `at` from a curve, measured across it, with test function and its vectors."""
 
     orbit: Orbit
     vectors: Array

@@ -33,7 +33,9 @@ class Fold:
 
 @dataclass(frozen=True, slots=True)
 class BoundaryCurve:
-    """A curve of Hopf points (sign 0) or of double real eigenvalues with a sign (-1 or 1).
+    """A curve of Hopf points, or of double real eigenvalues.
+
+    sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
     values: of both parameters, (points, 2). frequency, growth_rate: of the eigenvalue, in 1/tau2, (points,).
     ends: reasons for the ends at the first and the last point.

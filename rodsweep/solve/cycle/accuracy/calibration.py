@@ -163,7 +163,9 @@ def _tails(orbit: Orbit) -> Array:
 
 
 def _growth(before: Array, after: Array) -> Array:
-    """Growth of both parts of the error, (2,), from tails and size before and after, (3,) each; at least 1.
+    """Growth of the errors in space and in time, (2,), at least 1.
+
+    before, after: tails in space and in time, and size, (3,) each.
 
     Absolute errors grow as the squares of the tails. Where a cycle ends at a Hopf point, whose position
     depends on the mesh, the error of its size grows as the reciprocal of the squared size. A decrease is not

@@ -14,7 +14,7 @@ from ...orbit.symmetry import NO_SYMMETRY, REFLECTION
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FromMotionSettings:
+class NewtonFromMotionSettings:
     """Settings for starting Newton's method from an integrated motion."""
 
     stages: int = 3
@@ -27,7 +27,7 @@ class FromMotionSettings:
     """Largest relative distance of a symmetric motion from its reflection half a period later."""
 
 
-FROM_MOTION = FromMotionSettings()
+FROM_MOTION = NewtonFromMotionSettings()
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:

@@ -163,11 +163,10 @@ class Transient:
         return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
-        """Linear growth rate of the beam, 1/tau2, from its spectrum. rate: linear growth rate of the rod of
-        `form`.
+        """Linear growth rate of the beam's rod, 1/tau2, from the spectrum of that rod.
 
-        The mesh of the beam has this rate to 1e-10 per period, but the computed eigenvalues of the beam's
-        matrix have rounding errors of 1e-4 for stiff rods.
+        rate: linear growth rate of the rod of `form`, which is returned if both rods are equal. Eigenvalues
+        of the beam's matrix would have rounding errors of 1e-4 for stiff rods.
         """
         if self.beam.rod == self.form.rod:
             return rate

@@ -37,7 +37,10 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
-    """Maps changes of an interval's start to its end, in place, (columns, n), with reduced right sides."""
+    """Replaces `ends`, changes of an interval's start, (columns, n), by the changes of its end.
+
+    columns: reduced right sides of the stages.
+    """
     # The map of an interval acts on M x_0, as in `eliminate`.
     scaled = ends * p.mass
     ends[:] = columns[-1]

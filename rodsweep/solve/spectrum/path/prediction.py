@@ -105,8 +105,10 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
 def extrapolated(
     values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
 ) -> float:
-    """The cubic with values and slopes at two points, at a third point; steps: between the two, and to the
-    third."""
+    """Cubic Hermite extrapolation from two points, by values and slopes there, to a third point.
+
+    steps: from the first to the second point, and from there to the third.
+    """
     h, ahead = steps
     t = ahead / h
     difference = values[1] - values[0]
