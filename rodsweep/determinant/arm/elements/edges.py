@@ -18,7 +18,8 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
     for.
 
     squares: those of `ArmSamples` of n arms, (4, n, points). tapers: (n,). points: midpoints of equal parts
-    of the pieces between breaks, (points,).
+    of the pieces between breaks, (points,). Where a piece needs more than `max_elements`, or W is no finite
+    number, there are more than `max_elements` ends, all 0.
     """
     density = _density(W, squares, tapers, points)
     pieces = len(breaks) - 1
@@ -29,6 +30,8 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
         part = (breaks[piece + 1] - start) / parts
         own = density[piece * parts : (piece + 1) * parts]
         mass = own.sum() * part
+        if not (math.inf > W and mass <= ARM_ELEMENTS.max_elements):  # a count of inf or nan is undefined
+            return np.zeros(ARM_ELEMENTS.max_elements + 1)
         count = max(1, math.ceil(mass))
         below = 0.0
         k = 0
