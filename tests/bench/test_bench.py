@@ -151,7 +151,7 @@ def test_time_of_other_programs_is_counted():
 
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
-    monkeypatch.setattr(spectrum, "FORCES", 1)
+    monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
     monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
     exact = Contender("a peer", "7", "g", partial(own_spectrum, certify=False))
     study = spectrum_study(quick=True, peers=Peers({RACE: [exact]}, skipped=["Another is skipped."]))
