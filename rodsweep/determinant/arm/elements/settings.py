@@ -54,6 +54,21 @@ class ArmElementSettings(CompiledSettings):
         """Number of initial values of all lanes: the length of the last axis of arrays over elements."""
         return MINORS * self.lanes
 
+    @property
+    def largest_of_terms(self) -> tuple[float, ...]:
+        """The largest |z| at which n powers of z are enough, for n from 0 on.
+
+        At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `longest`: by Cauchy's bound with
+        the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, these bounds and
+        those of the derivative are less than `negligible`, and each at most half of the one before.
+        """
+        factors = [(math.e * self.longest / (2 * n)) ** 2 for n in range(2, self.max_terms)]
+        sizes = [
+            min((self.negligible / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
+            for n, factor in enumerate(factors, start=2)
+        ]
+        return (0.0, 0.0, *sizes)
+
     def __post_init__(self) -> None:
         CompiledSettings.__post_init__(self)
         if self.stages % 4:
