@@ -8,8 +8,6 @@ powers: result of `powers_of`, (terms, 4). polynomial: coefficients of an elemen
 PADDED). Minors: (2, MINORS), real and imaginary parts.
 """
 
-import math
-
 import numpy as np
 
 from ....arrays import Array

@@ -56,11 +56,11 @@ class ArmElementSettings(CompiledSettings):
 
     @property
     def largest_of_terms(self) -> tuple[float, ...]:
-        """The largest |z| at which n powers of z are enough, for n from 0 on.
+        """The largest |z| at which the first n powers of z are enough, for n = 0, 1, 2, ...
 
-        At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `longest`: by Cauchy's bound with
-        the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, these bounds and
-        those of the derivative are less than `negligible`, and each at most half of the one before.
+        At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `longest`. By Cauchy's bound
+        with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a term
+        of the derivative is at most `negligible`, and each term at most half of the one before.
         """
         factors = [(math.e * self.longest / (2 * n)) ** 2 for n in range(2, self.max_terms)]
         sizes = [
