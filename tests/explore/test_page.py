@@ -300,3 +300,22 @@ def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():
         assert picture.card.message.text == STOPPED_SENTENCE
         assert not picture.card.figure.visible
     assert page.contents.sign.text == ""
+
+
+def test_pictures_without_an_answer_have_no_axes():
+    """Empty axes from 0 to 1 once looked like an answer."""
+    page = page_with(ImmediateSolvers(kinds=("spectrum",)))
+    contents = page.contents
+    assert all(axis.visible for axis in contents.spectrum.card.figure.axis)
+    for card in (contents.branches.card, contents.growth.card, contents.diagram.card):
+        assert not any(axis.visible for axis in card.figure.axis)
+
+
+def test_the_largest_force_of_an_arm_is_given_as_a_pressure_too():
+    page = page_with(ImmediateSolvers(kinds=()), "tab=arm&F_max=60")
+    title = page.contents.controls.F_max.title
+    pressure = float(re.fullmatch(r"Largest force F \(k3/L\^2\): ([\d.]+) kPa", title)[1])
+    arm = rs.Arm(**page.state.arm).replace(pressure=f"{pressure} kPa")
+    assert rs.Rod(arm=arm).parameters["F"] == pytest.approx(60.0, rel=1e-3)
+    page.change(tab="rod")
+    assert page.contents.controls.F_max.title == "Largest force F (k3/L^2)"

@@ -81,11 +81,12 @@ def sentence_of(found: dict[str, Any]) -> str:
 
 
 class Card:
-    """A figure that can be replaced by a sentence."""
+    """A figure that can be replaced by a sentence. It has no axes until it shows something."""
 
     def __init__(self, name: str, figure: figure):
         self.figure = figure
         figure.name = f"{name}_figure"
+        figure.axis.visible = False
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
@@ -106,6 +107,7 @@ class Card:
         self.figure.visible = True
 
     def reveal(self) -> None:
-        """Shows the figure."""
+        """Shows the figure with its axes."""
         self.message.visible = False
+        self.figure.axis.visible = True
         self.figure.visible = True
