@@ -11,6 +11,7 @@ from bokeh.models import HoverTool
 import rodsweep as rs
 from rodsweep.errors import Refusal
 from rodsweep.explore.page import AT_ONCE, STOPPED_SENTENCE, Page
+from rodsweep.explore.pictures.card import AXIS_ALPHAS
 from rodsweep.explore.pictures.diagram import DiagramCell, cells, in_words
 from rodsweep.explore.pictures.numbers import written
 from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
@@ -306,9 +307,9 @@ def test_pictures_without_an_answer_have_no_axes():
     """Empty axes from 0 to 1 once looked like an answer."""
     page = page_with(ImmediateSolvers(kinds=("spectrum",)))
     contents = page.contents
-    assert all(axis.visible for axis in contents.spectrum.card.figure.axis)
-    for card in (contents.branches.card, contents.growth.card, contents.diagram.card):
-        assert not any(axis.visible for axis in card.figure.axis)
+    for card in contents.cards:
+        alphas = {getattr(axis, name) for axis in card.figure.axis for name in AXIS_ALPHAS}
+        assert alphas == ({1.0} if card in (contents.spectrum.card, contents.mode.card) else {0.0})
 
 
 def test_the_largest_force_of_an_arm_is_given_as_a_pressure_too():
@@ -319,3 +320,12 @@ def test_the_largest_force_of_an_arm_is_given_as_a_pressure_too():
     assert rs.Rod(arm=arm).parameters["F"] == pytest.approx(60.0, rel=1e-3)
     page.change(tab="rod")
     assert page.contents.controls.F_max.title == "Largest force F (k3/L^2)"
+
+
+def test_a_title_of_the_thresholds_never_needs_a_new_layout():
+    """Its second line was cut, and parts of it stayed, until a later answer moved the frame."""
+    page = page_with(ImmediateSolvers(kinds=()))
+    growth = page.contents.growth.card
+    before = growth.figure.title.text
+    page.contents.show("thresholds", answer_to(Question("thresholds", page.state)), page.state)
+    assert before.count("\n") == growth.figure.title.text.count("\n") == 1
