@@ -1,4 +1,4 @@
-"""Peers of the limit cycle: integrators that follow it or wait for it, and AUTO-07p, which continues it."""
+"""Peers of the study limit_cycle: time integrators, and AUTO-07p, which continues the cycle in F."""
 
 from functools import partial
 from pathlib import Path
@@ -13,7 +13,7 @@ from .integrators import CVODE, CVODE_SKIPPED, families
 
 
 def peers(quick: bool, place: Path) -> Peers:
-    """All integrators that are here, and AUTO-07p, compiled in `place`."""
+    """All installed integrators, and AUTO-07p, compiled in `place`. quick: fewer settings of AUTO-07p."""
     every, program = families(), auto_program(place, EQUATIONS)
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return Peers(

@@ -1,4 +1,4 @@
-"""Peers of the spectrum: dense LAPACK, ARPACK, displacement elements, Chebyshev collocation."""
+"""Peers of the study spectrum: dense LAPACK, ARPACK, displacement elements, Chebyshev collocation."""
 
 from pathlib import Path
 
@@ -10,5 +10,5 @@ from .eigensolvers import arm_contenders, contenders
 
 
 def peers(quick: bool, place: Path) -> Peers:
-    """All of them, quick or not: who is quick takes fewer of their sizes; nothing is compiled in `place`."""
+    """All eigensolvers at all sizes. A quick study skips sizes itself; nothing is compiled in `place`."""
     return Peers({RACE: contenders(), ARM_RACE: arm_contenders()})

@@ -1,7 +1,7 @@
-"""Thresholds as one finds them with SciPy: spectra on a grid of forces, interpolated, or root finding.
+"""Thresholds with SciPy: from spectra on a grid of forces by interpolation, or by root finding.
 
-Every spectrum is one dense eigenproblem by LAPACK on the pencil that rodsweep uses, on one mesh. All look
-for the first onset or the first Hopf point above F = 0 and prove nothing.
+Every spectrum is one dense eigenproblem by LAPACK on rodsweep's pencil, on one mesh. All methods search for
+the first onset or the first Hopf point above F = 0 and prove nothing.
 """
 
 from collections.abc import Callable
@@ -23,20 +23,22 @@ from rodsweep.model.dispersion import most_amplified_wave
 from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices
 
 MESH_MODES, MESH_ACCURACY = 2, 1e-12
-"""Leading eigenvalues for which the mesh is chosen, and their relative error on it."""
+"""Number of leading eigenvalues for which the mesh is chosen, and their relative error on this mesh."""
 GRIDS, LARGE_GRID = (50, 200), 800
+"""Numbers of forces of the grids. A quick run omits LARGE_GRID."""
 TOLERANCES = (1e-3, 1e-6, 1e-12)
+"""Relative tolerances of the root finding."""
 SWEEP = "grid and interpolation"
-"""Group of a figure."""
+"""Group of these methods in the figure."""
 MARCH = 2.0
-"""Step in F at which a sign is looked for before a root is."""
+"""Step in F by which a root is bracketed: the step ends at a change of sign."""
 SCIPY_ROUNDING = 8.9e-16
-"""The least relative tolerance that SciPy's searches take: four units of rounding."""
+"""Smallest relative tolerance that SciPy's root finders accept: four times the rounding unit."""
 
 
 @lru_cache(maxsize=64)
 def mesh_of(case: ThresholdCase) -> Resolution | ArmMesh:
-    """Fine enough at the thresholds of a rod."""
+    """Mesh with a relative error of MESH_ACCURACY at the Hopf point of a case, or at its onset."""
     rod = case.rod(case.onset if isnan(case.hopf) else case.hopf)
     if not rod.standard:
         return arm_mesh(rod, MESH_MODES, MESH_ACCURACY)
@@ -45,14 +47,14 @@ def mesh_of(case: ThresholdCase) -> Resolution | ArmMesh:
 
 
 def affine(case: ThresholdCase) -> tuple[Array, Array, Array]:
-    """A0, A1 and the diagonal of B, shapes (n, n), (n, n), (n,): A = A0 + F A1 at F."""
+    """(A0, A1, diagonal of B) of the pencil A x = w B x with A = A0 + F A1, shapes (n, n), (n, n), (n,)."""
     mesh = mesh_of(case)
     A0, B = whole_matrices(case.rod(0.0), mesh)
     return A0, whole_matrices(case.rod(1.0), mesh)[0] - A0, B
 
 
 class LeadingPair:
-    """The two leading eigenvalues at a force, counting the eigenproblems."""
+    """Function from F to the two leading eigenvalues of a case; `solves` counts the eigenproblems."""
 
     def __init__(self, case: ThresholdCase):
         self.solves = 0
@@ -66,31 +68,43 @@ class LeadingPair:
 def on_grid(
     estimate: Callable[[Array, Eigenvalues], float], points: int, case: ThresholdCase
 ) -> FirstThreshold:
-    """An estimate from the leading eigenvalue at equal steps of F from 0 to the top, shapes (points,)."""
+    """First threshold of a case, estimated from the leading eigenvalues on a grid of F from 0 to `case.top`.
+
+    estimate: from (forces, leading eigenvalues), (points,) each, to the threshold. points: of the grid.
+    """
     forces, pair = np.linspace(0.0, case.top, points, dtype=np.float64), LeadingPair(case)
     return FirstThreshold(estimate(forces, np.array([pair(F)[0] for F in map(float, forces)])), points)
 
 
-def between(forces: Array, w: Eigenvalues) -> float:
-    """An onset: halfway between the last real leading w, shape (points,), and the first pair."""
+def onset_midpoint(forces: Array, w: Eigenvalues) -> float:
+    """Onset, halfway between the last force with a real leading eigenvalue w and the first force with a pair.
+
+    forces, w: (points,). NaN without a pair.
+    """
     first = int(np.argmax(w.imag != 0))
     return float(forces[first - 1 : first + 1].mean()) if first else nan
 
 
-def square_root_law(forces: Array, w: Eigenvalues) -> float:
-    """An onset: where (Im w)^2, linear in F next to it, vanishes, by the first two pairs in w, (points,)."""
+def onset_by_square_root(forces: Array, w: Eigenvalues) -> float:
+    """Onset, extrapolated from the first two leading pairs: (Im w)^2 is linear in F, and 0 at the onset.
+
+    forces, w: (points,). NaN without two pairs.
+    """
     pairs = np.flatnonzero(w.imag)[:2]
     return _zero(forces[pairs], w[pairs].imag ** 2) if len(pairs) == 2 and pairs[0] else nan
 
 
-def interpolated_growth(forces: Array, w: Eigenvalues) -> float:
-    """A Hopf point: where Re w, shape (points,), vanishes between two forces, as one reads it off a plot."""
+def hopf_by_interpolation(forces: Array, w: Eigenvalues) -> float:
+    """Hopf point by linear interpolation of Re w between the first two forces with a change of sign.
+
+    forces, w: (points,). NaN without a change of sign.
+    """
     up = np.flatnonzero((w.real[:-1] < 0) & (w.real[1:] > 0))[:1]
     return _zero(forces[up[0] :], w.real[up[0] :]) if up.size else nan
 
 
 def _zero(forces: Array, values: NDArray[np.floating]) -> float:
-    """Where the line through the first two points vanishes."""
+    """Force at which the line through the first two points (force, value) vanishes; forces, values: (n,)."""
     (a, b), (p, q) = map(float, forces[:2]), map(float, values[:2])
     return a - p * (b - a) / (q - p)
 
@@ -98,7 +112,10 @@ def _zero(forces: Array, values: NDArray[np.floating]) -> float:
 def by_steps(
     search: Callable[..., float], test: Callable[[Eigenvalues], float], tolerance: float, case: ThresholdCase
 ) -> FirstThreshold:
-    """Steps from F = 0 until a test changes its sign, then a search of SciPy's between the two forces."""
+    """First threshold of a case: steps of MARCH from F = 0 until `test` changes its sign, then a root search.
+
+    search: root finder of SciPy. test: from the two leading eigenvalues to a number. tolerance: relative.
+    """
     pair = LeadingPair(case)
     forces = [*map(float, np.arange(0.0, case.top, MARCH)), case.top]
     behind, value = forces[0], test(pair(forces[0]))
@@ -113,36 +130,37 @@ def by_steps(
 
 
 def growth(w: Eigenvalues) -> float:
-    """The growth rate, which vanishes at a Hopf point."""
+    """Growth rate Re w of the leading eigenvalue, which vanishes at a Hopf point; w: (2,)."""
     return float(w[0].real)
 
 
 def discriminant(w: Eigenvalues) -> float:
-    """(w1 - w2)^2, smooth where two real eigenvalues become a pair, and negative beyond."""
+    """(w1 - w2)^2 of the leading w, (2,): smooth in F, positive for real w, negative for a pair."""
     return float(((w[0] - w[1]) ** 2).real)
 
 
-def leads_real(w: Eigenvalues) -> float:
-    """1 where a real eigenvalue leads, -1 where a pair does."""
+def real_or_pair(w: Eigenvalues) -> float:
+    """1 if the leading eigenvalue is real, -1 if it belongs to a complex pair; w: (2,)."""
     return -1.0 if w[0].imag else 1.0
 
 
 BY_GRID = {
-    ONSET: {"grid, between two forces": between, "grid, square-root law": square_root_law},
-    HOPF: {"grid, linear interpolation": interpolated_growth},
+    ONSET: {"grid, between two forces": onset_midpoint, "grid, square-root law": onset_by_square_root},
+    HOPF: {"grid, linear interpolation": hopf_by_interpolation},
 }
+"""Estimates from a grid of forces, by kind of threshold and name of the method."""
 BY_STEPS = {
     ONSET: {
-        "steps, bisection on Im w > 0": partial(by_steps, bisect, leads_real),
+        "steps, bisection on Im w > 0": partial(by_steps, bisect, real_or_pair),
         "steps, Brent on (w1 - w2)^2": partial(by_steps, brentq, discriminant),
     },
     HOPF: {"steps, Brent on Re w": partial(by_steps, brentq, growth)},
 }
-"""The estimates on a grid and the searches by steps, by what they are for."""
+"""Root searches by steps, by kind of threshold and name of the method."""
 
 
 def contenders(kind: str, quick: bool) -> list[Contender]:
-    """All grids and searches for one kind of threshold; who is quick does without the largest grid."""
+    """All grids and root searches for one kind of threshold; quick: without LARGE_GRID."""
     grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
     by_grid = [
         Contender(name, f"{n} forces", SWEEP, partial(on_grid, estimate, n), slow=n == LARGE_GRID)

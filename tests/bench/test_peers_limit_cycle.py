@@ -14,7 +14,7 @@ from benchmarks import auto as auto_peer
 from benchmarks.auto import AUTO, SKIPPED, auto_program
 from benchmarks.limit_cycle import integrators as cycle_peers
 from benchmarks.limit_cycle import peers
-from benchmarks.limit_cycle.auto_cycles import AutoSetting, continued, rod_file
+from benchmarks.limit_cycle.auto_cycles import AutoSetting, continue_cycles, rod_file
 from benchmarks.limit_cycle.auto_equations import EQUATIONS
 from benchmarks.limit_cycle.continuation import OWN, cycle_table, first_cycles, judged, ratio_table
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, families
@@ -164,7 +164,7 @@ def test_auto_continues_the_same_cycles(auto):
     starts = first_cycles(replace(RODS[0], F=49.0), [rough, fine])
     errors = []
     for setting in (rough, fine):
-        branch = continued(auto, starts[setting.order], setting, 0.5, 3)
+        branch = continue_cycles(auto, starts[setting.order], setting, 0.5, 3)
         assert abs(branch.F - 50.0) < 1e-5
         assert len(branch.multipliers) == 3 * setting.order
         assert np.abs(branch.multipliers - 1).min() < 1e-3
@@ -178,7 +178,7 @@ def test_auto_that_loses_its_branch_is_a_failure(auto):
     setting = AutoSetting(8, 2, 2, 3)
     start = first_cycles(RODS[0], [setting])[8]
     with pytest.raises(RuntimeError, match="of 5 cycles"):
-        continued(auto, start, setting, 5.0, 5)
+        continue_cycles(auto, start, setting, 5.0, 5)
 
 
 def test_auto_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):

@@ -21,17 +21,17 @@ from benchmarks.thresholds.continuation import (
     PYCONT_MODULE,
     hopf_by_auto,
     hopf_by_pycont,
-    reduced,
+    matrix_polynomial,
 )
 from benchmarks.thresholds.spectra_by_force import (
     BY_STEPS,
     LeadingPair,
-    between,
     by_steps,
     growth,
-    interpolated_growth,
+    hopf_by_interpolation,
     on_grid,
-    square_root_law,
+    onset_by_square_root,
+    onset_midpoint,
 )
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import CASES, HOPF, ONSET, ThresholdCase, threshold_table, timed_on
@@ -63,7 +63,7 @@ def test_root_finding_reaches_its_tolerance(name, tolerance):
 
 
 @pytest.mark.parametrize(
-    "estimate, exact, order", [(interpolated_growth, "hopf", 2), (square_root_law, "onset", 2)]
+    "estimate, exact, order", [(hopf_by_interpolation, "hopf", 2), (onset_by_square_root, "onset", 2)]
 )
 def test_order_of_interpolation(estimate, exact, order):
     """Twice the points: the error falls by 2^order, if the threshold lies alike between two forces."""
@@ -81,20 +81,20 @@ def test_order_of_interpolation(estimate, exact, order):
 def test_onset_between_two_forces_is_within_half_a_step():
     case = CASE["filament"]
     for points in (20, 40, 80):
-        found = on_grid(between, points, case)
+        found = on_grid(onset_midpoint, points, case)
         assert abs(found.force - case.onset) <= case.top / (points - 1) / 2
 
 
 def test_a_grid_too_coarse_for_the_window_misses_it():
     case = CASE["narrow"]
-    assert isnan(on_grid(interpolated_growth, 50, case).force)
-    assert case.error_of(HOPF, on_grid(interpolated_growth, 200, case).force) < 1e-2
+    assert isnan(on_grid(hopf_by_interpolation, 50, case).force)
+    assert case.error_of(HOPF, on_grid(hopf_by_interpolation, 200, case).force) < 1e-2
     assert isnan(by_steps(brentq, growth, 1e-6, case).force)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case):
-    M0, M1, M2 = reduced(case)
+    M0, M1, M2 = matrix_polynomial(case)
     for F in (0.0, case.onset + 1, 0.9 * case.top):
         w = LeadingPair(case)(F)
         own = np.linalg.eigvals(M0 + F * M1 + F**2 * M2)
@@ -105,7 +105,7 @@ def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case)
 @pytest.mark.parametrize("k1, k2, gamma3", [(1e3, np.inf, 0.0), (np.inf, 1e3, 0.0), (1e3, np.inf, 0.1)])
 def test_rods_that_do_not_reduce_are_refused(k1, k2, gamma3):
     with pytest.raises(ArithmeticError):
-        reduced(ThresholdCase("", k1, k2, gamma3, 20.0, nan))
+        matrix_polynomial(ThresholdCase("", k1, k2, gamma3, 20.0, nan))
 
 
 @pytest.mark.parametrize("case", FLUTTERING, ids=lambda case: case.name)
