@@ -45,10 +45,12 @@ def not_importable(modules: str, reason: object, extra: str = "solvers") -> Envi
     incompatibility.
     """
     if "binary incompatibility" in str(reason):
-        remedy = "compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
+        remedy = "they are compiled for another NumPy: on Debian 12 pip install 'rodsweep[debian12]'"
     else:
         wheel = "pip install 'rodsweep[solvers]', which compiles PETSc"
         if extra != "solvers":
             wheel = f"pip install 'rodsweep[{extra}]' to read and draw results; to solve, {wheel}"
-        remedy = f"`make install` of a clone brings all; beside a wheel take Debian's or conda's, or {wheel}"
+        remedy = (
+            f"`make install` in a clone installs all; or take the packages of Debian or conda, or {wheel}"
+        )
     return EnvironmentIncomplete(f"{modules} cannot be imported ({reason}); {remedy}")

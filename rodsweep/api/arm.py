@@ -156,7 +156,8 @@ class Arm(SlenderArm):
         takes_load = "F" in CONFIGS[task].taken_of_a_rod(options)
         if takes_load and self.load is None:
             raise InputError(
-                f"{task} needs a load; give one by arm.replace(pressure='2 kPa'), or '1.2 of flutter'"
+                f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
+                "arm.replace(pressure='1.2 of flutter')"
             )
         solved = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
         return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
@@ -167,8 +168,8 @@ class Arm(SlenderArm):
         if not self.si.height > self.si.width:
             return ""
         return (
-            "it moves in the plane of its height, and flutters first in the other, at a lower load: "
-            "arm.turned"
+            "the arm moves in the plane of its height, but it flutters first in the plane of its width, at a "
+            "lower load; arm.turned moves in that plane"
         )
 
     @property

@@ -156,7 +156,7 @@ def _range(start: float | str, stop: float | str, num: int, spacing: str) -> Axi
     """A range in the form of a config; InputError for a masked value."""
     for name, value in (("start", start), ("stop", stop), ("num", num)):
         if np.ma.is_masked(value):
-            raise InputError(f"{name} is masked, so it is not a number")
+            raise InputError(f"{name} is masked, so it is not a number; give a number")
     return {"start": start, "stop": stop, "num": num, "spacing": spacing}
 
 
@@ -174,7 +174,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "to_base_units"):  # a pint quantity; np.asarray would drop its unit
         return _with_unit(plain(value.magnitude), f"{value.units:~C}")
     if np.ma.is_masked(value):
-        raise ValueError("a value is masked, so it is not a number; leave it out")
+        raise ValueError("a value of the array is masked, so it is not a number; leave it out")
     if hasattr(value, "__array__"):
         return np.asarray(value).tolist()
     return value

@@ -64,7 +64,7 @@ class SoftRod:
             if name not in PARAMETERS:
                 left = [other for other in (*PARAMETERS, "arm") if other not in given]
                 hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
-                raise InputError(f"unknown key parameters.{name}; {hint}")
+                raise InputError(f"a rod has no parameter {name}; {hint}")
         material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
             if not isinstance(arm, SlenderArm):
@@ -74,7 +74,7 @@ class SoftRod:
             material = material_of(arm) | beside
         for name in REQUIRED:
             if name not in given:
-                raise InputError(f"parameters.{name} is missing; give {words(REQUIRED, 'and')}")
+                raise InputError(f"{name} is missing; a rod needs {words(REQUIRED, 'and')}, or an arm")
         values = {name: given.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
         self._material = _material(material)
@@ -215,7 +215,7 @@ def _number(name: str, value: Any) -> float:
     try:
         return as_number(plain(value))
     except ValueError as error:
-        raise InputError(f"parameters.{name}: {error}") from None
+        raise InputError(f"the parameter {name} of the rod: {error}") from None
 
 
 _KEYWORDS = [

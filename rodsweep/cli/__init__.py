@@ -70,7 +70,9 @@ def main() -> None:
         message = f"{error.filename or 'standard output'}: {error.strerror}"
     except MemoryError:
         code = 3
-        message = "there is not enough memory"
+        message = (
+            "the memory of this machine is not sufficient; use fewer points, or fewer ranks on this machine"
+        )
     except Exception:
         traceback.print_exc()
         code = BUG_STATUS

@@ -60,4 +60,4 @@ def say_stopped(team: Team, stop: StopRequest) -> None:
     """Prints, on the first rank, that a stop came before the file was created; all ranks call together."""
     signal = max(team.exchange(stop.name))
     if team.first:
-        click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")
+        click.echo(f"stopped by {signal}; no point is computed yet, the same command starts again")

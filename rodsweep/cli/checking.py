@@ -9,6 +9,7 @@ from rich.table import Table
 from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import given_text
 from ..config.arm.section import ArmSection
+from ..discretization.elements.resolution import RESOLUTION
 from ..model.arm.neglected import wall_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity import plane_lines, validity_sentence
@@ -39,15 +40,16 @@ def describe_job(job: Job) -> None:
         low, high = cost.unknowns
         console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
     console.print(
-        f"expected: {cost.seconds:.3g} s on one rank (divide by the ranks; first use compiles for some "
-        f"seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
+        f"expected: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run compiles "
+        f"for some seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:
         sampled = min(MAX_SAMPLE, job.points.count)
         console.print(
-            f"warning: about {cost.too_large} of {sampled} sampled points need more unknowns than the limit "
-            "and will end with status failed"
+            f"warning: {cost.too_large} of {sampled} sampled points need more than the "
+            f"{RESOLUTION.most_unknowns} unknowns allowed and will end with status failed; use a smaller F, "
+            "fewer modes or a lower accuracy"
         )
 
 
@@ -64,7 +66,7 @@ def _arm_lines(job: Job) -> list[str]:
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{validity}; the run judges inertia by how fast the arm moves",
+        f"{validity}; the run also judges inertia, from the frequency at which the arm moves",
     ]
 
 
@@ -98,7 +100,7 @@ def _uncovered_lines(points: Points) -> list[str]:
     if rods is not None:
         there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")
-        lines.append(f"{different} at {len(there)} points: each is solved once")
+        lines.append(f"{different} at {len(there)} points: equal rods are solved once")
     for status in NoRod:
         number = 0 if points.coverage is None else int((points.coverage == status).sum())
         if number:

@@ -57,7 +57,10 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     from .run.running import run_config
 
     if options["fresh"] and options["extend"]:
-        raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
+        raise InputError(
+            "--fresh and --extend are both given; give one of them: --fresh replaces the file, --extend adds "
+            "points to it"
+        )
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
     output = result_file(output or Path(config.stem + suffix))

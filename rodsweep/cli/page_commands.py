@@ -89,7 +89,7 @@ def _values(at: tuple[str, ...]) -> dict[str, str]:
     for text in at:
         name, equals, value = text.partition("=")
         if not equals:
-            raise InputError(f"--at {printable(text)} must be a parameter with a number, such as k1=150")
+            raise InputError(f"--at {printable(text)} must be NAME=VALUE, such as k1=150 or 'length=12 cm'")
         found[name.strip()] = value.strip()
     return found
 

@@ -31,7 +31,8 @@ class Team:
         self.size: int = self.comm.Get_size()
         if self.size > 1 and MPI.Query_thread() < MPI.THREAD_MULTIPLE:
             raise EnvironmentIncomplete(
-                "this MPI was started without MPI_THREAD_MULTIPLE, which rodsweep needs"
+                "MPI does not provide the thread level MPI_THREAD_MULTIPLE, which rodsweep needs on several "
+                "ranks; use an MPI built with thread support, or one rank"
             )
 
     @property

@@ -41,7 +41,10 @@ class SpectrumTask(ProvedTask):
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.by_name["k1"]).any():
-            raise InputError("spectrum.longitudinal needs finite k1: a rod with k1 = inf cannot stretch")
+            raise InputError(
+                "spectrum.longitudinal: true needs finite parameters.k1, because a rod with k1 = inf cannot "
+                "stretch; remove inf from k1, or spectrum.longitudinal"
+            )
 
     @property
     def _vector_nodes(self) -> int:

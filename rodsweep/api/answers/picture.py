@@ -164,7 +164,9 @@ def plot(
         raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
     several = [data] if isinstance(data, Drawable) else data
     if not isinstance(several, Sequence) or not several:
-        raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
+        raise InputError(
+            f"{short(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
+        )
     values = choices_of(at)
     views = [section(view_for(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}

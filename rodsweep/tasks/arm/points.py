@@ -44,9 +44,10 @@ class NoRod(PointStatus):
     )
     flutter_unknown = (
         FLUTTER_UNKNOWN,
-        "the load is relative to flutter, which the search does not find, so nothing is computed",
+        "the load is relative to flutter, and the search could not determine the flutter threshold, so "
+        "nothing is computed",
     )
-    no_wall = NO_WALL, "the bore is as wide as the arm, so nothing is computed", True
+    no_wall = NO_WALL, "the bore is as wide as the arm, which leaves no wall, so nothing is computed", True
 
 
 @dataclass(frozen=True, slots=True)

@@ -132,7 +132,8 @@ def job_of(
     if each > LARGEST_RECORD:
         raise InputError(
             f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
-            f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
+            f"{LARGEST_RECORD / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
+            "values are stored"
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)
     return Job(path, config, source, points, TASKS[config.task](config, points), resolved, layout)

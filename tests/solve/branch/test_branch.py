@@ -249,12 +249,12 @@ def test_list_that_is_full_says_so():
 
 def test_search_that_fails_is_a_status(monkeypatch):
     def failing(*_):
-        raise Unsolvable("no a-priori bound on the eigenvalues applies")
+        raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
 
     monkeypatch.setattr(branches, "pair_crossings", failing)
     found = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-7, True, 500, 50))
     assert found.status == BranchStatus.failed
-    assert found.message == "no a-priori bound on the eigenvalues applies"
+    assert found.message == "no a-priori bound on the eigenvalues applies to this rod"
 
 
 def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):

@@ -257,13 +257,13 @@ def test_hopf_point_that_fails_does_not_lose_the_others(monkeypatch):
 
 def test_search_that_fails_is_a_status(monkeypatch):
     def lost(*_, **__):
-        raise Unsolvable("no a-priori bound on the eigenvalues applies")
+        raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
 
     monkeypatch.setattr(criticality, "_hopf_points", lost)
     found = solved(STRETCHABLE)
     assert (found.status, found.message) == (
         CriticalityStatus.failed,
-        "no a-priori bound on the eigenvalues applies",
+        "no a-priori bound on the eigenvalues applies to this rod",
     )
 
 

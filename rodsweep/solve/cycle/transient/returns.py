@@ -76,7 +76,9 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if not run.message and np.isfinite(end).all() and not beam.is_convex(end):
         why = f"the energy of a section is not convex, {returns} returns from the start"
         return EarlyEnd(True, why)
-    why = "too many steps" if run.ending == RunEnding.too_many_steps else "no step succeeds"
+    why = "the integrator finds no step of acceptable error"
+    if run.ending == RunEnding.too_many_steps:
+        why = "the integrator reached its maximum number of steps"
     return EarlyEnd(False, run.message or why)
 
 
