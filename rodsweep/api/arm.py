@@ -13,7 +13,14 @@ from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
 from .asking import job_from, known_load, tree_of
-from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
+from .options import (
+    BranchKeywords,
+    CriticalityKeywords,
+    LimitCycleKeywords,
+    ModesKeywords,
+    SpectrumKeywords,
+    ThresholdsKeywords,
+)
 from .solving import solve_here
 
 if TYPE_CHECKING:
@@ -22,7 +29,7 @@ if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait
 
 EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
-EXCLUSIVE = (
+EXCLUSIVE_QUANTITIES = (
     tuple((load,) for load in LOADS),
     SECTION_SIDES,
     (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
@@ -68,7 +75,7 @@ class Arm(SlenderArm):
         segments replace radius, width, height and length.
         """
         gone: dict[str, None] = {}
-        for one, other in EXCLUSIVE:
+        for one, other in EXCLUSIVE_QUANTITIES:
             for new, old in ((one, other), (other, one)):
                 if any(changed.get(name) is not None for name in new):
                     gone |= dict.fromkeys(old)
@@ -91,36 +98,36 @@ class Arm(SlenderArm):
         return known_load(self)
 
     @in_sentences("arm.thresholds(F_max=100)")
-    def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
+    def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Loads at which the arm starts to oscillate, flutters, and becomes stable again. The arm needs no
         load.
         """
         return self._answer("thresholds", options)
 
     @in_sentences("arm.spectrum(modes=4)")
-    def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
+    def spectrum(self, **options: Unpack[SpectrumKeywords]) -> Answer:
         """The leading eigenvalues under the arm's load."""
         return self._answer("spectrum", options)
 
     @in_sentences("arm.modes(nodes=65)")
-    def modes(self, **options: Unpack[OfModes]) -> Answer:
+    def modes(self, **options: Unpack[ModesKeywords]) -> Answer:
         """The leading modes under the arm's load, and their transient growth."""
         return self._answer("modes", options)
 
     @in_sentences("arm.cycle(harmonics=8)")
-    def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
+    def limit_cycle(self, **options: Unpack[LimitCycleKeywords]) -> Answer:
         """The limit cycle under the arm's load: period, amplitude, energy, Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
     @in_sentences("arm.criticality(F_max=100)")
-    def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
+    def criticality(self, **options: Unpack[CriticalityKeywords]) -> Answer:
         """Criticality of every Hopf point, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
     @in_sentences('arm.branch(along="F")')
-    def branch(self, **options: Unpack[OfBranch]) -> Answer:
+    def branch(self, **options: Unpack[BranchKeywords]) -> Answer:
         """The branches of cycles, stable or not, followed from every Hopf point to their ends."""
         return self._answer("branch", options)
 

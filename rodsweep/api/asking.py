@@ -23,7 +23,7 @@ from ..solve.exclusive import signals_held
 from ..tasks.running.job import Job, job_of, memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
-DEFAULT_WORDS = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
+DEFAULT_VALUES = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
 """Default values of an arm's keys, which a config omits."""
 Tree = dict[str, Any]
 """Keys and values as YAML would read them."""
@@ -61,7 +61,7 @@ def _write_out_arm(task: str, tree: Tree) -> None:
         names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
         known = known_load(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
-        for name, default in DEFAULT_WORDS.items():
+        for name, default in DEFAULT_VALUES.items():
             given[name] = None if given[name] == default else given[name]
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
 

@@ -53,17 +53,17 @@ def _opened(path: Path) -> xr.Dataset:
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
-    data = ordered(data, header.layout, header.config)
+    data = in_layout_order(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
             put_in(data[name].values, str(name), recent)
         data.attrs |= journalled_reasons(header)
-        data = sealed(data)
-    return selectable(data)
+        data = with_checksums(data)
+    return with_arm_selection(data)
 
 
-def selectable(data: xr.Dataset) -> xr.Dataset:
+def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
     """Makes the quantities of an arm selectable along an axis, such as F by pressure."""
     for name in STORED_ALONG:
         if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
@@ -71,7 +71,7 @@ def selectable(data: xr.Dataset) -> xr.Dataset:
     return data
 
 
-def ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
+def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
     places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
@@ -90,14 +90,14 @@ def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(reason_of(error)) from error
-        found = json.loads(sealed(data).attrs[SEAL_ATTRIBUTE])["variables"]
+        found = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
             if found.get(name) != digest:
                 raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
     return data
 
 
-def sealed(data: xr.Dataset) -> xr.Dataset:
+def with_checksums(data: xr.Dataset) -> xr.Dataset:
     """Adds checksums. After xarray has written this Dataset to a file, readers recognise by the checksums
     that the file is complete."""
     variables = {

@@ -6,7 +6,7 @@
 from typing import Literal, TypedDict
 
 
-class OfEveryTask(TypedDict, total=False):
+class TaskKeywords(TypedDict, total=False):
     """Options of every task."""
 
     accuracy: float
@@ -15,7 +15,7 @@ class OfEveryTask(TypedDict, total=False):
     """Whether to display progress; None displays progress only in a terminal or a notebook. No config key."""
 
 
-class OfSpectrum(OfEveryTask, total=False):
+class SpectrumKeywords(TaskKeywords, total=False):
     """Keys of the section `spectrum`."""
 
     modes: int
@@ -27,7 +27,7 @@ class OfSpectrum(OfEveryTask, total=False):
     longitudinal: bool
 
 
-class OfThresholds(OfEveryTask, total=False):
+class ThresholdsKeywords(TaskKeywords, total=False):
     """Keys of the section `thresholds`."""
 
     F_max: float
@@ -35,7 +35,7 @@ class OfThresholds(OfEveryTask, total=False):
     certify: bool
 
 
-class OfModes(OfEveryTask, total=False):
+class ModesKeywords(TaskKeywords, total=False):
     """Keys of the section `modes`."""
 
     modes: int
@@ -44,7 +44,7 @@ class OfModes(OfEveryTask, total=False):
     certify: bool
 
 
-class OfCriticality(OfEveryTask, total=False):
+class CriticalityKeywords(TaskKeywords, total=False):
     """Keys of the section `criticality`."""
 
     F_max: float
@@ -52,7 +52,7 @@ class OfCriticality(OfEveryTask, total=False):
     certify: bool
 
 
-class OfBranch(OfEveryTask, total=False):
+class BranchKeywords(TaskKeywords, total=False):
     """Keys of the section `branch`."""
 
     along: str
@@ -63,7 +63,7 @@ class OfBranch(OfEveryTask, total=False):
     certify: bool
 
 
-class OfLimitCycle(OfEveryTask, total=False):
+class LimitCycleKeywords(TaskKeywords, total=False):
     """Keys of the section `limit_cycle`."""
 
     method: Literal["collocation", "integration"]

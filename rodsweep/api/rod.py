@@ -23,7 +23,14 @@ from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
 from .asking import job_from, known_load, plain, plain_keyword, tree_of
-from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
+from .options import (
+    BranchKeywords,
+    CriticalityKeywords,
+    LimitCycleKeywords,
+    ModesKeywords,
+    SpectrumKeywords,
+    ThresholdsKeywords,
+)
 from .solving import solve_here
 
 if TYPE_CHECKING:
@@ -100,34 +107,34 @@ class SoftRod:
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @in_sentences("rod.spectrum(modes=4)")
-    def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
+    def spectrum(self, **options: Unpack[SpectrumKeywords]) -> Answer:
         """The `modes` leading eigenvalues (4 by default), growth_rate + i frequency in 1/tau2."""
         return self._answer("spectrum", options)
 
     @in_sentences("rod.thresholds(F_max=100)")
-    def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
+    def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Forces up to `F_max` at which the rod starts to oscillate, flutters, and becomes stable again."""
         return self._answer("thresholds", options)
 
     @in_sentences("rod.modes(nodes=65)")
-    def modes(self, **options: Unpack[OfModes]) -> Answer:
+    def modes(self, **options: Unpack[ModesKeywords]) -> Answer:
         """The leading modes with adjoint modes, and the transient growth."""
         return self._answer("modes", options)
 
     @in_sentences("rod.cycle(harmonics=8)")
-    def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
+    def limit_cycle(self, **options: Unpack[LimitCycleKeywords]) -> Answer:
         """The limit cycle of the rod: period, amplitude, energy and Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
     @in_sentences("rod.criticality(F_max=100)")
-    def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
+    def criticality(self, **options: Unpack[CriticalityKeywords]) -> Answer:
         """Criticality of every Hopf point up to `F_max`, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
     @in_sentences('rod.branch(along="F")')
-    def branch(self, **options: Unpack[OfBranch]) -> Answer:
+    def branch(self, **options: Unpack[BranchKeywords]) -> Answer:
         """The branches of cycles, stable or not, followed in `along` from every Hopf point to their ends."""
         return self._answer("branch", options)
 

@@ -21,7 +21,7 @@ from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored, view_in_memory
 from ..tasks.running.job import Job, attributes_of
-from .dataset import ordered, sealed, selectable, view_of
+from .dataset import in_layout_order, view_of, with_arm_selection, with_checksums
 
 
 class Result(Protocol):
@@ -77,7 +77,7 @@ class SolvedPoints:
         }
         attributes = attributes_of(self.job, self.statuses, blas_kernels())
         whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.history))
-        return selectable(sealed(ordered(whole, self.plan.layout, self.plan.config)))
+        return with_arm_selection(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
 
     @cached_property
     def view(self) -> View:

@@ -18,11 +18,11 @@ from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import NoClaims, RankListener, StopRequest
-from ..tasks.protocol import AllPoints, Arrays, Solver
+from ..tasks.protocol import Arrays, JointVariables, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen import Note, guarded
+from ..tasks.running.unforeseen import PointNote, guarded
 from ..watch import part, reporting_to
 from .solved import SolvedPoints
 
@@ -32,14 +32,14 @@ _warm: set[str] = set()
 
 
 @solving
-def solve_here(job: Job, note: Note | None = None, progress: bool | None = None) -> SolvedPoints:
+def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
     """All points of a job.
 
     note: called with an exception that no solver foresees; the point then fails. Without `note` the exception
     is raised. progress: whether to display progress. Raises InputError and EnvironmentIncomplete if this
     process cannot solve.
     """
-    shown = display(progress, job.points.count, job.name)
+    shown = progress_display(progress, job.points.count, job.name)
     require_solvers()
     solver = job.solver()
     started = now()
@@ -122,13 +122,13 @@ def _solved(
     )
 
 
-def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
+def _joint(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
     """Variables that need all points, for example curves."""
     units = together.units(view)
     results = dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
         name = units.where(wanted[0])
-        with part(name), reporting_to(listener(shown, name)):
+        with part(name), reporting_to(progress_listener(shown, name)):
             results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)
 
@@ -141,7 +141,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     def reported() -> Iterator[None]:
         """Names the next point to the display, and to the listeners of the caller."""
         name = f"point {done + 1} of {count}" if count > 1 else ""
-        with part(name, (done / count, (done + 1) / count)), reporting_to(listener(shown, name)):
+        with part(name, (done / count, (done + 1) / count)), reporting_to(progress_listener(shown, name)):
             yield
 
     if solver.chained is None:
@@ -161,7 +161,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
             yield index, outcome
 
 
-def display(progress: bool | None, total: int | None, title: str) -> Display:
+def progress_display(progress: bool | None, total: int | None, title: str) -> Display:
     """Progress display for `total` points, which appears after a second.
 
     progress: True or False; None displays only in a terminal or a notebook. InputError for any other type.
@@ -172,7 +172,7 @@ def display(progress: bool | None, total: int | None, title: str) -> Display:
     return ProgressReporter(total, title, live=True) if shown else SilentProgress()
 
 
-def listener(shown: Display, name: str) -> RankListener:
+def progress_listener(shown: Display, name: str) -> RankListener:
     """Listener that displays the position of the solve `name`; Ctrl-C raises KeyboardInterrupt."""
     return RankListener(
         NoClaims(lambda place: shown.place(place.words, place.share or 0.0)), StopRequest(), lambda: name

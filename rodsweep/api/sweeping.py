@@ -19,13 +19,13 @@ from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import describe_unforeseen, log_file
 from .asking import Tree, job_from, refuse_unfit, tree_of
 from .dataset import open_result
-from .solving import Display, display, solve_here
+from .solving import Display, progress_display, solve_here
 
-COMPUTED = (0, 1)
+COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: all points succeeded, or some did not."""
-REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
+REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Exception for each exit status of a refused run."""
-MOST_QUOTED = 2000
+MAX_QUOTED_LENGTH = 2000
 """Maximum length, in characters, of a quoted standard error: enough for its last exception."""
 
 
@@ -58,7 +58,7 @@ def sweep(
     tree = tree_of(task, keywords)
     if ranks is not None:
         refuse_unfit(tree)
-        return _on_ranks(task, tree, ranks, strict, display(progress, None, task))
+        return _on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_here(job_from(tree), None if strict else _warn, progress).dataset
 
 
@@ -86,7 +86,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
             status, errors = _run_shown(words, place, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
-        if status not in COMPUTED:
+        if status not in COMPLETE_STATUSES:
             raise _failure(words[0], status, errors, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
@@ -119,11 +119,11 @@ def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
     """Exception for an incomplete run; begun: whether the ranks created the result file."""
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
-        return REFUSED.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+        return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
     if begun or "Traceback" in errors:
-        return RuntimeError(errors[-MOST_QUOTED:])
+        return RuntimeError(errors[-MAX_QUOTED_LENGTH:])
     output = " ".join(errors.split()) or f"exit status {status}"
-    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MOST_QUOTED:]}")
+    return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MAX_QUOTED_LENGTH:]}")
 
 
 def _mpiexec() -> str:

@@ -26,7 +26,7 @@ PACKAGE = "benchmarks"
 """Name of the folder in a checkout; also its package name if the folder is elsewhere."""
 CHECKOUT = Path(__file__).parents[2]
 """Folder that contains pyproject.toml, if rodsweep runs from a checkout."""
-LEFT_OUT = {
+PEER_NAMES = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
@@ -95,7 +95,7 @@ def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -
 
 def left_out(studies: Sequence[str]) -> str:
     """Sentence on the peers missing from the studies and on how to get them; "" if none are missing."""
-    missing = "; ".join(f"{name}: {LEFT_OUT[name]}" for name in studies if name in LEFT_OUT)
+    missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
     return missing and (
         f"The peers are left out ({missing}): they are in the folder `{PACKAGE}` of a checkout of rodsweep, "
         f"which `--peers CHECKOUT/{PACKAGE}` names."

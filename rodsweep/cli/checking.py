@@ -1,4 +1,4 @@
-"""Output of `rodsweep check`: the points, modelled and neglected effects, and the cost."""
+"""Output of `rodsweep check`: points, modelled and neglected effects, expected cost."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.cost_estimate import MAX_SAMPLE
 from ..sweep.points.points import Points
-from ..tasks.arm.points import NoRod, same_rods
+from ..tasks.arm.points import NoRod, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import wall_check
@@ -24,7 +24,7 @@ from ..wording import counted
 
 
 def describe_job(job: Job) -> None:
-    """Prints the description of a valid config."""
+    """Prints the points, the modelled effects and the expected cost of a valid config."""
     console = Console(highlight=False, markup=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip())
     console.print(job.task.headline())
@@ -71,7 +71,7 @@ def _arm_lines(job: Job) -> list[str]:
 
 
 def _material_text(arm: ArmSection) -> str:
-    """Segments and law of an arm, as the end of a list."""
+    """Segments and law of an arm in words, appended to the list of its quantities."""
     segments = "".join(f"; segment {text}" for text in arm.segments or ())
     laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
     return f"{segments}; {', '.join(laws)}" if laws else segments
@@ -94,9 +94,9 @@ def _wall_lines(arm: ArmSection) -> list[str]:
 
 
 def _uncovered_lines(points: Points) -> list[str]:
-    """Lines on the number of different rods, and on points without a rod, with the reasons."""
+    """Lines on the number of different rods, and on the points to which no rod corresponds, with reasons."""
     lines = list[str]()
-    rods = same_rods(points)
+    rods = rod_numbers(points)
     if rods is not None:
         there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")

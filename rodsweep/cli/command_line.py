@@ -1,4 +1,4 @@
-"""Commands and options of `rodsweep`."""
+"""Commands and options of `rodsweep`, except the commands of `rodsweep.cli.page_commands`."""
 
 import sys
 from pathlib import Path
@@ -13,6 +13,7 @@ from .file_names import link_target, result_file, with_ending
 from .launchers import rank_variables
 
 FILE = click.Path(path_type=Path)
+"""Type of arguments and options that name a file."""
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
 )

@@ -11,10 +11,12 @@ from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
 from .file_names import link_target, with_ending
-from .portrait_rod import LEFT_OUT, rod_from, showing
+from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
 
 PORT = click.IntRange(0, 65535)
+"""Type of an option that names a TCP port."""
 FILE = click.Path(path_type=Path)
+"""Type of arguments and options that name a file."""
 
 
 @click.command()
@@ -131,7 +133,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 
 @click.command()
 @parameter_options
-@arm_options(LEFT_OUT, is_needed=False)
+@arm_options(QUANTITIES_WITHOUT_OPTION, is_needed=False)
 @click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option("--F-max", "F_max", type=float, default=200.0, show_default=True, help="Largest force.")
@@ -158,8 +160,8 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     material = {name: options[name] for name in ("law", "section", "profile")}
     quantities = {name: value for name, value in options.items() if name in (*UNITS, "poisson")}
     quantities["segments"] = options["segment"] or None
-    rod = rod_from(parameters, quantities, material)
-    with showing(ProgressReporter(None, "portrait", "solved"), solved_view) as solve:
+    rod = rod_of_options(parameters, quantities, material)
+    with solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve:
         results = rod_results(PortraitRequest(rod=rod, F_max=F_max, accuracy=accuracy), solve)
     click.echo(paragraph(results))
     click.echo(write_portrait(results, output))

@@ -9,7 +9,7 @@ from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, before_crushed, each_point
+from .parts import NonlinearTask, crushing_clause, points_clause
 from .protocol import Part, Solver
 from .thresholds import search_record
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CriticalityTask(NonlinearTask):
-    """Hopf points and their normal forms."""
+    """The task criticality: Hopf points of every rod and their normal forms."""
 
     config: CriticalityConfig
 
     def headline(self) -> str:
         F_max = self.config.criticality.F_max
-        return each_point(self.points, f"searched from F = 0 to {F_max:g}{before_crushed(self.config)}")
+        return points_clause(self.points, f"searched from F = 0 to {F_max:g}{crushing_clause(self.config)}")
 
     def asked(self) -> list[Part]:
         most = self.config.criticality.crossings
@@ -36,7 +36,7 @@ class CriticalityTask(NonlinearTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
-        """The largest force, (1,)."""
+        """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> Estimate:
@@ -57,7 +57,7 @@ class CriticalityTask(NonlinearTask):
 
 
 def record(result: "Criticality", most: int) -> dict[str, Any]:
-    """The result of a rod as variables of the file; most: length of the list of Hopf points."""
+    """Variables of the file for the Hopf points of a rod; most: length of the list of Hopf points."""
     search = search_record(result, most, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]

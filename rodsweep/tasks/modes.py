@@ -1,4 +1,4 @@
-"""The task modes: leading modes with their adjoints, and transient growth of the non-normal operator."""
+"""The task modes: leading modes with their adjoint modes, and transient growth of the non-normal operator."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
-from .parts import ProvedTask, count_of
+from .parts import ProvedTask, points_text
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModesTask(ProvedTask):
-    """Modes on their points."""
+    """The task modes: leading modes and transient growth at every point."""
 
     config: ModesConfig
 
@@ -34,16 +34,16 @@ class ModesTask(ProvedTask):
     counted_along: ClassVar[str] = "point"
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Material coordinates of the modes' nodes, shape (nodes,)."""
+        """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Forces at which the rods change stability; not searched for arms that are not uniform."""
+        """Forces at which the rods change stability; empty for arms that are not uniform or of rubber."""
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
         options = self.config.modes
-        return f"{count_of(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
+        return f"{points_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
 
     def asked(self) -> list[Part]:
         growth = self.config.modes.growth
@@ -85,7 +85,7 @@ class ModesTask(ProvedTask):
 
 
 def record(result: "Modes", growth: bool) -> dict[str, Any]:
-    """Modes as variables of the file; growth: whether transient growth was computed."""
+    """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
     values = recorded(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
     values |= recorded(MODE_NUMBERS, vectors)

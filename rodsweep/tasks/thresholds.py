@@ -1,4 +1,6 @@
-"""The task thresholds: the forces at which the number or kind of unstable modes changes."""
+"""The task thresholds: forces at which the number of unstable modes or the kind of the leading mode
+changes.
+"""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -9,7 +11,7 @@ from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines
-from .parts import ProvedTask, before_crushed, each_point
+from .parts import ProvedTask, crushing_clause, points_clause
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -17,12 +19,12 @@ if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
 
 FIRST_CROSSINGS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
-"""Kinds of crossings whose first is a threshold, each with the variable stored beside F."""
+"""Kinds of crossings of which the first is stored as a threshold, each with the variable stored beside F."""
 
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsTask(ProvedTask):
-    """Thresholds of every rod."""
+    """The task thresholds: thresholds and all crossings of every rod along F."""
 
     config: ThresholdsConfig
 
@@ -30,8 +32,8 @@ class ThresholdsTask(ProvedTask):
     counted_along: ClassVar[str] = "line"
 
     def headline(self) -> str:
-        until = f"{self.config.thresholds.F_max:g}{before_crushed(self.config)}"
-        return each_point(self.points, f"searched from F = 0 to {until}")
+        until = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"
+        return points_clause(self.points, f"searched from F = 0 to {until}")
 
     def asked(self) -> list[Part]:
         most = self.config.thresholds.crossings
@@ -41,7 +43,7 @@ class ThresholdsTask(ProvedTask):
         ]
 
     def searched(self) -> dict[str, np.ndarray]:
-        """The largest force, (1,)."""
+        """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.thresholds.F_max])}
 
     def cost(self) -> Estimate:
@@ -62,7 +64,7 @@ class ThresholdsTask(ProvedTask):
 
 
 def record(result: "Thresholds", most: int) -> dict[str, Any]:
-    """The thresholds of a rod as variables of the file; most: length of the list of crossings."""
+    """Variables of the file for the thresholds of a rod; most: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
     for kind, number in FIRST_CROSSINGS.items():
         place = CROSSING_KINDS.index(kind)
@@ -73,7 +75,10 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
 
 
 def search_record(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
-    """Variables of a search along `line`: at most `most` crossings; at: name of the variable of places."""
+    """Variables of the file for a search for crossings along the parameter `line`.
+
+    most: length of the list of crossings. at: name of the variable with the parameter value at a crossing.
+    """
     found = result.transitions
     variables = crossing_variables(line, at)
     rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]

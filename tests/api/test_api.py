@@ -247,7 +247,7 @@ def test_parameters_that_are_not_given_have_the_defaults_of_the_table():
 
 def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
     kinds = {
-        "spectrum": options.OfSpectrum,
+        "spectrum": options.SpectrumKeywords,
         "thresholds": options.OfThresholds,
         "modes": options.OfModes,
         "limit_cycle": options.OfLimitCycle,

@@ -16,7 +16,7 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
+from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, left_out, peer_package, peers_of
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
@@ -32,7 +32,7 @@ from rodsweep.bench.spectrum.study import (
     spectrum_study,
 )
 from rodsweep.bench.study import Contender, Measurement, Study, contest, every_nth_setting, race
-from rodsweep.cli.benching import machine
+from rodsweep.cli.benching import machine_attributes
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
 
@@ -284,9 +284,9 @@ def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, t
 
 def test_who_is_left_out_is_said_for_every_study_with_peers():
     rooms = [path.parent.name for path in (ROOT / "benchmarks").glob("*/__init__.py")]
-    assert sorted(LEFT_OUT) == sorted(rooms)
+    assert sorted(PEER_NAMES) == sorted(rooms)
 
 
 def test_a_benchmark_names_its_processor():
     """By words, as /proc/cpuinfo or else the platform has it, and not by the number of a core."""
-    assert re.search("[A-Za-z]{2}", machine()["processor"])
+    assert re.search("[A-Za-z]{2}", machine_attributes()["processor"])

@@ -25,14 +25,14 @@ from rodsweep.bench.sweep.launch import (
     uneven_forces,
 )
 from rodsweep.bench.sweep.study import TWO_COMMANDS, growth_table, instant_table, measured, sweep_study
-from rodsweep.cli.benching import MEASURED
+from rodsweep.cli.benching import MEASURED_COMMAND
 from rodsweep.errors import EnvironmentIncomplete
 
 FEW_MEGABYTES = 4.0
 MOST_BYTES = 100
 
 
-run = partial(run_case, MEASURED)
+run = partial(run_case, MEASURED_COMMAND)
 
 
 def row(name, points, ranks, seconds, memory):
@@ -61,7 +61,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
     monkeypatch.setattr(followed, "QUICK_AXES", followed.QUICK_AXES[1:])
-    command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED[1:])
+    command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
     assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher(2))

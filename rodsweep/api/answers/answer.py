@@ -21,13 +21,13 @@ from .printing import PrintedAnswer, brief_html, brief_text, first_lines, whole_
 
 EIGENVALUE = ("growth_rate", "frequency")
 """Names of the real and the imaginary part of an eigenvalue."""
-NOT_PRINTED = ("status", "seconds")
+UNPRINTED_VARIABLES = ("status", "seconds")
 """Variables without a row of their own: the heading has the status, and the time depends on the machine."""
 SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
 """SI units, by which variables of an arm are recognised beside variables in units of the rod."""
-TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
+TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
 """Variables with the total number of items of a list, stored or not, by the name of the list."""
-IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
+LISTS_PRINTED_IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
 """Lists printed in full. Of every other list only the number of rows is printed."""
 
 
@@ -167,7 +167,7 @@ class Answer:
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
-        own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
+        own = [c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.given]
         own.sort(key=_is_dimensionless)
         lists = {}
         for name in self.lists:
@@ -175,7 +175,9 @@ class Answer:
             lists[name] = (number, *sorted(others, key=_is_dimensionless))
         if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
-        totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
+        totals = {
+            name: int(self.data[count]) for name, count in TOTAL_VARIABLES.items() if count in self.data
+        }
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return PrintedAnswer(
             rod=rod,
@@ -184,11 +186,11 @@ class Answer:
             numbers=tuple(c for c in own if not c.absent[0]),
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
-            lists={name: columns for name, columns in lists.items() if name in IN_FULL},
+            lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
             named={
                 name: rows
                 for name, columns in lists.items()
-                if name not in IN_FULL and (rows := len(columns[0].values))
+                if name not in LISTS_PRINTED_IN_FULL and (rows := len(columns[0].values))
             },
         )
 

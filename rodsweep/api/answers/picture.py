@@ -26,9 +26,9 @@ from .tabling import view_for
 
 P = ParamSpec("P")
 R = TypeVar("R")
-PLACE = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
-NUMBER = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
-WORDS = (
+AT_OPTION = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
+NUMBER_TEXT = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
+ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--what (\w+)"), r'what="\1"'),
     (re.compile(r"--point (\d+)"), r"points=\1"),
     (re.compile(r"--point\b"), "points"),
@@ -40,8 +40,8 @@ EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 def in_python(sentence: str) -> str:
     """A sentence about options of `rodsweep plot` with the arguments of `rs.plot` in their place."""
-    sentence = PLACE.sub(_place, sentence)
-    for option, argument in WORDS:
+    sentence = AT_OPTION.sub(_place, sentence)
+    for option, argument in ARGUMENTS_OF_OPTIONS:
         sentence = option.sub(argument, sentence)
     return sentence
 
@@ -49,7 +49,7 @@ def in_python(sentence: str) -> str:
 def _place(match: re.Match[str]) -> str:
     """`at` as a dictionary: a number as it is, a quantity or a word in quotes."""
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
-    return f'at={{"{name}": {value}}}' if NUMBER.fullmatch(value) else f'at={{"{name}": "{value}"}}'
+    return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
 def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:

@@ -18,7 +18,7 @@ BRIEF_LINES = 11
 """Largest number of lines of an answer at a prompt, unless the sentences above the numbers need more."""
 MIN_ROWS = 3
 """Number of numbers, or of rows of a list, that are printed even if the lines above are many."""
-PROOFS = ("not certified", "certified")
+PROOF_WORDS = ("not certified", "certified")
 """Words for the completeness of the list of an answer."""
 ERROR_SIGN = "+-"
 """Sign between a number and its error."""
@@ -58,7 +58,7 @@ def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str
     meaning = "; ".join(filter(None, (sentence, message)))
     answer = HEADLINES[task].sentence(rod)
     certified = rod.count("certified")
-    proof = "" if certified is None else f", {PROOFS[certified]}"
+    proof = "" if certified is None else f", {PROOF_WORDS[certified]}"
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
     return answer, f"{name}, {task}: {status}{proof}", meaning

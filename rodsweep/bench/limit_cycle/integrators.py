@@ -15,10 +15,11 @@ from ...solve.motion.integrator import RunEnding, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender
 
-TIGHT = 3e-7
+TIGHT_TOLERANCE = 3e-7
 """Tolerance below which Newton's default convergence test would limit the accuracy of ARKIMEX 5."""
-TIGHT_NEWTON = 0.03
-"""Convergence tolerance of Newton's method below TIGHT, as a fraction of the integrator's tolerance."""
+TIGHT_NEWTON_TOLERANCE = 0.03
+"""Convergence tolerance of Newton's method, as a fraction of the integrator's tolerance, if the latter is
+below TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
@@ -60,7 +61,7 @@ class IntegratorFamily:
 
 def by_petsc(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """PETSc TS as in the task limit_cycle, with a choice of scheme."""
-    newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
+    newton = TimeScheme().newton if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(leg.beam.mesh, scheme).run(leg.beam, leg.z, leg.duration)
     if run.ending != RunEnding.reached:

@@ -51,7 +51,7 @@ QUICK_ROUNDS = 1
 FOLLOWING = "following"
 WAITING = "waiting"
 DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
-NEAR_HOPF = 27.43
+NEAR_HOPF_F = 27.43
 """Force 0.003 above the Hopf point, where waiting takes very long."""
 SOLVE = "solve_cycle"
 WAITS = "waiting, "
@@ -199,9 +199,9 @@ def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) 
         f"From a start of {AMPLITUDE:g} L to the settled cycle. Waiting ends when two successive returns "
         f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
         "user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes the "
-        f"choice of mesh and the proof of stability. At F = {NEAR_HOPF:g} the number of periods is estimated "
-        f"from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the time per "
-        "period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
+        f"choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is "
+        f"estimated from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the "
+        "time per period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
     ) + table(
         "F | way | tolerance | returns | ms | error left",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
@@ -237,14 +237,14 @@ def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod
 
 def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
     """Ways near the Hopf point; the number of periods of waiting is estimated from the largest multiplier."""
-    cycle = cycle_at(NEAR_HOPF)
+    cycle = cycle_at(NEAR_HOPF_F)
     leg = IntegrationTask(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    waits = [SettlingMethod(NEAR_HOPF, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
+    waits = [SettlingMethod(NEAR_HOPF_F, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF_F))]
     for contender in settled:
         run = partial(contender.run, leg)
         times = count / FOLLOWED_PERIODS
         way = WAITS + contender.method
-        waits.append(SettlingMethod(NEAR_HOPF, way, contender.setting, count, SETTLED_WITHIN, run, times))
+        waits.append(SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLED_WITHIN, run, times))
     return waits

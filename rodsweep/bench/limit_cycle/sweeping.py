@@ -39,8 +39,8 @@ RODS = (
 """Rods with cycles near and far from Hopf points, stiff rods, and a rod shortened to half by its force;
 a cone as far from its Hopf point as the first rod, and the first rod made of rubber."""
 QUICK_RODS = (RODS[2],)
-SWEPT = NONLINEAR_PARAMETERS[:2]
-STEP = 1.01
+SWEPT_PARAMETERS = NONLINEAR_PARAMETERS[:2]
+STEP_RATIO = 1.01
 """Ratio of the parameter from one point of the sweep to the next."""
 WARM_UP_POINTS = 6
 """Number of points solved before the timed points, so that the mesh is already chosen."""
@@ -104,19 +104,19 @@ def swept(point: Rod, accuracy: float) -> SweptRod:
     """The rod with its neighbours: points of downward sweeps that end at the rod."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
-    for axis in SWEPT:
+    for axis in SWEPT_PARAMETERS:
         before: Neighbour | None = None
         for k in range(WARM_UP_POINTS, 0, -1):
             there = beyond(point, axis, k + TIMED_POINTS - 1)
             before = settled(solve_cycle(there, cycle_request(accuracy), before, axis, workspace)).neighbour
         neighbours[axis] = before
-    here = solve_cycle(point, cycle_request(accuracy), along=SWEPT[0])
+    here = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
     return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours, workspace)
 
 
 def beyond(point: Rod, axis: str, steps: int) -> Rod:
     """The point of the sweep `steps` before the given point."""
-    return replace(point, **{axis: getattr(point, axis) * STEP**steps})
+    return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
 
 
 def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
@@ -147,7 +147,8 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
     """All starts of a point, as contenders."""
     setting = f"{accuracy:.0e}"
     warm = [
-        Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy)) for axis in SWEPT
+        Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy))
+        for axis in SWEPT_PARAMETERS
     ]
     cold = [
         Contender(COLD_START + name, setting, COLD_START, partial(from_cold, start, accuracy))
@@ -190,13 +191,13 @@ def sweep_introduction() -> str:
     """Description of the measurements for the report."""
     return (
         f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
-        f"{STEP - 1:.0%} between neighbours. The time is the mean of {TIMED_POINTS} points up to the rod, "
-        "with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the choice of "
-        "the mesh, the verdict, and the error estimate, which is the larger of the estimates for the period "
-        "and for the extrema. Errors of the period and of the largest tip y are relative to a solution on "
-        f"meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers are counted above rounding. The order "
-        "in space is that of one element; the intervals in time cover half a period if the cycle is "
-        "symmetric."
+        f"{STEP_RATIO - 1:.0%} between neighbours. The time is the mean of {TIMED_POINTS} points up to the "
+        "rod, with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the "
+        "choice of the mesh, the verdict, and the error estimate, which is the larger of the estimates for "
+        "the period and for the extrema. Errors of the period and of the largest tip y are relative to a "
+        f"solution on meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers are counted above "
+        "rounding. The order in space is that of one element; the intervals in time cover half a period if "
+        "the cycle is symmetric."
     )
 
 

@@ -50,15 +50,15 @@ SETTLED_WITHIN = 1e-7
 """Accuracy requested from solve_cycle; when waiting, relative distance of two successive returns."""
 AMPLITUDE = 0.1
 """Tip deflection at the start, in L."""
-MOST_RETURNS = 300
+MAX_RETURNS = 300
 """Maximum number of returns for which solve_cycle may wait."""
-SMALL_STEPS = 20
+SMALL_STEP_COUNT = 20
 """Number of small steps around an event."""
-DEGREE = 7
+SPLINE_DEGREE = 7
 """Degree of the spline through the small steps."""
-CORRECTIONS = 2
+NEWTON_CORRECTION_COUNT = 2
 """Newton steps from the spline's root to the event, because the spline alone has errors of 1e-8 rad."""
-OVERSHOOT = 1.25
+REPEATED_STEP_FACTOR = 1.25
 """Length of the repeated step, in units of the original step, which has an error and might miss the event."""
 
 
@@ -74,7 +74,7 @@ class ReferenceCycle:
 
 def cycle_request(accuracy: float) -> CycleRequest:
     """Request for a cycle at an accuracy, without stored samples or shapes."""
-    return CycleRequest(accuracy, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS)
+    return CycleRequest(accuracy, AMPLITUDE, 1, 0, 0, 0, MAX_RETURNS)
 
 
 def cycle_at(force: float) -> Cycle:
@@ -149,9 +149,9 @@ def returns_of(beam: Beam, run: Trajectory) -> TipReturns:
     states = []
     heights = []
     for k in rising:
-        again = _again(beam, run.states[k], OVERSHOOT * (run.times[k + 1] - run.times[k]))
+        again = _again(beam, run.states[k], REPEATED_STEP_FACTOR * (run.times[k + 1] - run.times[k]))
         when = float(_spline(again.times, again.states @ row).roots(extrapolate=False)[0])
-        for _ in range(CORRECTIONS):
+        for _ in range(NEWTON_CORRECTION_COUNT):
             there = _again(beam, run.states[k], when).states[-1]
             when -= float(row @ there) / float(row @ beam.rate(there))
         times.append(run.times[k] + when)
@@ -170,9 +170,9 @@ def height_near(beam: Beam, run: Trajectory, k: int) -> float:
 
 def _again(beam: Beam, z: Array, duration: float) -> Trajectory:
     """The run repeated from a state z with equal small steps over a duration."""
-    limit = RunLimit(max_steps=SMALL_STEPS + 2)
-    return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEPS, limit)
+    limit = RunLimit(max_steps=SMALL_STEP_COUNT + 2)
+    return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEP_COUNT, limit)
 
 
 def _spline(times: Array, values: Array) -> PPoly:
-    return PPoly.from_spline(make_interp_spline(times, values, DEGREE))
+    return PPoly.from_spline(make_interp_spline(times, values, SPLINE_DEGREE))

@@ -35,13 +35,13 @@ ARMS = {
 }
 ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements of a pencil."""
-COARSE = 1e-2
+EDGE_ACCURACY = 1e-2
 """Accuracy for which the edges of the elements are chosen; the order gives the accuracy."""
 TARGET = 1e-10
 """Error at which the methods are compared."""
 EXACT_REFINEMENT = 16.0
 """The exact D of an arm has the elements for |w| times this factor."""
-NEWTON_STEPS = 3
+NEWTON_STEP_COUNT = 3
 
 
 class UnsolvedArms:
@@ -64,7 +64,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     """The leading eigenvalues, by Newton's method on D with finer elements."""
     determinant = ArmDeterminant(rod)
     roots: list[complex] = own_spectrum(rod, certify=True).tolist()
-    for _ in range(NEWTON_STEPS):
+    for _ in range(NEWTON_STEP_COUNT):
         values = [determinant.value_at_level(w, EXACT_REFINEMENT) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
@@ -109,7 +109,7 @@ def _cheapest(measurements: Sequence[Measurement]) -> str:
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
     """As few elements as resolve the variation of the arm, with the given order."""
-    return ArmMesh(arm_mesh(rod, WANTED_MODES, COARSE).edges, order)
+    return ArmMesh(arm_mesh(rod, WANTED_MODES, EDGE_ACCURACY).edges, order)
 
 
 def on_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:

@@ -15,9 +15,9 @@ DIGITS = 30
 """Digits of the eigenvalues."""
 GUARD_DIGITS = 25
 """Additional digits of the computation, more than the cancellation in D costs."""
-STEP = mp.mpf(10) ** -12
+SECANT_STEP = mp.mpf(10) ** -12
 """Relative distance of the first two points of the secant method."""
-FARTHEST_ROOT = 20
+MAX_ROOT_DISTANCE = 20
 """Largest accepted distance of the root from the starting value, in units of its estimated error."""
 
 
@@ -52,11 +52,11 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
         D = determinant(rod)
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
-            root = mp.findroot(D, (start, start * (1 + STEP)), tol=STEP**5, verify=False)
-            # Near a simple root D grows linearly: from |D| at a relative distance of STEP follows |D| at a
-            # distance of 10^-DIGITS.
-            small = abs(D(root * (1 + STEP))) * mp.mpf(10) ** -DIGITS / STEP
-            if abs(root - start) > FARTHEST_ROOT * error or abs(D(root)) > small:
+            root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
+            # Near a simple root D grows linearly: from |D| at a relative distance of SECANT_STEP follows |D|
+            # at a distance of 10^-DIGITS.
+            small = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGITS / SECANT_STEP
+            if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > small:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
     return roots

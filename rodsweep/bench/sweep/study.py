@@ -28,7 +28,7 @@ from .launch import (
 
 SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Numbers of points of the sweeps with the instant solver."""
-ONCE_FROM = 10**6
+SINGLE_RUN_FROM = 10**6
 """Number of points from which an instant sweep is run only once, because its start hardly counts."""
 SPECTRA = 200_000
 QUICK_SPECTRA = 6_000
@@ -94,7 +94,7 @@ def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int])
     entries = []
     for size in sizes:
         case = spectrum_case(place / f"instant{size}", "no solver", size, INSTANT)
-        entries += [(case, n, 1 if size >= ONCE_FROM else rounds) for n in ranks]
+        entries += [(case, n, 1 if size >= SINGLE_RUN_FROM else rounds) for n in ranks]
     measurements = interleaved(run, entries)
     for size in sizes:
         killed = spectrum_case(place / f"killed{size}", KILLED, size, KILLED)

@@ -94,7 +94,7 @@ ARM_INTRODUCTION = (
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
 ROUNDS = 5
 QUICK_ROUNDS = 1
-MOST_DIGITS = 16
+MAX_DIGITS = 16
 F_MAX = 200.0
 ARM_F_MAX = 60.0
 """Largest force of the search on arms, several times their Hopf points."""
@@ -150,7 +150,7 @@ def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> d
     """Error of a threshold. digits: correct digits per eigenproblem, 0 if the threshold was missed."""
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
-    digits = -log10(min(max(error, 10**-MOST_DIGITS), 1.0))
+    digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
     work = {"eigenproblems": first.solves, "determinants": first.determinants, "products": first.products}
     extra = work | {"digits": nan if isnan(getattr(case, kind)) else digits / first.solves}
     return {"error": error, "failure": missed if isinf(error) else "", "extra": extra}

@@ -1,4 +1,4 @@
-"""End of a run: what each rank contributed, attributes of the file made of it, and closing sentences."""
+"""End of a run: work done by each rank, attributes of the file, and closing sentences."""
 
 import os
 from collections.abc import Sequence
@@ -18,8 +18,10 @@ MAX_FAILURES_PRINTED = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contribution:
-    """Report of a rank to the first rank: host, a failed point of each distinct reason in words, and
-    statistics of the rank's work.
+    """Report of a rank to the first rank at the end of a run.
+
+    host: name of the machine. failures: one failed point in words for each distinct reason. share: statistics
+    of the rank's work.
     """
 
     host: str
@@ -27,14 +29,16 @@ class Contribution:
     share: RankWork
 
 
-def of_the_last_run(plan: Plan) -> dict[str, Any]:
-    """Attributes of a plan that describe the last run with computed points."""
+def last_run_attributes(plan: Plan) -> dict[str, Any]:
+    """Attributes of a plan that describe only the last run: versions, commit, options and shard."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
 
 
-def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:
-    """Attributes with the hosts, versions and ranks that computed the points of a run."""
+def run_history(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:
+    """Attributes of a file with the hosts, the MPI library and the ranks that computed the points of a
+    run.
+    """
     hosts = {contribution.host for contribution in contributions}
     shares = [contribution.share for contribution in contributions[: provenance.MAX_RANK_SHARES]]
     points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
@@ -54,13 +58,13 @@ class RunEnd:
 
     ranks: int
     asked: int
-    """Number of points to solve."""
+    """Number of points to be solved in this run."""
     left: int
-    """Number of points not solved."""
+    """Number of points of this run that are not solved."""
     kept: int
-    """Number of points that the file held before the run."""
+    """Number of points that the file holds at the end of the run."""
     seconds: float
-    """Time spent on the points."""
+    """Time spent on the points, in s."""
     curve_seconds: float
     """Time spent on the variables that need all points, in s."""
     in_the_middle: int
@@ -87,7 +91,7 @@ class RunEnd:
         return sentences
 
     def kept_words(self) -> str:
-        """Words on what a stopped run keeps."""
+        """Clause on the points and curves that the file and the journal of a stopped run keep."""
         points = f"{counted(self.kept, 'point')} kept"
         if self.halves is not None:
             return f"{points}, the curves are missing, {self.halves} of their halves kept"

@@ -20,14 +20,15 @@ from ...sweep.points.ranges import Shard
 from .job import Job, plan_of
 
 Stored = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
-"""Dimensions, values and attributes of a variable of a file."""
+"""Variable of a file: (dimensions, values, attributes)."""
 
 
 @solving
 def solved_view(job: Job) -> View:
-    """The solved points of a job without chains and joint variables, as `show` reads them from a file.
+    """Solves all points of a job; returns the results in the form in which `show` reads a file.
 
-    Raises EnvironmentIncomplete if this process cannot solve.
+    The job has no chains and no variables that depend on all points. Raises EnvironmentIncomplete if PETSc or
+    SLEPc is missing.
     """
     require_solvers()
     started = now()
@@ -51,10 +52,11 @@ def solved_view(job: Job) -> View:
 def view_in_memory(
     job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled] = ()
 ) -> View:
-    """Solved points in the form in which `show` reads a file, with the attributes `task` and
-    `config_resolved` only.
+    """Results in the form in which `show` reads a file, with the attributes `task` and `config_resolved`
+    only.
 
-    values: variables of the layout, shape (points, own dimensions). filled: further variables.
+    values: variables of the layout by name, shape (points, own dimensions). filled: variables of the file
+    that do not belong to single points.
     """
     coordinates, variables = stored(plan, values, filled)
     return View(
@@ -72,7 +74,7 @@ def view_in_memory(
 def stored(
     plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled]
 ) -> tuple[dict[str, Stored], dict[str, Stored]]:
-    """(coordinates, variables) of the file of a plan with the given values, as for `view_in_memory`."""
+    """(coordinates, variables) of the file of a plan, by name; values and filled as for `view_in_memory`."""
     coordinates = _coordinates(plan)
     variables: dict[str, Stored] = {}
     for variable in plan.layout.variables:
@@ -88,7 +90,7 @@ def stored(
 
 
 def _coordinates(plan: Plan) -> dict[str, Stored]:
-    """Coordinates of the points and of the other dimensions."""
+    """Coordinates of the points and of all further dimensions of a plan, by name."""
     points = plan.points
     found: dict[str, Stored] = {}
     if not points.axes:
@@ -106,7 +108,7 @@ def _coordinates(plan: Plan) -> dict[str, Stored]:
 
 @cache
 def blas_kernels() -> str:
-    """The BLAS kernels of this process."""
+    """Names of the BLAS kernels that this process uses."""
     from ...solve.backend.blas_kernel import blas as kernel
 
     return kernel()
@@ -114,5 +116,5 @@ def blas_kernels() -> str:
 
 @cache
 def blas() -> ThreadpoolController:
-    """The BLAS libraries of this process. PETSc must have loaded a BLAS before."""
+    """Controller of the threads of all loaded BLAS libraries. PETSc must be loaded before the first call."""
     return ThreadpoolController()
