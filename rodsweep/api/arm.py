@@ -1,4 +1,4 @@
-"""`rs.Arm`: an arm in SI units, with its flutter range and all tasks of a rod."""
+"""`rs.Arm`: an arm in SI units, with its range of flutter thresholds and all tasks of a rod."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -35,8 +35,8 @@ EXCLUSIVE_QUANTITIES = (
     (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of exclusive sets of quantities: setting a quantity of either set removes the quantities of the
-opposite set."""
+"""Pairs of sets of quantities that exclude each other: `Arm.replace` with a quantity of one set removes all
+quantities of the other set."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
@@ -58,21 +58,25 @@ class Arm(SlenderArm):
 
     @cached_property
     def flutter(self) -> "FlutterRange":
-        """Flutter threshold and frequency in the arm's plane of motion, over the range of its drag."""
+        """Flutter threshold and frequency in the arm's plane of motion, over the uncertainty of its drag."""
         from ..verdict.flutter import flutter_range
 
         return flutter_range(self)
 
     def report(self) -> "ArmReport":
-        """Verdict, numbers with formulas and sources, and effects neglected by the model."""
+        """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
+        neglects.
+        """
         from ..verdict.arm import report_on
 
         return report_on(self)
 
     @in_sentences('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
-        """A copy with changed quantities. A force replaces a pressure; width and height replace a radius;
-        segments replace radius, width, height and length.
+        """A copy of the arm with changed quantities.
+
+        A force replaces a pressure; width and height replace a radius; segments replace radius, width, height
+        and length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE_QUANTITIES:
@@ -85,15 +89,17 @@ class Arm(SlenderArm):
 
     @property
     def turned(self) -> "Arm":
-        """The arm in the second plane of its rectangular section, width and height exchanged; a round arm
-        unchanged.
+        """The arm that moves in the second plane of its rectangular section: width and height are exchanged.
+
+        A round arm is returned unchanged.
         """
         return self if self.radius or self.segments else self.replace(width=self.height, height=self.width)
 
     @cached_property
     def loaded(self) -> "Arm":
-        """The arm with its load as a quantity; a load relative to flutter needs a solve for the flutter
-        threshold.
+        """The arm with its load as a pressure or force in SI units.
+
+        For a load relative to flutter, the flutter threshold is solved first.
         """
         return known_load(self)
 
@@ -171,7 +177,7 @@ class Arm(SlenderArm):
 
     @property
     def _plane(self) -> str:
-        """Warning for a rectangular section if it bends more easily out of the computed plane; else ""."""
+        """Warning for a rectangular section that bends more easily out of the plane of motion; else ""."""
         if not self.si.height > self.si.width:
             return ""
         return (

@@ -1,4 +1,4 @@
-"""Result files as xarray Datasets, and Datasets in the form that figures and tables read."""
+"""Result files as xarray Datasets, and Datasets as the views that figures and tables read."""
 
 import json
 import os
@@ -23,21 +23,22 @@ from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
 ENGINE = "h5netcdf"
+"""Backend with which xarray reads result files."""
 
 
 @one_at_a_time
 @in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
-    """Reads a whole result file into memory. For a running sweep, the points done so far are included.
+    """Reads a whole result file into memory, including the points that a running sweep has solved so far.
 
-    Raises InputError if the file is no result, is damaged, or was changed by another program.
+    Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
     path = file_path(path, 'rs.open("RESULT.h5")')
     return read_unfolded(path, lambda: _opened(path))
 
 
 def file_path(given: object, example: str) -> Path:
-    """Path of a file named by the user; InputError, with an example, if `given` is no file name."""
+    """Path of a file named by the user; InputError, with `example`, if `given` is no file name."""
     if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
         raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
     if not name or "\0" in name:
@@ -64,7 +65,9 @@ def _opened(path: Path) -> xr.Dataset:
 
 
 def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
-    """Makes the quantities of an arm selectable along an axis, such as F by pressure."""
+    """The Dataset with an index for every quantity of an arm along an axis, so that `sel` accepts the
+    quantity.
+    """
     for name in STORED_ALONG:
         if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
             data = data.set_xindex(name)
@@ -72,7 +75,10 @@ def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
 
 
 def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
-    """The Dataset with its variables in the order of the layout. HDF5 stores variables alphabetically."""
+    """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically.
+
+    config: the config as a tree of keys.
+    """
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
     places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
@@ -82,7 +88,7 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
 
 def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
-    """A whole file as read by xarray; InputError if values or dimensions differ from the checksums."""
+    """A whole result file as read by xarray; InputError if values or dimensions differ from its checksums."""
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with reading(path):
         try:
@@ -98,8 +104,7 @@ def _loaded(path: Path, header: ResultHeader) -> xr.Dataset:
 
 
 def with_checksums(data: xr.Dataset) -> xr.Dataset:
-    """Adds checksums. After xarray has written this Dataset to a file, readers recognise by the checksums
-    that the file is complete."""
+    """The Dataset with checksums as an attribute. By these, readers recognise a complete file of xarray."""
     variables = {
         str(name): variable_digest(
             v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]
@@ -111,7 +116,10 @@ def with_checksums(data: xr.Dataset) -> xr.Dataset:
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
-    """A Dataset in the form read by `show` and `plot`; InputError if the result is not complete."""
+    """A Dataset as the view that `show` and `plot` read; InputError if the Dataset is no complete result.
+
+    path: name of the result for messages.
+    """
     try:
         layout = layout_of(json.loads(data.attrs["config_resolved"]))
         status = data["status"]

@@ -1,22 +1,22 @@
-"""Keyword arguments of a rod's tasks, for editors and type checkers.
+"""Keyword arguments of the task methods of `rs.Rod` and `rs.Arm`, for editors and type checkers.
 
-`rodsweep.config` defines meanings, ranges and defaults; a test compares these names with the config.
+`rodsweep.config` defines the meaning, the range and the default of each keyword.
 """
 
 from typing import Literal, TypedDict
 
 
 class TaskKeywords(TypedDict, total=False):
-    """Options of every task."""
+    """Keyword arguments that every task accepts."""
 
     accuracy: float
     title: str
     progress: bool | None
-    """Whether to display progress; None displays progress only in a terminal or a notebook. No config key."""
+    """Whether to display progress; None: only in a terminal or a notebook. No key of a config."""
 
 
 class SpectrumKeywords(TaskKeywords, total=False):
-    """Keys of the section `spectrum`."""
+    """Keyword arguments of the task spectrum: the keys of the section `spectrum` of a config."""
 
     modes: int
     method: Literal["determinant", "krylov_schur"]
@@ -28,7 +28,7 @@ class SpectrumKeywords(TaskKeywords, total=False):
 
 
 class ThresholdsKeywords(TaskKeywords, total=False):
-    """Keys of the section `thresholds`."""
+    """Keyword arguments of the task thresholds: the keys of the section `thresholds` of a config."""
 
     F_max: float
     crossings: int
@@ -36,7 +36,7 @@ class ThresholdsKeywords(TaskKeywords, total=False):
 
 
 class ModesKeywords(TaskKeywords, total=False):
-    """Keys of the section `modes`."""
+    """Keyword arguments of the task modes: the keys of the section `modes` of a config."""
 
     modes: int
     nodes: int
@@ -45,7 +45,7 @@ class ModesKeywords(TaskKeywords, total=False):
 
 
 class CriticalityKeywords(TaskKeywords, total=False):
-    """Keys of the section `criticality`."""
+    """Keyword arguments of the task criticality: the keys of the section `criticality` of a config."""
 
     F_max: float
     crossings: int
@@ -53,7 +53,7 @@ class CriticalityKeywords(TaskKeywords, total=False):
 
 
 class BranchKeywords(TaskKeywords, total=False):
-    """Keys of the section `branch`."""
+    """Keyword arguments of the task branch: the keys of the section `branch` of a config."""
 
     along: str
     start: float
@@ -64,7 +64,7 @@ class BranchKeywords(TaskKeywords, total=False):
 
 
 class LimitCycleKeywords(TaskKeywords, total=False):
-    """Keys of the section `limit_cycle`."""
+    """Keyword arguments of the task limit_cycle: the keys of the section `limit_cycle` of a config."""
 
     method: Literal["collocation", "integration"]
     amplitude: float

@@ -1,4 +1,4 @@
-"""`rs.Rod`: one rod, with every task as a method."""
+"""`rs.Rod`: one rod in dimensionless units, with every task as a method."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -92,18 +92,18 @@ class SoftRod:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """The parameters' values by name."""
+        """Values of the parameters by name."""
         return dict(self._values)
 
     @in_sentences("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
-        """A copy with new values of some parameters, or of law, section and profile."""
+        """A copy of the rod with new values of some parameters, or of law, section or profile."""
         values: dict[str, Any] = self._values | self._given_material | changed
         return SoftRod(**values)
 
     @property
     def _given_material(self) -> dict[str, Any]:
-        """The keys of the material that differ from their defaults."""
+        """The keys of the section `material` that differ from their defaults, with their values."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @in_sentences("rod.spectrum(modes=4)")
@@ -158,7 +158,7 @@ class SoftRod:
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
-            """The method of a task that this class does not define; AttributeError for unknown names."""
+            """Method of a task without a method of its own in this class; AttributeError if there is none."""
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
@@ -202,7 +202,7 @@ class SoftRod:
 
 
 def _material(given: Mapping[str, Any]) -> MaterialSection | None:
-    """The section `material` of a rod, or None without keys; InputError for an unknown law."""
+    """The validated section `material` of a rod, None if no key is given; InputError for bad values."""
     tree = {
         name: plain_keyword(f"material.{name}", value) for name, value in given.items() if value is not None
     }
@@ -218,7 +218,7 @@ def _material(given: Mapping[str, Any]) -> MaterialSection | None:
 
 
 def _number(name: str, value: Any) -> float:
-    """Value of a parameter as a float; InputError if it is no number."""
+    """Value of the parameter `name` as a float; InputError if the value is no number."""
     try:
         return as_number(plain(value))
     except ValueError as error:

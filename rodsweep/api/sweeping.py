@@ -1,4 +1,4 @@
-"""`rs.sweep`: a task over a grid or a list of points, here or on many ranks."""
+"""`rs.sweep`: a task over a grid or a list of points, in this process or on many MPI ranks."""
 
 import os
 import shutil
@@ -22,11 +22,11 @@ from .dataset import open_result
 from .solving import Display, progress_display, solve_here
 
 COMPLETE_STATUSES = (0, 1)
-"""Exit statuses of a complete run: all points succeeded, or some did not."""
+"""Exit statuses of a complete run: 0 if all points succeeded, 1 if some failed."""
 REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
-"""Exception for each exit status of a refused run."""
+"""Exception to be raised for each exit status of a refused run."""
 MAX_QUOTED_LENGTH = 2000
-"""Maximum length, in characters, of a quoted standard error: enough for its last exception."""
+"""Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -63,7 +63,9 @@ def sweep(
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception; indices: of the failed
+    points.
+    """
     first = indices[0] + 1
     last = indices[-1] + 1
     points = f"point {first}" if first == last else f"points {first} to {last}"
@@ -94,7 +96,9 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
 
 
 def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
-    """Runs a command in a directory and shows the progress; returns exit status and standard error."""
+    """Runs a command in the directory `place` and shows its progress; returns (exit status, standard
+    error).
+    """
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
         words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
@@ -116,7 +120,10 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
 
 
 def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
-    """Exception for an incomplete run; begun: whether the ranks created the result file."""
+    """Exception for a run that did not complete; begun: whether the ranks had created the result file.
+
+    status: exit status of the launcher. errors: standard error of the run.
+    """
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
@@ -127,7 +134,7 @@ def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
 
 
 def _mpiexec() -> str:
-    """The launcher beside this Python, or on the search path; EnvironmentIncomplete if there is none."""
+    """Path of mpiexec, beside this Python or on the search path; EnvironmentIncomplete if there is none."""
     beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     found = beside or shutil.which("mpiexec")
     if found is None:

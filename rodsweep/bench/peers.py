@@ -23,43 +23,47 @@ from ..errors import InputError
 from .study import Contender, Measurement
 
 PACKAGE = "benchmarks"
-"""Name of the folder in a checkout; also its package name if the folder is elsewhere."""
+"""Name of the folder of peers in a checkout; also its package name wherever the folder is."""
 CHECKOUT = Path(__file__).parents[2]
-"""Folder that contains pyproject.toml, if rodsweep runs from a checkout."""
+"""Root folder of the checkout, if rodsweep runs from a checkout."""
 PEER_NAMES = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
-"""Names of the peers by study, for users without the folder of peers."""
+"""Names of the peers in words by study, for a report without peers."""
 Section = Callable[[int], tuple[list[str], list[Measurement]]]
-"""A comparison with its own tables: from the number of rounds to (blocks of text, measurements)."""
+"""Comparison with tables of its own: function from the number of rounds to (blocks of text, measurements)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Peers:
-    """The peers of one study."""
+    """Everything that peers contribute to one study."""
 
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
     sections: Sequence[Section] = ()
-    """Further comparisons."""
+    """Comparisons beside the races of the study."""
     notes: Sequence[str] = ()
-    """Sentences on the contenders, for the introduction."""
+    """Sentences on the contenders, for the introduction of the report."""
     skipped: Sequence[str] = ()
     """A sentence for each peer that is not installed."""
 
     def of(self, race: str) -> list[Contender]:
-        """Contenders of one race; empty if no peer takes part."""
+        """Contenders of a race, by the name of the race; empty if no peer takes part."""
         return list(self.contenders.get(race, ()))
 
 
 NO_PEERS = Peers()
+"""Contribution of a study without peers."""
 
 
 def peer_package(directory: Path | None) -> ModuleType | None:
-    """The package in a folder of peers, by default the checkout's, or None; InputError if it has no peers."""
+    """The Python package in a folder of peers; InputError if the folder is no such package.
+
+    directory: None for the folder of the running checkout; without a checkout the result is None.
+    """
     if directory is not None:
         return _loaded(directory)
     own = CHECKOUT / PACKAGE
@@ -85,7 +89,10 @@ def _loaded(directory: Path) -> ModuleType:
 
 
 def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
-    """The installed peers of a study; programs are compiled in the directory `place`."""
+    """Contribution of the installed peers to a study; programs are compiled in the directory `place`.
+
+    package: from `peer_package`. quick: fewer settings.
+    """
     module = f"{PACKAGE}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
@@ -94,7 +101,7 @@ def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -
 
 
 def left_out(studies: Sequence[str]) -> str:
-    """Sentence on the peers missing from the studies and on how to get them; "" if none are missing."""
+    """Sentence that names the peers of studies run without the folder of peers; "" if they have no peers."""
     missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
     return missing and (
         f"The peers are left out ({missing}): they are in the folder `{PACKAGE}` of a checkout of rodsweep, "

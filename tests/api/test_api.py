@@ -346,7 +346,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),
         (
             lambda: rs.Arm(**SILICONE).spectrum(),
-            "spectrum needs a load; give one by arm.replace(pressure='2 kPa')",
+            "spectrum needs a load; give one, such as arm.replace(pressure='2 kPa')",
         ),
         (
             lambda: rs.Arm(**LOADED).cycle(young="1 MPa"),

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
+from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
     FOLLOWING,
     WAITING,
-    SettlingMethod,
     limit_cycle_study,
-    settling_table,
     target_table,
     time_at,
     work_table,

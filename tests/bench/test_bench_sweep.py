@@ -58,8 +58,8 @@ def row(name, points, ranks, seconds, memory):
 def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded):
     """Its runs are forked from a loaded process; the tests below start theirs as users do."""
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
-    monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
-    monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
+    monkeypatch.setattr(sweep, "QUICK_SPECTRUM_COUNT", 16)
+    monkeypatch.setattr(sweep, "QUICK_CYCLE_COUNT", 2)
     monkeypatch.setattr(followed, "QUICK_AXES", followed.QUICK_AXES[1:])
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)

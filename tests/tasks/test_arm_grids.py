@@ -231,7 +231,7 @@ def test_axes_are_sealed(command):
     xr.testing.assert_identical(rs.open(command.directory / "copy.h5"), data)
     with h5py.File(path, "r+") as file:
         file["length"][1] = 0.105
-    with pytest.raises(rs.InputError, match="variable length is not as rodsweep wrote it"):
+    with pytest.raises(rs.InputError, match="variable length was changed after rodsweep wrote it"):
         rs.open(path)
 
 

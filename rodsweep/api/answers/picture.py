@@ -25,21 +25,25 @@ from .answer import Answer
 from .tabling import view_for
 
 P = ParamSpec("P")
+"""Parameters of a decorated function."""
 R = TypeVar("R")
+"""Type of the value returned by a decorated function."""
 AT_OPTION = re.compile(r"--at (?:'(\w+)=([^']*)'|(\w+)=(\S*[^\s:;,)]))")
+"""Regular expression of the option `--at NAME=VALUE` of `rodsweep plot`, with or without quotes."""
 NUMBER_TEXT = re.compile(r"-?(?:\d[\d.]*(?:e[+-]?\d+)?|inf)")
+"""Regular expression of a number in a value of `--at`."""
 ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--what (\w+)"), r'what="\1"'),
     (re.compile(r"--point (\d+)"), r"points=\1"),
     (re.compile(r"--point\b"), "points"),
     (re.compile(r"--(at|what|output|roots|width|style|title)\b"), r"\1"),
 )
-"""Options of `rodsweep plot`, and how `rs.plot` has them."""
+"""Regular expressions of options of `rodsweep plot`, each with the corresponding argument of `rs.plot`."""
 EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 
 def in_python(sentence: str) -> str:
-    """A sentence about options of `rodsweep plot` with the arguments of `rs.plot` in their place."""
+    """A sentence in which arguments of `rs.plot` replace options of `rodsweep plot`."""
     sentence = AT_OPTION.sub(_place, sentence)
     for option, argument in ARGUMENTS_OF_OPTIONS:
         sentence = option.sub(argument, sentence)
@@ -47,13 +51,13 @@ def in_python(sentence: str) -> str:
 
 
 def _place(match: re.Match[str]) -> str:
-    """`at` as a dictionary: a number as it is, a quantity or a word in quotes."""
+    """The argument `at` as Python code, from a match of AT_OPTION; values other than numbers are quoted."""
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
     return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
 def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: the InputError of a call has the arguments of `rs.plot`."""
+    """Decorator: an InputError of the function names arguments of `rs.plot` instead of options."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -66,6 +70,7 @@ def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
 
 
 Drawable = xr.Dataset | Answer | str | Path
+"""Result that `rs.plot` can draw; text and paths name a result file."""
 
 
 class FigureOptions(TypedDict, total=False):
@@ -77,7 +82,10 @@ class FigureOptions(TypedDict, total=False):
 
 
 def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument, by name with its choices, whose value is not among them."""
+    """Raises InputError for the first argument whose value is not allowed.
+
+    choices: (value or None, allowed values) by name of the argument.
+    """
     for name, (given, known) in choices.items():
         if given is not None and given not in known:
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
@@ -85,14 +93,14 @@ def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class SolvedShapes:
-    """Shapes of the cycles of a figure, which are solved once however often the figure is drawn."""
+    """Function that adds the shapes of cycles to a view. It solves each set of cycles once and keeps them."""
 
     solve: Shapes = with_shapes
     solved: dict[tuple[int, ...], View] = field(default_factory=dict)
-    """The file with shapes, by the numbers of its points."""
+    """Views with shapes, by the numbers of the points whose cycles were solved."""
 
     def __call__(self, view: View, numbers: Sequence[int]) -> View:
-        """The figure's file with the shapes of the cycles at the given points, numbered from 1."""
+        """A copy of the view with the shapes of the cycles at the points `numbers`, counted from 1."""
         key = tuple(numbers)
         if key not in self.solved:
             self.solved[key] = self.solve(view, numbers)

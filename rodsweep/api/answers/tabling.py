@@ -20,17 +20,17 @@ from .frames import frame_of
 
 EXAMPLE = 'rs.table(data, "crossings")'
 Result = xr.Dataset | Answer | str | Path
+"""Result from which `rs.table` makes a table; text and paths name a result file."""
 
 
 @one_at_a_time
 @in_sentences(EXAMPLE)
 def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ()) -> pd.DataFrame:
-    """A table of a result with one row per item. Each row has the item's parameters; codes are given as
-    words.
+    """A table of a result, with one row per item and the item's parameters in each row.
 
     name: `points`, or a list of the task such as `modes`, `crossings` or `branches`. The default is the table
     with the requested columns, or the task's first table. columns: names of columns, by default all.
-    `frame.attrs` has `units` and `meanings`. Raises InputError for unknown names.
+    `frame.attrs` of the DataFrame has `units` and `meanings`. Raises InputError for unknown names.
     """
     if name is not None and not isinstance(name, str):
         raise InputError(f"name = {short(name)} is not the name of a table; write it as in {EXAMPLE}")
@@ -41,7 +41,9 @@ def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ())
 
 
 def view_for(data: Any, example: str) -> View:
-    """A result as figures and tables read it; InputError, with an example, if `data` is no result."""
+    """A result as the view that figures and tables read; InputError, with `example`, if `data` is no
+    result.
+    """
     if isinstance(data, str | os.PathLike):
         return read_view(file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):

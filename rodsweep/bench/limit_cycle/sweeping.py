@@ -1,7 +1,7 @@
-"""Cost of a point of a sweep: the cycle of a rod started from a neighbour's cycle, and from a cold start.
+"""Cost of a point of a sweep: the cycle of a rod solved from a neighbour's cycle, and without a neighbour.
 
-A point includes all work of the task limit_cycle: mesh, Newton's method, all multipliers, the verdict and the
-error estimate. Errors are measured against the same cycle on meshes with errors of 1e-11.
+The cost includes all work of the task limit_cycle: mesh, Newton's method, all Floquet multipliers, the
+verdict and the error estimate. Errors are measured against the same cycle on meshes with errors of 1e-11.
 """
 
 from collections.abc import Sequence
@@ -36,31 +36,40 @@ RODS = (
     Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, taper=0.5),
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build("neo_hookean", "swelling")),
 )
-"""Rods with cycles near and far from Hopf points, stiff rods, and a rod shortened to half by its force;
-a cone as far from its Hopf point as the first rod, and the first rod made of rubber."""
+"""Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
+as far from its Hopf point as the first rod, and the first rod made of rubber."""
 QUICK_RODS = (RODS[2],)
+"""Rods of a quick run."""
 SWEPT_PARAMETERS = NONLINEAR_PARAMETERS[:2]
+"""Parameters along which the neighbour of a rod lies."""
 STEP_RATIO = 1.01
-"""Ratio of the parameter from one point of the sweep to the next."""
+"""Ratio of the parameter values of two neighbouring points of the sweep."""
 WARM_UP_POINTS = 6
-"""Number of points solved before the timed points, so that the mesh is already chosen."""
+"""Number of points solved before the timed points, after which the mesh is chosen."""
 TIMED_POINTS = 22
-"""Number of timed points: one calibration of the mesh errors, and all points served by it."""
+"""Number of timed points: from one calibration of the mesh errors up to the next."""
 ACCURACY = 1e-7
+"""Relative accuracy requested from rodsweep."""
 REFERENCE_ACCURACY = 1e-11
+"""Relative accuracy of the reference cycles."""
 SWEEP = "sweep over "
+"""Beginning of the names, in the table, of solutions that start from a neighbour's cycle."""
 COLD_START = "cold, "
+"""Beginning of the names, in the table, of solutions without a neighbour."""
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
-"""Starts without a neighbour, by their values of the option `start`."""
+"""Values of the option `start` for solutions without a neighbour, by name in the table."""
 FAILED_COLUMNS = dict.fromkeys(
     ("period_error", "amplitude_error", "estimate", "multipliers", "order", "intervals", "stages"), nan
 )
-"""Columns of a failed point."""
+"""Values of the table's columns for a failed point: nan."""
 
 
 @dataclass(frozen=True, eq=False)
 class ExactCycle:
-    """A cycle on a mesh with errors of REFERENCE_ACCURACY; period in tau2, largest y of the tip in L."""
+    """Reference cycle on a mesh with errors of REFERENCE_ACCURACY.
+
+    period: in tau2. tip_y_max: largest y of the tip in L.
+    """
 
     orbit: Orbit
     period: float
@@ -68,19 +77,19 @@ class ExactCycle:
 
     @classmethod
     def near(cls, orbit: Orbit) -> "ExactCycle":
-        """The exact cycle of the orbit's rod."""
+        """The reference cycle of the orbit's rod; orbit: start of the refinement."""
         found = refine(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def at(self, F: float) -> "ExactCycle":
-        """The exact cycle of the rod at a nearby force."""
+        """The reference cycle of the same rod at a force F close to its own."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
         orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
-        """Relative errors by their names in the tables."""
+        """Relative errors of a period in tau2 and of a largest tip y in L, by name of the column."""
         return {
             "period_error": abs(period / self.period - 1),
             "amplitude_error": abs(tip_y_max / self.tip_y_max - 1),
@@ -89,9 +98,10 @@ class ExactCycle:
 
 @dataclass(frozen=True, eq=False)
 class SweptRod:
-    """A rod, its exact cycle, and the neighbour on each axis from which a stretch to the rod starts.
+    """A rod at which a timed sweep ends.
 
-    workspace: buffers of Newton's matrices, shared by all points of a sweep.
+    point: the rod. exact: its reference cycle. neighbours: cycle from which the timed sweep starts, by swept
+    parameter. workspace: buffers of Newton's matrices, shared by all points of a sweep.
     """
 
     point: Rod
@@ -101,7 +111,7 @@ class SweptRod:
 
 
 def swept(point: Rod, accuracy: float) -> SweptRod:
-    """The rod with its neighbours: points of downward sweeps that end at the rod."""
+    """Solves the untimed points of the sweeps that end at a rod, and the reference cycle of the rod."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
@@ -115,12 +125,12 @@ def swept(point: Rod, accuracy: float) -> SweptRod:
 
 
 def beyond(point: Rod, axis: str, steps: int) -> Rod:
-    """The point of the sweep `steps` before the given point."""
+    """Rod of the sweep along `axis` that comes `steps` points before the rod `point`, at larger values."""
     return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
 
 
 def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """Solves a stretch of a sweep over an axis; returns its last cycle."""
+    """Solves the timed points of a sweep along `axis`, each from its neighbour; returns the last cycle."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINTS - 1, -1, -1):
         there = beyond(rod.point, axis, k)
@@ -130,21 +140,21 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """Solves the rod without a neighbour."""
+    """Solves the cycle of a rod without a neighbour; start: value of the option `start`."""
     return settled(
         solve_cycle(rod.point, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
     )
 
 
 def settled(cycle: Cycle) -> Cycle:
-    """The cycle itself; raises ArithmeticError if the solve found none."""
+    """The cycle unchanged; raises ArithmeticError if the solve found no stable cycle."""
     if cycle.status != CycleStatus.cycle:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
     return cycle
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """All starts of a point, as contenders."""
+    """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and each cold start."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy))
@@ -158,14 +168,14 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
 
 
 def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
-    """All starts of all points, timed in turn."""
+    """Measurements of all contenders of `cycle_contenders` on all rods `points`, timed in turn."""
     rods = [swept(point, ACCURACY) for point in points]
     entries = [JudgedCase(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
     return tournament(entries, cycle_contenders(ACCURACY), rounds)
 
 
 def name_of(point: Rod) -> str:
-    """Label of a rod: its parameters in the order of the tables, then what distinguishes an arm."""
+    """Label of a rod in the tables: F, k1, k2, gamma3, gamma1, and taper and law if not the default."""
     further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
     further += [] if point.build.standard else [point.build.law, point.build.section]
     values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
@@ -173,9 +183,9 @@ def name_of(point: Rod) -> str:
 
 
 def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
-    """Errors and error estimate of a cycle, its mesh, and the number of multipliers.
+    """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
 
-    Columns derived from the orbit are missing if the solve returns no orbit.
+    The mesh and the multipliers are missing if the solve returned no orbit.
     """
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
     extra = errors | {"estimate": cycle.errors.largest, "order": float(cycle.elements * cycle.order)}
@@ -188,7 +198,7 @@ def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
 
 
 def sweep_introduction() -> str:
-    """Description of the measurements for the report."""
+    """Description of `sweep_table` for the report."""
     return (
         f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
         f"{STEP_RATIO - 1:.0%} between neighbours. The time is the mean of {TIMED_POINTS} points up to the "
@@ -208,7 +218,7 @@ def milliseconds(m: Measurement) -> float:
 
 
 def sweep_table(measurements: Sequence[Measurement]) -> str:
-    """Table with a line for each rod and start, and the medians over the rods."""
+    """Table of the cost of a point, a line for each rod and start, and of the medians over the rods."""
     lines = [
         {"rod": m.case, "way": m.method, "ms": milliseconds(m), "failure": m.failure}
         | FAILED_COLUMNS

@@ -12,17 +12,21 @@ from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ...solve.spectrum.status import SpectrumStatus
 
 DIGITS = 30
-"""Digits of the eigenvalues."""
+"""Number of correct decimal digits of the eigenvalues."""
 GUARD_DIGITS = 25
-"""Additional digits of the computation, more than the cancellation in D costs."""
+"""Number of additional digits of the computation, more than the cancellation in D loses."""
 SECANT_STEP = mp.mpf(10) ** -12
-"""Relative distance of the first two points of the secant method."""
+"""Relative distance between the two starting points of the secant method."""
 MAX_ROOT_DISTANCE = 20
-"""Largest accepted distance of the root from the starting value, in units of its estimated error."""
+"""Maximum distance between a root and its starting value, in units of the estimated error of the starting
+value; a root farther away counts as a different root."""
 
 
 def determinant(rod: Rod) -> Callable[[Any], Any]:
-    """D(w) of `rodsweep.determinant.value` for numbers of mpmath; the parameters are exact."""
+    """The characteristic determinant D of a rod as a function of w, in multiple precision (mpmath).
+
+    D is that of `rodsweep.determinant.value`; the parameters of the rod are taken as exact.
+    """
     F = mp.mpf(rod.F)
     gamma3 = mp.mpf(rod.gamma3)
     c1, c2 = (0 if np.isinf(k) else 1 / mp.mpf(k) for k in (rod.k1, rod.k2))
@@ -43,7 +47,10 @@ def determinant(rod: Rod) -> Callable[[Any], Any]:
 
 
 def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
-    """The leading eigenvalues to 30 digits, as numbers of mpmath; ArithmeticError if not certified."""
+    """The leading eigenvalues of a rod to DIGITS digits, as numbers of mpmath.
+
+    Raises ArithmeticError if the list of eigenvalues is not certified, or if an eigenvalue leads to no root.
+    """
     found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
     if found.status != SpectrumStatus.ok or not found.certified:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
@@ -63,7 +70,10 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
 
 
 def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
-    """Largest relative distance of an exact eigenvalue to the nearest of w, shape (modes,); inf for no w."""
+    """Largest relative distance of any exact eigenvalue from the nearest computed one; w: (modes,).
+
+    inf if w is empty, or an exception of the solver.
+    """
     if isinstance(w, Exception) or not len(w):
         return float("inf")
     with mp.workdps(DIGITS):

@@ -1,6 +1,7 @@
-"""The spectrum benchmark: time and error of a point, on the paper's rods and on hard rods.
+"""The spectrum benchmark: time and error of the leading eigenvalues of the paper's rods and of hard rods.
 
-The race RACE runs on a `Rod` and gives the leading eigenvalues, at least WANTED_MODES, shape (modes,).
+The contenders of the race RACE take a `Rod` and return at least the WANTED_MODES leading eigenvalues,
+(modes,).
 """
 
 from collections.abc import Sequence
@@ -35,32 +36,40 @@ from .exact import exact_spectrum, relative_error
 from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
 
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
-"""Sizes of the pencil."""
+"""Orders of rodsweep's pencil at which eigensolvers are run."""
 RACE = "spectrum"
+"""Name of the race of spectra of rods."""
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
     "Fig. 2b": (1e4, 1e2, 1e-2, 45.0),
     "Fig. 2c": (2e2, 1e4, 1e-4, 180.0),
     "Fig. 2d": (1e2, 1e4, 1e-4, 85.0),
 }
-"""k1, k2, gamma3 and the largest force."""
+"""(k1, k2, gamma3, largest force) of the rods of the paper's figures."""
 FORCE_COUNT = 5
+"""Number of forces for each of the paper's rods."""
 HARD_RODS = {
     "easy: F = 30, k1 = k2 = 1e4, gamma3 = 1e-4": Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4),
     "stiff: F = 30, k1 = k2 = 1e8, gamma3 = 1e-8": Rod(F=30.0, k1=1e8, k2=1e8, gamma3=1e-8),
     "nearly crushed: F = 0.999 k1, k1 = 200": Rod(F=199.8, k1=200.0, k2=1e4, gamma3=1e-4),
     "12 unstable modes: F = 2000, k1 = 1e4": Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4),
 }
+"""Rods on which methods lose accuracy or speed, beside an easy rod, by name in the table."""
 TARGETS = (1e-12, 1e-10, 1e-6)
-"""Errors at which the methods are compared, smallest first."""
+"""Relative errors at which the methods are compared, smallest first."""
 ROUNDS = 25
+"""Number of timed rounds."""
 QUICK_ROUNDS = 2
+"""Number of timed rounds of a quick run."""
 QUICK_STRIDE = 3
-"""Stride of the sizes on the hard rods in a quick run."""
+"""A quick run uses every third size on hard rods and arms."""
 
 
 def spectrum_study(quick: bool, peers: Peers) -> Study:
-    """Runs the benchmark: the paper's rods at equal errors, then every method at every size on hard rods."""
+    """Runs the benchmark: the paper's rods at equal errors, hard rods at all sizes, and arms.
+
+    quick: fewer rounds, target errors and sizes.
+    """
     warm_up()
     rounds, stride = (QUICK_ROUNDS, QUICK_STRIDE) if quick else (ROUNDS, 1)
     rods = [
@@ -79,7 +88,10 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
 
 
 def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
-    """The contender with the smallest sufficient size, for every method that reaches the target."""
+    """For every method that reaches the error `target` on a rod, its contender with the smallest such size.
+
+    every: contenders of all methods, sizes increasing. exact: exact eigenvalues of the rod.
+    """
     found: dict[str, Contender] = {}
     for contender in every:
         if contender.method not in found:
@@ -91,7 +103,10 @@ def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: flo
 def equal_errors(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
-    """Table of all methods at the cheapest size that reaches the target, point by point."""
+    """Times all methods, at each rod's smallest size with the error `target`; returns their table.
+
+    exact: exact eigenvalues of each rod.
+    """
     fit = [cheapest(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
@@ -124,7 +139,7 @@ def equal_errors(
 
 
 def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of all methods at all sizes on the hard rods."""
+    """Measurements of the contenders `every` on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(judged_spectrum, exact_spectrum(rod, WANTED_MODES))
@@ -133,12 +148,12 @@ def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
 
 
 def judged_spectrum(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Error of eigenvalues, shape (modes,)."""
+    """Field `error` of `Measurement` for eigenvalues w, (modes,)."""
     return {"error": relative_error(w, exact)}
 
 
 def hard_table(measurements: Sequence[Measurement]) -> str:
-    """Table: for every method on every hard rod the smallest error, and the time for ten times this error."""
+    """Table of hard rods: the smallest error of every method, and its time for ten times this error."""
     rows = [
         {"method": method, "cells": " | ".join(best(own) for own in grouped(every, "case").values())}
         for (method,), every in grouped(measurements, "method").items()
@@ -151,26 +166,30 @@ def hard_table(measurements: Sequence[Measurement]) -> str:
 
 
 def best(measurements: Sequence[Measurement]) -> str:
-    """Table cell of one method on one rod: smallest error and time."""
+    """Cell of `hard_table` for one method on one rod; measurements: at all sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
 
 
 def mesh_of(order: int) -> Resolution:
-    """One element of the given order, or several equal elements of at most RESOLUTION.largest_order."""
+    """Mesh of one element of an order, or of several equal elements if the order exceeds the largest
+    allowed.
+    """
     elements = ceil(order / RESOLUTION.largest_order)
     return Resolution(elements, ceil(order / elements))
 
 
 def krylov_schur(rod: Rod, size: int) -> Complex:
-    """SLEPc's Krylov-Schur, converged to rounding, without refinement on D, shape (modes,)."""
+    """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without refinement on D; size:
+    order.
+    """
     w = eigen_solver(mesh_of(size)).solve(rod, problem_of(rod).shift, WANTED_MODES, tight=True)
     return leading(w, WANTED_MODES + 1)
 
 
 def contenders() -> list[Contender]:
-    """rodsweep with and without certificate, and Krylov-Schur at all sizes."""
+    """Contenders of RACE: rodsweep with and without certificate, and Krylov-Schur at all sizes."""
     return [
         Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
         Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),

@@ -1,4 +1,4 @@
-"""Speed of following eigenvalues along an axis of a grid, compared with solving every point alone."""
+"""Speed of spectra whose eigenvalues are followed along an axis of a grid, against points solved alone."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,15 +19,19 @@ parameters:
   taper: {taper}
 spectrum: {{modes: 4, follow: {4}}}
 """
+"""Config of a sweep, a format of `str.format`: numbers of F, k1, k2 and gamma3; F_max; taper; follow."""
 FOLLOWED = "followed"
+"""Name of sweeps whose eigenvalues are followed."""
 ALONE = "alone"
+"""Name of sweeps whose points are solved alone."""
 
 
 @dataclass(frozen=True, slots=True)
 class LongAxis:
-    """A grid (F, k1, k2, gamma3) named after its longest axis, and a smaller grid for points solved alone.
+    """Two grids over F, k1, k2 and gamma3: one along whose longest axis eigenvalues are followed, and a
+    smaller one for points solved alone.
 
-    F_max: last force. taper: 1, or that of cones.
+    name: names the longest axis. shape, smaller: numbers of values. F_max: largest force. taper: of all rods.
     """
 
     name: str
@@ -44,15 +48,20 @@ AXES = (
     LongAxis("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
     LongAxis("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
+"""Grids of the benchmark."""
 QUICK_AXES = (
     LongAxis("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
     LongAxis("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
     LongAxis("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
 )
+"""Grids of a quick run."""
 
 
 def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
-    """Certified spectra with four modes on one rank, followed and alone, on long and short axes."""
+    """Measurements of sweeps of certified spectra on one rank, followed and alone, on all grids.
+
+    place: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: small grids.
+    """
     found = []
     for axis in QUICK_AXES if quick else AXES:
         for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
@@ -68,7 +77,7 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
 
 
 def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
-    """Times of a run, and the number of points solved on a mesh of their own."""
+    """Measurement of a sweep: times, numbers of points with a mesh and without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables
     extra = {
         "points": float(case.points),
@@ -82,7 +91,7 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measu
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Table of followed and single points, axis by axis."""
+    """Table of the sweeps, a line for each grid. measurements: followed and alone in turn."""
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]

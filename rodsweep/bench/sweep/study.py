@@ -1,7 +1,7 @@
-"""The sweep benchmark: speedup by a second rank, and overhead of a point beside its solve.
+"""The sweep benchmark: speedup by a second rank, and overhead of a point in addition to its solve.
 
-Every number comes from `rodsweep run` itself. For the overhead, up to 1e6 points, an instant solver replaces
-the real one.
+All numbers are measured on runs of `rodsweep run`. For the overhead of up to 1e6 points, a solver that
+returns random results at once replaces the real solver.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,19 +27,29 @@ from .launch import (
 )
 
 SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
-"""Numbers of points of the sweeps with the instant solver."""
+"""Numbers of points of the sweeps with the instant solver, and those of a quick run."""
 SINGLE_RUN_FROM = 10**6
-"""Number of points from which an instant sweep is run only once, because its start hardly counts."""
-SPECTRA = 200_000
-QUICK_SPECTRA = 6_000
-CYCLES = 200
-QUICK_CYCLES = 10
+"""Number of points from which a sweep with the instant solver is run only once: its start takes a negligible
+part of its time."""
+SPECTRUM_COUNT = 200_000
+"""Number of points of the sweep of spectra."""
+QUICK_SPECTRUM_COUNT = 6_000
+"""Number of points of the sweep of spectra in a quick run."""
+CYCLE_COUNT = 200
+"""Number of points of the sweep of limit cycles."""
+QUICK_CYCLE_COUNT = 10
+"""Number of points of the sweep of limit cycles in a quick run."""
 ROUNDS = 3
+"""Number of timed rounds of sweeps of spectra."""
 CYCLE_ROUNDS = 2
+"""Number of timed rounds of the sweep of limit cycles."""
 QUICK_ROUNDS = 1
+"""Number of timed rounds of a quick run."""
 TWO_COMMANDS = "spectra, two commands"
-"""Case of two commands, each with half of the spectra on one rank: the upper bound for two ranks."""
+"""Name of the case of two simultaneous commands, each with half of the spectra on one rank. Their speed is an
+upper bound for the speed of two ranks."""
 MEGABYTE = 1e6
+"""Number of bytes of a megabyte."""
 INTRODUCTION = """
 `mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: `modes: 2`,
 certified, over F, k1, k2. Two commands, each with half of the spectra on one rank, show the largest possible
@@ -49,14 +59,16 @@ run, without the start of Python and MPI; "% busy" is the share of the ranks' ti
 points instead of waiting. "Beside the solver" is the ranks' time inside minus the `seconds` in the file:
 loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
+"""Description of the measurements for the report."""
 RunCase = Callable[..., CommandRun]
-"""`run_case` with the words that start the command."""
+"""`run_case` after its first argument, the words that start the measured command, is bound."""
 
 
 def sweep_study(quick: bool, command: Sequence[str]) -> Study:
-    """Runs the benchmark: a second rank, following along axes, then the overhead of a point.
+    """Runs the benchmark: speedup by a second rank, followed eigenvalues, and overhead of a point.
 
-    command: words that start the measured command, see `rodsweep.bench.sweep.launch`.
+    quick: fewer points and rounds. command: words that start the measured command, see
+    `rodsweep.bench.sweep.launch`.
     """
     run = partial(run_case, command)
     ranks = (1, 2) if launcher(2) else (1,)
@@ -72,11 +84,14 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
 
 
 def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Spectra and limit cycles on one rank and on two, in turn."""
+    """Measurements of sweeps of spectra and of limit cycles with the real solver, in turn.
+
+    place: directory of the sweeps. ranks: numbers of ranks.
+    """
     rounds, cycle_rounds = (QUICK_ROUNDS, QUICK_ROUNDS) if quick else (ROUNDS, CYCLE_ROUNDS)
-    count = QUICK_SPECTRA if quick else SPECTRA
+    count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
     spectra = spectrum_case(place / "spectra", "spectra", count, SOLVED)
-    cycles = cycle_case(place / "cycles", QUICK_CYCLES if quick else CYCLES, SOLVED)
+    cycles = cycle_case(place / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
     # Not timed: the first runs may compile the formulas.
     run(spectrum_case(place / "first", "first", 8, SOLVED), 1)
     run(cycle_case(place / "first_cycle", 1, SOLVED), 1)
@@ -89,7 +104,10 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
 
 
 def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Sweeps of all sizes with the instant solver; then killed at the last point on one rank, and resumed."""
+    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed.
+
+    place: directory of the sweeps. ranks: numbers of ranks. Sweeps are killed at the last point on one rank.
+    """
     sizes, rounds = (QUICK_SIZES, QUICK_ROUNDS) if quick else (SIZES, ROUNDS)
     entries = []
     for size in sizes:
@@ -105,7 +123,7 @@ def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int])
 
 
 def interleaved(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
-    """Each case on its number of ranks in its number of rounds, all in turn."""
+    """Measurements of sweeps, run in turn; entries: (case, number of ranks, number of rounds)."""
     runs: list[list[CommandRun]] = [[] for _ in entries]
     for i in in_turn([rounds for _, _, rounds in entries]):
         case, ranks, _ = entries[i]
@@ -114,7 +132,7 @@ def interleaved(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> 
 
 
 def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """Medians over all runs of one case on some ranks. No error applies."""
+    """Measurement of a sweep from all its runs, mostly medians; the error is nan, as sweeps have no error."""
     seconds = middle(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.memory for run in runs), strict=True)]
@@ -136,13 +154,13 @@ def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measure
 
 
 def numbers(m: Measurement) -> dict[str, object]:
-    """All numbers of a sweep, by name."""
+    """All numbers of a measured sweep, by name, for a row of a table."""
     microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
 
 
 def solved_table(measurements: Sequence[Measurement]) -> str:
-    """Table of spectra and limit cycles with the real solvers."""
+    """Table of the sweeps of spectra and limit cycles with the real solver."""
     rows = []
     for m in measurements:
         kind = m.case.split(",")[0]  # two commands are compared with the same sweep in one command
@@ -164,7 +182,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
 
 
 def instant_table(measurements: Sequence[Measurement]) -> str:
-    """Table of sweeps with the instant solver, killed and resumed."""
+    """Table of the sweeps with the instant solver: complete, killed and resumed."""
     return (
         "The command with an instant solver that returns random eigenvalues: all time is scheduling and "
         "storing. Next, a sweep killed at the last point on one rank, and resumed:\n\n"
@@ -179,7 +197,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
 
 
 def growth_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the growth of time, memory and file from each size to the next; a killed run has no file."""
+    """Table of the time, memory and file size of an additional point, between successive sizes of sweeps."""
     rows = []
     for (case, method), sizes in grouped(measurements, "case", "method").items():
         if case == KILLED:
@@ -203,7 +221,7 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
 
 
 def totals(m: Measurement) -> dict[str, float]:
-    """Totals of a sweep: microseconds of all ranks, bytes of its file and of the ranks' memory."""
+    """Totals of a measured sweep by name: microseconds of all ranks, bytes of the file and of memory."""
     return {
         "microseconds": 1e6 * m.extra["ranks"] * m.seconds,
         "file": m.extra["file_bytes_per_point"] * m.extra["points"],
@@ -213,7 +231,11 @@ def totals(m: Measurement) -> dict[str, float]:
 
 
 def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
-    """Exponent of the growth of the time beyond the smallest sweep's; nan if the time does not grow."""
+    """Exponent with which the time of a sweep, minus that of the smallest sweep, grows with the number of
+    points.
+
+    start: the smallest sweep. less, more: successive sizes. nan if the time does not grow.
+    """
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan
     times = (more.seconds - start.seconds) / (less.seconds - start.seconds)

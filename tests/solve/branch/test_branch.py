@@ -234,7 +234,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     assert found.status == BranchStatus.stopped
     assert first.special[-1].kind == SpecialKind.end
     assert first.special[-1].reason == EndReason.no_cycle_found
-    said = "no cycle is found beyond: there is no cycle near on the branch at F = "
+    said = "no further cycle of the branch is found: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].at > 75
     assert second.hopf == 1  # the other end is tried by itself
