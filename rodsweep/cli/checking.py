@@ -32,7 +32,7 @@ def describe_job(job: Job) -> None:
         print_lines(console, [arms])
     print_lines(console, _arm_lines(job) if job.quantities else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
-    for part, is_modelled, why in job.task.parts():
+    for part, is_modelled, why in job.task.check_rows():
         table.add_row(part, "yes" if is_modelled else "no", why)
     console.print(table)
     cost = job.task.cost()

@@ -11,7 +11,7 @@ from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_branches
 from .parts import NonlinearTask, crushing_clause, points_clause
-from .protocol import Part, Solver
+from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
@@ -33,7 +33,7 @@ class BranchTask(NonlinearTask):
         ends = f"from {options.start:g} to {options.stop:g}"
         return points_clause(self.points, f"followed in {along} {ends}{short}")
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         options = self.config.branch
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
         return [

@@ -10,7 +10,7 @@ from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
 from .parts import NonlinearTask, crushing_clause, points_clause
-from .protocol import Part, Solver
+from .protocol import CheckRow, Solver
 from .thresholds import search_record
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class CriticalityTask(NonlinearTask):
         F_max = self.config.criticality.F_max
         return points_clause(self.points, f"searched from F = 0 to {F_max:g}{crushing_clause(self.config)}")
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         most = self.config.criticality.crossings
         return [
             self.AXIAL,

@@ -28,8 +28,8 @@ from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import arms_line, material_parts, points_clause, points_text, rod_parts
-from .protocol import InOrder, Part, Solver, Task, on_this_rank
+from .parts import arms_line, material_rows, points_clause, points_text, rod_rows
+from .protocol import CheckRow, InOrder, Solver, Task, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
@@ -113,13 +113,13 @@ class LimitCycleTask(Task):
         accuracy = self.config.accuracy if options.method == "integration" else MOTION_MESH.accuracy
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
-    def parts(self) -> list[Part]:
+    def check_rows(self) -> list[CheckRow]:
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
         marched = options.method == "integration"
         return [
-            *rod_parts(self.points.of_rods),
-            *material_parts(self.config, self.points.of_rods),
+            *rod_rows(self.points.of_rods),
+            *material_rows(self.config, self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
@@ -133,7 +133,7 @@ class LimitCycleTask(Task):
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
-    def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> Part:
+    def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
         """Row of `check` on variables stored only on request, with their number and memory.
 
         what: description of the variables. option: option of limit_cycle with their number per point.

@@ -18,7 +18,7 @@ from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, points_text
-from .protocol import Part, Solver
+from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.modes.leading_modes import Modes
@@ -45,7 +45,7 @@ class ModesTask(ProvedTask):
         options = self.config.modes
         return f"{points_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         growth = self.config.modes.growth
         why = "in the norm of the dissipation" if growth else "modes.growth: false"
         return [

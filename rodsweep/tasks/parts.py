@@ -17,7 +17,7 @@ from ..solve.changes.anchors import ANCHORS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
-from .protocol import Part, Task
+from .protocol import CheckRow, Task
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class ProvedTask(Task):
     """(effects that the task never models, reason), as `check` prints them."""
 
     @abstractmethod
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         """Rows of `check` on what the task's options request."""
 
     @property
@@ -86,9 +86,9 @@ class ProvedTask(Task):
         tapers = self.points.by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
-    def parts(self) -> list[Part]:
+    def check_rows(self) -> list[CheckRow]:
         what, why = self.left_out
-        parts = [*rod_parts(self.moved), *material_parts(self.config, self.moved), *self.asked()]
+        parts = [*rod_rows(self.moved), *material_rows(self.config, self.moved), *self.option_rows()]
         return [*parts, ("certificate", *self.certificate()), (what, False, why)]
 
 
@@ -101,7 +101,11 @@ class NonlinearTask(ProvedTask):
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
-    AXIAL: ClassVar[Part] = ("axial drag", True, "parameters.gamma1; it changes cycles, but no Hopf point")
+    AXIAL: ClassVar[CheckRow] = (
+        "axial drag",
+        True,
+        "parameters.gamma1; it changes cycles, but no Hopf point",
+    )
 
 
 def crushing_clause(config: Config) -> str:
@@ -127,7 +131,7 @@ def points_clause(points: Points, clause: str) -> str:
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
-def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
+def rod_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """Rows of `check` on stretch, shear and rotational drag.
 
     columns: values of the rods' parameters by name, arrays of any shape.
@@ -139,7 +143,7 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
     ]
 
 
-def material_parts(config: Config, columns: Mapping[str, np.ndarray]) -> list[Part]:
+def material_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """Rows of `check` on quantities that vary along the arm, and on the constitutive law.
 
     Empty for uniform arms of linear material. columns: values of the rods' parameters by name, arrays of any
@@ -204,7 +208,7 @@ def _law(config: Config) -> str:
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
 
 
-def _deformation(parameter: Parameter, values: np.ndarray) -> Part:
+def _deformation(parameter: Parameter, values: np.ndarray) -> CheckRow:
     name = parameter.name
     what = parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)

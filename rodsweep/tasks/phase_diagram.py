@@ -12,7 +12,7 @@ from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
 from .parts import ProvedTask
-from .protocol import Part, Solver
+from .protocol import CheckRow, Solver
 from .thresholds import search_record
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class PhaseDiagramTask(ProvedTask):
         line, row = self.config.plane
         return f"{self.points.count} rows, one for each {row}, of {len(self.line)} values of {line} each"
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         options = self.config.phase_diagram
         curves = "followed from row to row" if options.curves else "phase_diagram.curves: false"
         criticality = "phase_diagram.criticality adds it"
@@ -72,9 +72,9 @@ class PhaseDiagramTask(ProvedTask):
         """First and last value of the parameter that varies along the rows, (2,), by its name."""
         return {self.config.plane[0]: self.line[[0, -1]]}
 
-    def parts(self) -> list[Part]:
+    def check_rows(self) -> list[CheckRow]:
         """Rows of `check`: those of a linear task, and the nonlinear motion if cycles are requested."""
-        linear = ProvedTask.parts(self)
+        linear = ProvedTask.check_rows(self)
         if not self.config.phase_diagram.cycles:
             return linear
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")

@@ -21,7 +21,7 @@ InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
 Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
 """Wrapper of the solve of a point: (index, starting state, solve) -> (outcome, state for the next point)."""
-Part = tuple[str, bool, str]
+CheckRow = tuple[str, bool, str]
 """Row of the table printed by `check`: (effect or result, whether it is modelled, reason)."""
 
 
@@ -53,7 +53,7 @@ class JointVariables(Protocol):
     def solve(self, units: Any, unit: int) -> Arrays:
         """Solves a unit of work; returns its result."""
 
-    def nothing(self) -> Arrays:
+    def empty_result(self) -> Arrays:
         """Empty result, for a unit of work whose solver raised an unforeseen exception."""
 
     def variables(self, view: View, units: Any, results: Mapping[int, Arrays]) -> Sequence[Filled]:
@@ -154,7 +154,7 @@ class Task(ABC):
         return ""
 
     @abstractmethod
-    def parts(self) -> list[Part]:
+    def check_rows(self) -> list[CheckRow]:
         """Rows of the table, printed by `check`, of modelled and neglected effects."""
 
     @abstractmethod

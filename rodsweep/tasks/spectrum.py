@@ -24,7 +24,7 @@ from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, points_text
-from .protocol import InOrder, Part, Solver, on_this_rank
+from .protocol import CheckRow, InOrder, Solver, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
@@ -103,7 +103,7 @@ class SpectrumTask(ProvedTask):
     def headline(self) -> str:
         return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
         vectors = "spectrum.vectors adds them"
         longitudinal = "they decouple; spectrum.longitudinal adds them"

@@ -12,7 +12,7 @@ from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_lines
 from .parts import ProvedTask, crushing_clause, points_clause
-from .protocol import Part, Solver
+from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.changes.thresholds import Thresholds
@@ -35,7 +35,7 @@ class ThresholdsTask(ProvedTask):
         until = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"
         return points_clause(self.points, f"searched from F = 0 to {until}")
 
-    def asked(self) -> list[Part]:
+    def option_rows(self) -> list[CheckRow]:
         most = self.config.thresholds.crossings
         return [
             ("onset, Hopf points, restabilization", True, "task: thresholds"),

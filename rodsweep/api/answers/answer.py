@@ -192,7 +192,7 @@ class Answer:
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
-            named={
+            row_counts={
                 name: rows
                 for name, columns in lists.items()
                 if name not in LISTS_PRINTED_IN_FULL and (rows := len(columns[0].values))

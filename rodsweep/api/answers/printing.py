@@ -39,7 +39,7 @@ class PrintedAnswer:
     """Names of the variables that have no value for this rod."""
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
-    named: Mapping[str, int]
+    row_counts: Mapping[str, int]
     """Number of rows of each list that is not printed in full, by name of the list."""
     totals: Mapping[str, int]
     """Number of items found of each list, stored or not, by its name; of modes the number requested."""
@@ -47,8 +47,10 @@ class PrintedAnswer:
     @property
     def closing_lines(self) -> Iterator[str]:
         """Yields the lines below the tables: names of lists not printed, and of variables without a value."""
-        if self.named:
-            yield "; ".join(f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.named.items())
+        if self.row_counts:
+            yield "; ".join(
+                f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.row_counts.items()
+            )
         if self.absent:
             yield f"none: {', '.join(self.absent)}"
 
@@ -194,7 +196,7 @@ def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
 def _more(printed: PrintedAnswer) -> str:
     """Line that names `.table()` for all numbers, and the lists with their numbers of rows."""
     rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
-    rows.update(printed.named)
+    rows.update(printed.row_counts)
     lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
     return folded(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 

@@ -57,44 +57,44 @@ class RunEnd:
     """Counts and times at the end of a run."""
 
     ranks: int
-    asked: int
+    requested: int
     """Number of points to be solved in this run."""
-    left: int
+    unsolved: int
     """Number of points of this run that are not solved."""
-    kept: int
+    stored: int
     """Number of points that the file holds at the end of the run."""
     seconds: float
     """Time spent on the points, in s."""
     curve_seconds: float
     """Time spent on the variables that need all points, in s."""
-    in_the_middle: int
+    interrupted: int
     """Number of points interrupted by a stop."""
-    followed: int | None
+    followed_halves: int | None
     """Number of halves of curves followed in this run, None if no curves were due."""
-    halves: int | None
+    stored_halves: int | None
     """Number of halves of curves kept for the next run while the curves are incomplete, else None."""
 
     def times(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
         sentences = []
         ranks = counted(self.ranks, "rank")
-        if self.asked:
-            points = self.asked - self.left
+        if self.requested:
+            points = self.requested - self.unsolved
             each = self.seconds * self.ranks / max(points, 1)
             pace = f" ({duration(each)} a point and rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
-        if self.followed is not None:
-            word = "curves in" if self.halves is None else "curves stopped after"
-            halves = "half of a curve" if self.followed == 1 else "halves of curves"
-            done = f"; {self.followed} {halves} of cycles followed" if self.followed else ""
+        if self.followed_halves is not None:
+            word = "curves in" if self.stored_halves is None else "curves stopped after"
+            halves = "half of a curve" if self.followed_halves == 1 else "halves of curves"
+            done = f"; {self.followed_halves} {halves} of cycles followed" if self.followed_halves else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
     def kept_words(self) -> str:
         """Clause on the points and curves that the file and the journal of a stopped run keep."""
-        points = f"{counted(self.kept, 'point')} kept"
-        if self.halves is not None:
-            return f"{points}, the curves are missing, {self.halves} of their halves kept"
-        if self.in_the_middle:
-            return f"{points}, {self.in_the_middle} interrupted, to be solved again"
+        points = f"{counted(self.stored, 'point')} kept"
+        if self.stored_halves is not None:
+            return f"{points}, the curves are missing, {self.stored_halves} of their halves kept"
+        if self.interrupted:
+            return f"{points}, {self.interrupted} interrupted, to be solved again"
         return points

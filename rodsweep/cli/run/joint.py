@@ -107,7 +107,7 @@ class JointWork:
         except Exception as error:
             forget_all()
             self.note(units.where(unit), error)
-            yield unit, self.together.nothing()
+            yield unit, self.together.empty_result()
 
     def variables(self, units: Any) -> Sequence[Filled] | None:
         """The variables for the file, on the first rank; None if the run was stopped before all units were

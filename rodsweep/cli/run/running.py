@@ -223,14 +223,14 @@ class _RankRun:
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,
-            asked=count,
-            left=left,
-            kept=self.job.points.count - index_count(missing),
+            requested=count,
+            unsolved=left,
+            stored=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.began - self.seconds,
-            in_the_middle=sum(contribution.share.ended for contribution in contributions),
-            followed=sum(share.points for share in shares) if joint.due and self.joint else None,
-            halves=len(self.joint.results) if self.joint and lacks_curves else None,
+            interrupted=sum(contribution.share.ended for contribution in contributions),
+            followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
+            stored_halves=len(self.joint.results) if self.joint and lacks_curves else None,
         )
         for sentence in ending.times() or [f"{part} is complete, nothing to do"]:
             self._say(sentence)

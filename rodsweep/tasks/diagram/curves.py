@@ -89,7 +89,7 @@ class DiagramCurves:
         """Half a curve of cycles, which is the unit of work with this number; arrays as in `TracedHalf`."""
         return units.solve(unit, self._special_points, self.workspace)
 
-    def nothing(self) -> dict[str, np.ndarray]:
+    def empty_result(self) -> dict[str, np.ndarray]:
         """Result of a unit of work without a curve: arrays of shape (0, ...)."""
         from ...solve.branch.special.cycle_curves import TracedHalf
 
