@@ -8,7 +8,7 @@ from pathlib import Path
 AUTO = "AUTO-07p"
 AUTO_LIBRARY = Path(os.environ.get("AUTO_DIR", "/usr/lib/auto-07p")) / "lib"
 """Folder with AUTO-07p's object files. AUTO-07p itself reads AUTO_DIR; the default is Debian's folder."""
-HEAD = "0"
+HEAD_MARK = "0"
 """First word of every line in the head of AUTO's table, the file fort.7."""
 SKIPPED = f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran."
 
@@ -44,4 +44,4 @@ def table_lines(place: Path) -> list[list[str]]:
     The head of the table is left out.
     """
     lines = [line.split() for line in (place / "fort.7").read_text().splitlines()]
-    return [words for words in lines if words[0] != HEAD]
+    return [words for words in lines if words[0] != HEAD_MARK]

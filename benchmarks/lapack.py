@@ -45,7 +45,7 @@ def inverse_spectrum(A: Array, B: Array) -> Eigenvalues:
         return 1 / scipy.linalg.eigvals(inverse, check_finite=False)
 
 
-def qz(A: Array, B: Array) -> Eigenvalues:
+def qz_spectrum(A: Array, B: Array) -> Eigenvalues:
     """Finite eigenvalues w of A x = w B x by QZ (ggev); A and B: (unknowns, unknowns).
 
     Eigenvalues with |beta| below INFINITE_BELOW times the largest |beta| are infinite and left out.

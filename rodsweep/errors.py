@@ -37,7 +37,7 @@ class EnvironmentIncomplete(Refusal):
     exit_status = 3
 
 
-def not_importable(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
+def import_refusal(modules: str, reason: object, extra: str = "solvers") -> EnvironmentIncomplete:
     """EnvironmentIncomplete for modules whose import failed; its sentence says how to install the modules.
 
     modules: names for the sentence. reason: error of the import. extra: name of the optional dependencies

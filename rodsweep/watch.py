@@ -26,10 +26,10 @@ class SolvePosition(NamedTuple):
 MakePosition = Callable[[], SolvePosition]
 """Function that makes the position of a report. A listener calls it only to show the report."""
 Listener = Callable[[MakePosition], None]
-"""Function called at every report of a solve. It raises `Stopped` to end the solve."""
+"""Function called at every report of a solve. It raises `SolveStopped` to end the solve."""
 
 
-class Stopped(BaseException):
+class SolveStopped(BaseException):
     """Raised by a listener to end a running solve. Solvers do not catch it with their own errors."""
 
 
@@ -72,7 +72,7 @@ def reporting_to(listener: Listener) -> Iterator[None]:
 
 
 @contextmanager
-def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
+def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
     """Marks the reports in the `with` block as reports of a named part of a larger solve, such as a branch.
 
     name: precedes the words of each report. shares: fractions of the work of the larger solve that are done

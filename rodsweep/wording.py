@@ -1,6 +1,6 @@
 """Counts, plurals and durations in words, for the command line and `show`."""
 
-SIBILANTS = ("s", "x", "z", "ch", "sh")
+SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
 LONGEST_IN_MS = 0.9995
@@ -16,7 +16,7 @@ def counted(count: int, noun: str) -> str:
 
 def plural(noun: str) -> str:
     """The plural of a regular noun."""
-    if noun.endswith(SIBILANTS):
+    if noun.endswith(SIBILANT_ENDINGS):
         return f"{noun}es"
     return f"{noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{noun}s"
 

@@ -9,12 +9,12 @@ from rodsweep.bench.peers import Peers
 from ..auto import SKIPPED, auto_program
 from .auto_equations import EQUATIONS
 from .continuation import beside_auto
-from .integrators import CVODE, CVODE_SKIPPED, families
+from .integrators import CVODE, CVODE_SKIPPED, installed_families
 
 
 def peers(quick: bool, place: Path) -> Peers:
     """All installed integrators, and AUTO-07p, compiled in `place`. quick: fewer settings of AUTO-07p."""
-    every, program = families(), auto_program(place, EQUATIONS)
+    every, program = installed_families(), auto_program(place, EQUATIONS)
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return Peers(
         contenders={

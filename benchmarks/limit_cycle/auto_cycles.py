@@ -23,7 +23,7 @@ from ..auto import AUTO, run_auto, table_lines
 
 NO_CONVERGENCE = "-9"
 """Third word of the last line of AUTO's table fort.7 if Newton's method did not converge."""
-CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=0, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
+AUTO_CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=0, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
 ICP=[1, 11], SP=['BP0', 'PD0', 'TR0'], NTST={intervals}, NCOL={points}, IAD={adapted}
 THL={{11: 0.0}}, THU={{{no_states}}}
 NMX={most}, NPR={most}, ITMX=20, ITNW=20, NWTN=1, EPSL={tolerance!r}, EPSU={tolerance!r}, EPSS=1e-5
@@ -74,7 +74,7 @@ def continue_cycles(program: Path, first: Orbit, setting: AutoSetting, step: flo
     step: difference of F between two cycles. Raises RuntimeError if AUTO fails.
     """
     unknowns = first.form.unknowns
-    constants = CONSTANTS.format(
+    constants = AUTO_CONSTANTS.format(
         unknowns=unknowns,
         intervals=setting.intervals,
         points=setting.points,

@@ -13,7 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from rodsweep.bench.limit_cycle.sweeping import RODS, TIMED_POINTS, ExactCycle, from_neighbour, name_of, swept
+from rodsweep.bench.limit_cycle.sweeping import (
+    RODS,
+    TIMED_POINT_COUNT,
+    ExactCycle,
+    from_neighbour,
+    rod_label,
+    swept_rod,
+)
 from rodsweep.bench.limit_cycle.tracking import (
     REFERENCE_INTERVALS,
     REFERENCE_NEWTON_TOLERANCE,
@@ -22,7 +29,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     cycle_request,
     orbit_of,
 )
-from rodsweep.bench.study import Measurement, TimedRuns, failsafe, race, table
+from rodsweep.bench.study import Measurement, TimedRuns, markdown_table, race, result_or_error
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -42,7 +49,7 @@ MAX_ROUNDS = 3
 """Maximum number of timed rounds, because the runs take seconds."""
 LARGE_MODULUS = 0.5
 """Modulus above which a Floquet multiplier is counted: multipliers near 1 decide the stability."""
-OWN = "rodsweep"
+RODSWEEP = "rodsweep"
 TARGETS = (1e-6, 1e-7)
 """Errors at which the two codes are compared."""
 REQUESTED_ACCURACIES = (2e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7)
@@ -82,30 +89,33 @@ def measure_continuation(
     program: Path, point: Rod, settings: Sequence[AutoSetting], rounds: int
 ) -> list[Measurement]:
     """Measurements of rodsweep at all requested accuracies and of AUTO at all settings, timed in turn."""
-    rods, step = [swept(point, accuracy) for accuracy in REQUESTED_ACCURACIES], RELATIVE_STEP * point.F
+    rods, step = (
+        [swept_rod(point, accuracy) for accuracy in REQUESTED_ACCURACIES],
+        RELATIVE_STEP * point.F,
+    )
     starts = first_cycles(replace(point, F=point.F - (LONG_RUN_CYCLES - 1) * step), settings)
     runs: list[Callable[[], Any]] = [
-        partial(failsafe, partial(from_neighbour, "F", accuracy), rod)
+        partial(result_or_error, partial(from_neighbour, "F", accuracy), rod)
         for accuracy, rod in zip(REQUESTED_ACCURACIES, rods, strict=True)
     ]
     for setting in settings:
         run = partial(continue_cycles, program, starts[setting.order], setting, step)
-        runs += [partial(failsafe, run, cycles) for cycles in (SHORT_RUN_CYCLES, LONG_RUN_CYCLES)]
+        runs += [partial(result_or_error, run, cycles) for cycles in (SHORT_RUN_CYCLES, LONG_RUN_CYCLES)]
     raced = race(runs, [rounds] * len(runs))
     ours, exact = len(REQUESTED_ACCURACIES), rods[-1].exact
     own = [
-        judged(
+        judged_measurement(
             exact,
-            Measurement(name_of(point), OWN, f"{accuracy:.0e}", timed.median / TIMED_POINTS, inf),
+            Measurement(rod_label(point), RODSWEEP, f"{accuracy:.0e}", timed.median / TIMED_POINT_COUNT, inf),
             timed.outcome,
         )
         for accuracy, timed in zip(REQUESTED_ACCURACIES, raced[:ours], strict=True)
     ]
     pairs = zip(settings, raced[ours::2], raced[ours + 1 :: 2], strict=True)
     peers = [
-        judged(
+        judged_measurement(
             exact,
-            Measurement(name_of(point), AUTO, str(setting), seconds_per_cycle(short, long), inf),
+            Measurement(rod_label(point), AUTO, str(setting), seconds_per_cycle(short, long), inf),
             long.outcome,
         )
         for setting, short, long in pairs
@@ -129,7 +139,7 @@ def seconds_per_cycle(short: TimedRuns, long: TimedRuns) -> float:
     return (long.median - short.median) / (LONG_RUN_CYCLES - SHORT_RUN_CYCLES)
 
 
-def judged(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
+def judged_measurement(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
     """The measurement `m` completed by the errors of its outcome, or by the reason of its failure.
 
     outcome: `AutoCycle` of AUTO, `Cycle` of rodsweep, or the exception raised.
@@ -150,11 +160,12 @@ def introduction(point: Rod) -> str:
     """Description of the comparison for the report."""
     return (
         f"{AUTO} (IPS = 2, ISP = 2, NWTN = 1, the exact Jacobian compiled with -O3) continues the cycles of "
-        f"F, k1, k2, gamma3, gamma1 = {name_of(point)} with all multipliers up to this F, in "
+        f"F, k1, k2, gamma3, gamma1 = {rod_label(point)} with all multipliers up to this F, in "
         f"{LONG_RUN_CYCLES - 1} steps of {RELATIVE_STEP:.0%}, on one element of order p, starting from a "
         "cycle of rodsweep. The time per cycle is the difference between this run and a run of "
         f"{SHORT_RUN_CYCLES} cycles, so that the start does not count. Errors are those of the last cycle. "
-        f"rodsweep's time is the mean of {TIMED_POINTS} cycles and includes the choice of the mesh and the "
+        f"rodsweep's time is the mean of {TIMED_POINT_COUNT} cycles and includes the choice of the mesh and "
+        "the "
         f"error estimate; {AUTO} has neither. Multipliers are counted beyond {LARGE_MODULUS:g} in modulus, "
         "with the trivial one; Gauss collocation adds spurious ones."
     )
@@ -163,7 +174,7 @@ def introduction(point: Rod) -> str:
 def cycle_table(measurements: Sequence[Measurement]) -> str:
     """Table of rodsweep and AUTO at all settings: time per cycle, errors, number of large multipliers."""
     nothing = dict.fromkeys(("period_error", "amplitude_error", "large"), nan)
-    return table(
+    return markdown_table(
         "method | setting | ms | error of period | error of amplitude "
         f"| multipliers beyond {LARGE_MODULUS:g}",
         "{method} | {setting} | {failure}{ms:.1f} | {period_error:.1e} | {amplitude_error:.1e} | {large:.0f}",
@@ -180,14 +191,14 @@ def ratio_table(measurements: Sequence[Measurement]) -> str:
     """Table of the fastest settings of rodsweep and AUTO that reach each target error, and of their ratio."""
     rows = []
     for target in TARGETS:
-        own, peer = (fastest(measurements, method, target) for method in (OWN, AUTO))
+        own, peer = (fastest(measurements, method, target) for method in (RODSWEEP, AUTO))
         row = {"target": target, "own": 1e3 * own.seconds, "asked": own.setting}
         row |= {"auto": 1e3 * peer.seconds, "setting": peer.setting, "ratio": peer.seconds / own.seconds}
         rows.append(row)
     return (
         "At equal error: each method at its fastest setting in the table above that reaches the error. For "
         "rodsweep, the setting is the requested accuracy.\n\n"
-    ) + table(
+    ) + markdown_table(
         f"error | ms, rodsweep | at | ms, {AUTO} | at | times rodsweep's time",
         "{target:.0e} | {own:.1f} | {asked} | {auto:.1f} | {setting} | {ratio:.1f}",
         rows,

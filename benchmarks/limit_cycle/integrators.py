@@ -12,12 +12,12 @@ from rodsweep.bench.limit_cycle.integrators import (
     WAITING_TOLERANCES,
     IntegrationTask,
     IntegratorFamily,
-    by_petsc,
+    petsc_run,
 )
 from rodsweep.discretization.stress.rates import rate, rate_jacobian
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
 
-from ..installed import installed
+from ..installed import optional_module
 
 FIRST_STEP = 1e-3
 """First step of Radau, as a fraction of the duration."""
@@ -32,7 +32,7 @@ MAX_CVODE_STEPS = 200_000
 """Maximum number of steps of an integration by CVODE."""
 
 
-def by_scipy(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
+def scipy_run(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """Integrates a leg by SciPy's solve_ivp; ArithmeticError if the integration fails.
 
     SciPy's implicit methods stop Newton's method at sqrt(rtol) times the tolerance. Hence `rtol` is set to
@@ -56,7 +56,7 @@ def by_scipy(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
     return Trajectory(RunEnding.reached, found.t, found.y.T)
 
 
-def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
+def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """Integrates a leg by CVODE's BDF with its dense linear solver; ArithmeticError if this fails.
 
     cvode: the module CVODE_MODULE.
@@ -90,30 +90,33 @@ def by_cvode(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
 
 RADAU_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 FAMILIES = (
-    IntegratorFamily("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-    IntegratorFamily("ARKIMEX 3", partial(by_petsc, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("ARKIMEX 4", partial(by_petsc, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("BDF 5", partial(by_petsc, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-    IntegratorFamily("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
-    IntegratorFamily("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
-    IntegratorFamily("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("ARKIMEX 2", partial(petsc_run, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    IntegratorFamily("ARKIMEX 3", partial(petsc_run, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("ARKIMEX 4", partial(petsc_run, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily("BDF 5", partial(petsc_run, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    IntegratorFamily("ROSW ra34pw2", partial(petsc_run, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
+    IntegratorFamily("ROSW rodas3", partial(petsc_run, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
+    IntegratorFamily("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
     IntegratorFamily(
         "SciPy Radau",
-        partial(by_scipy, "Radau"),
+        partial(scipy_run, "Radau"),
         RADAU_TOLERANCES,
         (*RADAU_TOLERANCES[2:5], *WAITING_TOLERANCES[:4]),
     ),
     IntegratorFamily(
-        "SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), WAITING_TOLERANCES
+        "SciPy LSODA",
+        partial(scipy_run, "LSODA"),
+        (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
+        WAITING_TOLERANCES,
     ),
 )
 """Integrators of PETSc and SciPy with their tolerances. BDF 5 is nearly unstable at loose tolerances."""
 
 
-def families() -> tuple[IntegratorFamily, ...]:
+def installed_families() -> tuple[IntegratorFamily, ...]:
     """All installed integrators: FAMILIES, and CVODE if scikit-sundae is installed."""
-    module = installed(CVODE_MODULE)
+    module = optional_module(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
     return FAMILIES + (
-        (IntegratorFamily(CVODE, partial(by_cvode, module), ladder, WAITING_TOLERANCES),) if module else ()
+        (IntegratorFamily(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),) if module else ()
     )

@@ -24,30 +24,30 @@ from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.problem import problem_of
 
-from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices
+from ..lapack import Eigenvalues, inverse_spectrum, qz_spectrum, whole_matrices
 
 
-def matrices_at(rod: Rod, size: int) -> tuple[Array, Array]:
+def pencil_matrices(rod: Rod, size: int) -> tuple[Array, Array]:
     """(A, diagonal of B) of rodsweep's pencil of order `size`, shapes (unknowns, unknowns), (unknowns,)."""
     return whole_matrices(rod, mesh_of(size) if rod.standard else mesh_of_arm(rod, size))
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
     """Leading eigenvalues by LAPACK's QZ (ggev). The shear unknowns are scaled to limit rounding errors."""
-    A, B = matrices_at(rod, size)
+    A, B = pencil_matrices(rod, size)
     scale = np.ones(len(B))
     scale[2 * len(B) // 3 :] = PENCIL_NORM.shear_weight
-    return leading(qz(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
+    return leading(qz_spectrum(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
 
 
 def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
     """Leading eigenvalues by LAPACK's LU of A and geev of A^-1 B."""
-    return leading(inverse_spectrum(*matrices_at(rod, size)), WANTED_MODES + 1)
+    return leading(inverse_spectrum(*pencil_matrices(rod, size)), WANTED_MODES + 1)
 
 
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
     """Leading eigenvalues by SciPy's ARPACK on the shift-and-invert operator with rodsweep's shift."""
-    A, B = matrices_at(rod, size)
+    A, B = pencil_matrices(rod, size)
     shift = problem_of(rod).shift
     factors = scipy.linalg.lu_factor(A - np.diag(shift * B), check_finite=False)
     operator = scipy.sparse.linalg.LinearOperator(
@@ -118,7 +118,7 @@ def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
     )
     B[rows] = 0.0
     largest = np.abs(A).max(axis=1, keepdims=True)  # without it QZ finds nothing at k2 = 1e8
-    return leading(qz(A / largest, B / largest), WANTED_MODES + 1)
+    return leading(qz_spectrum(A / largest, B / largest), WANTED_MODES + 1)
 
 
 def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
@@ -140,7 +140,7 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
             A[rows[2:], upper[:2] - 4 * n] = -1.0
         if start < last:
             A[rows[:2], lower[2:] + 4 * n] = -1.0
-    return leading(qz(A, B), WANTED_MODES + 1)
+    return leading(qz_spectrum(A, B), WANTED_MODES + 1)
 
 
 def _first_order(rod: Rod, a: float, b: float, size: int) -> tuple[Array, Array]:

@@ -7,12 +7,13 @@ from rodsweep.bench.thresholds.study import HOPF, ONSET
 
 from ..auto import AUTO
 from .continuation import BEYOND_HOPF, PYCONT, continuation_codes
-from .spectra_by_force import MARCH, MESH_ACCURACY, contenders
+from .spectra_by_force import BRACKETING_STEP, MESH_ACCURACY, contenders
 
 SEARCHES = (
     "The peers search for the first change in 0 < F < 60 (140 for the narrow window of flutter, 74.83 to "
     f"75.98), prove nothing, and use a mesh with an error of {MESH_ACCURACY:.0e}. Grids and steps: dense "
-    f"LAPACK (LU and geev) on rodsweep's pencil at every force; steps are {MARCH:g} in F until a sign "
+    f"LAPACK (LU and geev) on rodsweep's pencil at every force; steps are {BRACKETING_STEP:g} in F until a "
+    "sign "
     "changes. Continuation codes follow u = 0 of du/dt = M(F) u, the same pencil without the unknowns "
     "without time derivative."
 )

@@ -18,8 +18,8 @@ from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import FirstThreshold, ThresholdCase
 
 from ..auto import AUTO, SKIPPED, auto_program, run_auto, table_lines
-from ..installed import installed
-from .spectra_by_force import affine
+from ..installed import optional_module
+from .spectra_by_force import affine_pencil
 
 AUTO_SETTINGS = ((5.0, 1e-7), (1.0, 1e-4), (1.0, 1e-10))
 """Settings of AUTO-07p: (step in F, EPSS, the relative tolerance of special points)."""
@@ -64,7 +64,7 @@ subroutine fopt
 end subroutine
 """
 """Fortran subroutines of du/dt = M(F) u for AUTO-07p; they read M0, M1 and M2 from the file `matrices`."""
-CONSTANTS = """NDIM={unknowns}, IPS=1, IRS=0, ILP=0, ISP=1, ISW=1, MXBF=0, NPAR=1, JAC=1, IID=0
+AUTO_CONSTANTS = """NDIM={unknowns}, IPS=1, IRS=0, ILP=0, ISP=1, ISW=1, MXBF=0, NPAR=1, JAC=1, IID=0
 ICP=[1], UZSTOP={{1: {top!r}}}, STOP=['HB1']
 NMX=9999, NPR=0, ITMX=20, ITNW=5, EPSL=1e-9, EPSU=1e-9, EPSS={tolerance!r}
 DS={step!r}, DSMIN=1e-3, DSMAX={step!r}, IADS=0
@@ -79,7 +79,7 @@ STEPS_BETWEEN_CHECKS = 5
 """Number of steps after which PyCont-Lite looks for special points."""
 PYCONT_MODULE = "pycont"
 """Import name of PyCont-Lite, which the optional extra `bench` of rodsweep installs."""
-HEAD_START = 0.1
+START_FRACTION = 0.1
 """Start of PyCont-Lite, as a fraction of the interval of F from the onset to the Hopf point."""
 BEYOND_HOPF = 6.0
 """Distance in F beyond the Hopf point at which PyCont-Lite ends."""
@@ -97,7 +97,7 @@ def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], l
             found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION, by_auto))
     else:
         skipped.append(SKIPPED)
-    if module := installed(PYCONT_MODULE):
+    if module := optional_module(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
             found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION, by_pycont, slow=True))
@@ -113,7 +113,7 @@ def matrix_polynomial(case: ThresholdCase) -> Array:
     ArithmeticError if the eliminated block depends on F, as for gamma3 = 0 with a finite k1 or k2, or if it
     is singular, as for c2 = 0 < gamma3.
     """
-    A0, A1, B = affine(case)
+    A0, A1, B = affine_pencil(case)
     n = int(np.count_nonzero(B))
     if A1[n:, n:].any() or not A0[n:, n:].any():
         raise ArithmeticError("the pencil does not reduce to a polynomial in F")
@@ -129,7 +129,9 @@ def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCa
     with tempfile.TemporaryDirectory(dir=program.parent) as place:
         directory = Path(place)
         (directory / "matrices").write_bytes(pieces.transpose(0, 2, 1).tobytes())
-        constants = CONSTANTS.format(unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step)
+        constants = AUTO_CONSTANTS.format(
+            unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step
+        )
         said, points = run_auto(program, directory, constants), table_lines(directory)
     at = [float(line.split()[1]) for line in said.splitlines() if line.startswith("at")]
     solves = 1 + int(np.count_nonzero(np.diff(at)))
@@ -147,7 +149,7 @@ def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThresh
     """
     M0, M1, M2 = matrix_polynomial(case)
     last = case.top if isnan(case.hopf) else case.hopf
-    start, end = case.onset + HEAD_START * (last - case.onset), min(last + BEYOND_HOPF, case.top)
+    start, end = case.onset + START_FRACTION * (last - case.onset), min(last + BEYOND_HOPF, case.top)
     products = 0
 
     def field(u: Array, F: float) -> Array:

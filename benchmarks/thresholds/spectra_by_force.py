@@ -30,14 +30,14 @@ TOLERANCES = (1e-3, 1e-6, 1e-12)
 """Relative tolerances of the root finding."""
 SWEEP = "grid and interpolation"
 """Group of these methods in the figure."""
-MARCH = 2.0
+BRACKETING_STEP = 2.0
 """Step in F by which a root is bracketed: the step ends at a change of sign."""
 SCIPY_ROUNDING = 8.9e-16
 """Smallest relative tolerance that SciPy's root finders accept: four times the rounding unit."""
 
 
 @lru_cache(maxsize=64)
-def mesh_of(case: ThresholdCase) -> Resolution | ArmMesh:
+def threshold_mesh(case: ThresholdCase) -> Resolution | ArmMesh:
     """Mesh with a relative error of MESH_ACCURACY at the Hopf point of a case, or at its onset."""
     rod = case.rod(case.onset if isnan(case.hopf) else case.hopf)
     if not rod.standard:
@@ -46,9 +46,9 @@ def mesh_of(case: ThresholdCase) -> Resolution | ArmMesh:
     return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
 
 
-def affine(case: ThresholdCase) -> tuple[Array, Array, Array]:
+def affine_pencil(case: ThresholdCase) -> tuple[Array, Array, Array]:
     """(A0, A1, diagonal of B) of the pencil A x = w B x with A = A0 + F A1, shapes (n, n), (n, n), (n,)."""
-    mesh = mesh_of(case)
+    mesh = threshold_mesh(case)
     A0, B = whole_matrices(case.rod(0.0), mesh)
     return A0, whole_matrices(case.rod(1.0), mesh)[0] - A0, B
 
@@ -58,14 +58,14 @@ class LeadingPair:
 
     def __init__(self, case: ThresholdCase):
         self.solves = 0
-        self._A0, self._A1, self._B = affine(case)
+        self._A0, self._A1, self._B = affine_pencil(case)
 
     def __call__(self, F: float) -> Eigenvalues:
         self.solves += 1
         return leading(inverse_spectrum(self._A0 + F * self._A1, self._B), 2)
 
 
-def on_grid(
+def threshold_on_grid(
     estimate: Callable[[Array, Eigenvalues], float], points: int, case: ThresholdCase
 ) -> FirstThreshold:
     """First threshold of a case, estimated from the leading eigenvalues on a grid of F from 0 to `case.top`.
@@ -109,7 +109,7 @@ def _zero(forces: Array, values: NDArray[np.floating]) -> float:
     return a - p * (b - a) / (q - p)
 
 
-def by_steps(
+def threshold_by_steps(
     search: Callable[..., float], test: Callable[[Eigenvalues], float], tolerance: float, case: ThresholdCase
 ) -> FirstThreshold:
     """First threshold of a case: steps of MARCH from F = 0 until `test` changes its sign, then a root search.
@@ -117,7 +117,7 @@ def by_steps(
     search: root finder of SciPy. test: from the two leading eigenvalues to a number. tolerance: relative.
     """
     pair = LeadingPair(case)
-    forces = [*map(float, np.arange(0.0, case.top, MARCH)), case.top]
+    forces = [*map(float, np.arange(0.0, case.top, BRACKETING_STEP)), case.top]
     behind, value = forces[0], test(pair(forces[0]))
     for ahead in forces[1:]:
         value_ahead = test(pair(ahead))
@@ -129,7 +129,7 @@ def by_steps(
     return FirstThreshold(nan, pair.solves)
 
 
-def growth(w: Eigenvalues) -> float:
+def growth_rate(w: Eigenvalues) -> float:
     """Growth rate Re w of the leading eigenvalue, which vanishes at a Hopf point; w: (2,)."""
     return float(w[0].real)
 
@@ -151,10 +151,10 @@ BY_GRID = {
 """Estimates from a grid of forces, by kind of threshold and name of the method."""
 BY_STEPS = {
     ONSET: {
-        "steps, bisection on Im w > 0": partial(by_steps, bisect, real_or_pair),
-        "steps, Brent on (w1 - w2)^2": partial(by_steps, brentq, discriminant),
+        "steps, bisection on Im w > 0": partial(threshold_by_steps, bisect, real_or_pair),
+        "steps, Brent on (w1 - w2)^2": partial(threshold_by_steps, brentq, discriminant),
     },
-    HOPF: {"steps, Brent on Re w": partial(by_steps, brentq, growth)},
+    HOPF: {"steps, Brent on Re w": partial(threshold_by_steps, brentq, growth_rate)},
 }
 """Root searches by steps, by kind of threshold and name of the method."""
 
@@ -163,7 +163,7 @@ def contenders(kind: str, quick: bool) -> list[Contender]:
     """All grids and root searches for one kind of threshold; quick: without LARGE_GRID."""
     grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
     by_grid = [
-        Contender(name, f"{n} forces", SWEEP, partial(on_grid, estimate, n), slow=n == LARGE_GRID)
+        Contender(name, f"{n} forces", SWEEP, partial(threshold_on_grid, estimate, n), slow=n == LARGE_GRID)
         for name, estimate in BY_GRID[kind].items()
         for n in grids
     ]

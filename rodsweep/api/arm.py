@@ -12,7 +12,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
-from .asking import job_from, known_load, tree_of
+from .asking import config_tree, job_from, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -101,7 +101,7 @@ class Arm(SlenderArm):
 
         For a load relative to flutter, the flutter threshold is solved first.
         """
-        return known_load(self)
+        return with_load_in_si(self)
 
     @in_sentences("arm.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
@@ -152,7 +152,7 @@ class Arm(SlenderArm):
         from .answers.rod_portrait import portrait_of
 
         default = {each.name: each.default for each in fields(self)}
-        section = tree_of("thresholds", {"arm": self})["parameters"]["arm"]
+        section = config_tree("thresholds", {"arm": self})["parameters"]["arm"]
         given = {name: value for name, value in section.items() if value != default[name]}
         own = DescribedRod(arm=given, load=self.load or LOADS[0])
         return portrait_of(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
@@ -172,7 +172,7 @@ class Arm(SlenderArm):
                 f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
                 "arm.replace(pressure='1.2 of flutter')"
             )
-        solved = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
+        solved = solve_here(job_from(config_tree(task, {"arm": self} | options)), progress=progress)
         return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
 
     @property

@@ -20,24 +20,24 @@ from ..model.arm.drag import DRAGS
 from ..model.arm.quantities import LOADS, RELATIVE
 from ..model.material.build import STANDARD
 from ..solve.exclusive import signals_held
-from ..tasks.running.job import Job, job_of, memory
+from ..tasks.running.job import Job, job_of, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Class of an arm."""
 DEFAULT_VALUES = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
 """Default values of keys of an arm; a config tree omits keys with these values."""
-Tree = dict[str, Any]
+ConfigTree = dict[str, Any]
 """Config tree: keys and values as read from a YAML config."""
 
 
-def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
+def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
     """Config tree of a task from keyword arguments: every key is put into the section to which it belongs.
 
     A misspelt key is put into the section with the most similar key, so that validation names that key. A
     whole section may be given as a mapping. Raises InputError for a masked value, and for a key that
     resembles none.
     """
-    tree: Tree = {"task": plain_keyword("task", task)}
+    tree: ConfigTree = {"task": plain_keyword("task", task)}
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
     sections = _sections(task)
@@ -54,21 +54,21 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
     return tree
 
 
-def _write_out_arm(task: str, tree: Tree) -> None:
+def _write_out_arm(task: str, tree: ConfigTree) -> None:
     """Replaces an `rs.Arm` in the tree by its quantities; the load only if the task takes a load."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
         names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
-        known = known_load(arm) if loaded else arm
+        known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
             given[name] = None if given[name] == default else given[name]
-        parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
+        parameters["arm"] = {name: plain_value(value) for name, value in given.items() if value is not None}
 
 
-def known_load(arm: ArmKind) -> ArmKind:
+def with_load_in_si(arm: ArmKind) -> ArmKind:
     """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is solved."""
     if arm.share_of_flutter is None:
         return arm
@@ -78,7 +78,7 @@ def known_load(arm: ArmKind) -> ArmKind:
 
 
 @signals_held
-def job_from(tree: Tree) -> Job:
+def job_from(tree: ConfigTree) -> Job:
     """The validated job of a config tree; InputError, as on the command line, for bad input.
 
     Raises InputError also if the results do not fit into memory.
@@ -86,15 +86,16 @@ def job_from(tree: Tree) -> Job:
     config = validated(with_files_read(tree, Path()))
     job = job_of(Path(config.task), config, tree)
     size = job.points.count * job.layout.bytes_per_point
-    if size > memory():
+    if size > machine_memory():
         raise InputError(
             f"the results of {job.points.count:.6g} points take {size / 1e9:.3g} GB, more than the "
-            f"{memory() / 1e9:.3g} GB of memory of this machine; `rodsweep run` writes them into a file"
+            f"{machine_memory() / 1e9:.3g} GB of memory of this machine; `rodsweep run` writes them into a "
+            "file"
         )
     return job
 
 
-def refuse_unfit(tree: Tree) -> None:
+def refuse_unfit(tree: ConfigTree) -> None:
     """Raises InputError for a config tree that `job_from` refuses, before any rank of a run starts.
 
     For loads relative to flutter only the config is validated, because the points need a search for flutter,
@@ -167,7 +168,7 @@ def _range(start: float | str, stop: float | str, num: int, spacing: str) -> Axi
     return {"start": start, "stop": stop, "num": num, "spacing": spacing}
 
 
-def plain(value: Any) -> Any:
+def plain_value(value: Any) -> Any:
     """A value in the types of a YAML config: arrays and tuples become lists, NumPy scalars numbers, paths
     text.
 
@@ -175,13 +176,13 @@ def plain(value: Any) -> Any:
     for masked values.
     """
     if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
+        return {key: plain_value(item) for key, item in value.items()}
     if isinstance(value, list | tuple | range):
-        return [plain(item) for item in value]
+        return [plain_value(item) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "to_base_units"):  # a pint quantity; np.asarray would drop its unit
-        return _with_unit(plain(value.magnitude), f"{value.units:~C}")
+        return _with_unit(plain_value(value.magnitude), f"{value.units:~C}")
     if np.ma.is_masked(value):
         raise ValueError("a value of the array is masked, so it is not a number; leave it out")
     if hasattr(value, "__array__"):
@@ -192,7 +193,7 @@ def plain(value: Any) -> Any:
 def plain_keyword(key: str, value: Any) -> Any:
     """The value of the keyword `key` in the types of a YAML config; InputError for a masked value."""
     try:
-        return plain(value)
+        return plain_value(value)
     except ValueError as error:
         raise InputError(f"{key}: {error}") from None
 

@@ -22,7 +22,7 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
-from .asking import job_from, known_load, plain, plain_keyword, tree_of
+from .asking import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -76,7 +76,7 @@ class SoftRod:
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
-            given = parameters_of(known_load(arm)) | given
+            given = parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
             material = material_of(arm) | beside
         for name in REQUIRED:
@@ -183,7 +183,7 @@ class SoftRod:
         taken = CONFIGS[task].taken_of_a_rod(options)
         names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
-        tree = tree_of(task, values | self._given_material | options)
+        tree = config_tree(task, values | self._given_material | options)
         solved = solve_here(job_from(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
 
@@ -220,7 +220,7 @@ def _material(given: Mapping[str, Any]) -> MaterialSection | None:
 def _number(name: str, value: Any) -> float:
     """Value of the parameter `name` as a float; InputError if the value is no number."""
     try:
-        return as_number(plain(value))
+        return as_number(plain_value(value))
     except ValueError as error:
         raise InputError(f"the parameter {name} of the rod: {error}") from None
 

@@ -19,7 +19,7 @@ from ..results.file.validation import FORMAT, PROGRAM
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
-from ..tasks.running.in_memory import blas_kernels, stored, view_in_memory
+from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
 from ..tasks.running.job import Job, attributes_of
 from .dataset import in_layout_order, view_of, with_arm_selection, with_checksums
 
@@ -68,7 +68,7 @@ class SolvedPoints:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The Dataset of the points, as xarray would read it from a result file."""
-        coordinates, variables = stored(self.plan, self.values, self.filled)
+        coordinates, variables = stored_variables(self.plan, self.values, self.filled)
         header = {
             "program": PROGRAM,
             "format": FORMAT,

@@ -18,12 +18,12 @@ from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import NoClaims, RankListener, StopRequest
-from ..tasks.protocol import Arrays, JointVariables, Solver
+from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
-from ..tasks.running.in_memory import blas, view_in_memory
+from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen import PointNote, guarded
-from ..watch import part, reporting_to
+from ..tasks.running.unforeseen import PointNote, guarded_solver
+from ..watch import reporting_to, solve_part
 from .solved import SolvedPoints
 
 Display = ProgressReporter | SilentProgress
@@ -45,12 +45,13 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
     solver = job.solver()
     started = now()
     if note is not None:
-        solver = guarded(solver, job.layout, note)
+        solver = guarded_solver(solver, job.layout, note)
     plan = plan_in_memory(job, solver.statuses)
     if job.config.task not in _warm:
         solver.warm_up()
         _warm.add(job.config.task)
-    with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
+    # One thread, as in the command: threads change the order of sums.
+    with blas_pool().limit(limits=1, user_api="blas"):
         shown(0)
         try:
             values, messages, reasons = _solved(job, solver, plan, shown)
@@ -126,10 +127,10 @@ def _solved(
 def _joint(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
     """Variables that depend on all points, for example curves; view: the solved points."""
     units = together.units(view)
-    results = dict[int, Arrays]()
+    results = dict[int, NamedArrays]()
     while units is not None and (wanted := units.wanted(results)):
         name = units.where(wanted[0])
-        with part(name), reporting_to(progress_listener(shown, name)):
+        with solve_part(name), reporting_to(progress_listener(shown, name)):
             results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)
 
@@ -144,7 +145,10 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
     def reported() -> Iterator[None]:
         """Marks the reports in the `with` block as reports of the next point."""
         name = f"point {done + 1} of {count}" if count > 1 else ""
-        with part(name, (done / count, (done + 1) / count)), reporting_to(progress_listener(shown, name)):
+        with (
+            solve_part(name, (done / count, (done + 1) / count)),
+            reporting_to(progress_listener(shown, name)),
+        ):
             yield
 
     if solver.chained is None:

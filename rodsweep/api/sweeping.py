@@ -17,7 +17,7 @@ from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen import describe_unforeseen, log_file
-from .asking import Tree, job_from, refuse_unfit, tree_of
+from .asking import ConfigTree, config_tree, job_from, refuse_unfit
 from .dataset import open_result
 from .solving import Display, progress_display, solve_here
 
@@ -55,7 +55,7 @@ def sweep(
     """
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
-    tree = tree_of(task, keywords)
+    tree = config_tree(task, keywords)
     if ranks is not None:
         refuse_unfit(tree)
         return _on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
@@ -73,7 +73,7 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
     warnings.warn(f"{points}: {describe_unforeseen(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
-def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
+def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
     """The Dataset made by `rodsweep run` on `ranks` ranks in a temporary directory."""
     points = tree["parameters"].get("points")
     if points is not None:

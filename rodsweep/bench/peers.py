@@ -22,7 +22,7 @@ from types import ModuleType
 from ..errors import InputError
 from .study import Contender, Measurement
 
-PACKAGE = "benchmarks"
+PEER_PACKAGE_NAME = "benchmarks"
 """Name of the folder of peers in a checkout; also its package name wherever the folder is."""
 CHECKOUT = Path(__file__).parents[2]
 """Root folder of the checkout, if rodsweep runs from a checkout."""
@@ -32,7 +32,7 @@ PEER_NAMES = {
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
 """Names of the peers in words by study, for a report without peers."""
-Section = Callable[[int], tuple[list[str], list[Measurement]]]
+PeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
 """Comparison with tables of its own: function from the number of rounds to (blocks of text, measurements)."""
 
 
@@ -43,7 +43,7 @@ class Peers:
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
-    sections: Sequence[Section] = ()
+    sections: Sequence[PeerSection] = ()
     """Comparisons beside the races of the study."""
     notes: Sequence[str] = ()
     """Sentences on the contenders, for the introduction of the report."""
@@ -66,22 +66,24 @@ def peer_package(directory: Path | None) -> ModuleType | None:
     """
     if directory is not None:
         return _loaded(directory)
-    own = CHECKOUT / PACKAGE
+    own = CHECKOUT / PEER_PACKAGE_NAME
     there = (CHECKOUT / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
     return _loaded(own) if there else None
 
 
 def _loaded(directory: Path) -> ModuleType:
-    refusal = InputError(f"--peers {directory} must be the folder `{PACKAGE}` of a checkout of rodsweep")
+    refusal = InputError(
+        f"--peers {directory} must be the folder `{PEER_PACKAGE_NAME}` of a checkout of rodsweep"
+    )
     start = directory.resolve() / "__init__.py"
-    known = sys.modules.get(PACKAGE)
+    known = sys.modules.get(PEER_PACKAGE_NAME)
     if known is not None and known.__file__ and Path(known.__file__).resolve() == start:
         return known
-    spec = spec_from_file_location(PACKAGE, start, submodule_search_locations=[str(start.parent)])
+    spec = spec_from_file_location(PEER_PACKAGE_NAME, start, submodule_search_locations=[str(start.parent)])
     if not start.is_file() or spec is None or spec.loader is None:
         raise refusal
     package = module_from_spec(spec)
-    sys.modules[PACKAGE] = package  # before its modules are imported, which look for it there
+    sys.modules[PEER_PACKAGE_NAME] = package  # before its modules are imported, which look for it there
     spec.loader.exec_module(package)
     if not hasattr(package, "versions"):
         raise refusal
@@ -93,17 +95,18 @@ def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -
 
     package: from `peer_package`. quick: fewer settings.
     """
-    module = f"{PACKAGE}.{study}"
+    module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
     found: Peers = import_module(module).peers(quick, place)
     return found
 
 
-def left_out(studies: Sequence[str]) -> str:
+def peers_left_out(studies: Sequence[str]) -> str:
     """Sentence that names the peers of studies run without the folder of peers; "" if they have no peers."""
     missing = "; ".join(f"{name}: {PEER_NAMES[name]}" for name in studies if name in PEER_NAMES)
     return missing and (
-        f"The peers are left out ({missing}): they are in the folder `{PACKAGE}` of a checkout of rodsweep, "
-        f"which `--peers CHECKOUT/{PACKAGE}` names."
+        f"The peers are left out ({missing}): they are in the folder `{PEER_PACKAGE_NAME}` of a checkout of "
+        "rodsweep, "
+        f"which `--peers CHECKOUT/{PEER_PACKAGE_NAME}` names."
     )

@@ -116,14 +116,14 @@ def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[T
     """
     first = [_timed(run) for run in runs]
     seconds: list[list[float]] = [[] for _ in runs]
-    for i in in_turn(rounds):
+    for i in timing_order(rounds):
         if first[i].median < SHORT_RUN_SECONDS:
             runs[i]()
         seconds[i] += _timed(runs[i]).seconds
     return [TimedRuns(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]
 
 
-def in_turn(rounds: Sequence[int]) -> Iterator[int]:
+def timing_order(rounds: Sequence[int]) -> Iterator[int]:
     """Indices of functions in the order of timing, round by round, so that slow periods affect all functions.
 
     rounds: number of rounds of each function.
@@ -144,7 +144,7 @@ def processor_seconds() -> float:
     return time.process_time() + programs.ru_utime + programs.ru_stime
 
 
-def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
+def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
     """Result of the function `run` on a case, or the exception that it raised."""
     try:
         with np.errstate(all="ignore"):
@@ -161,19 +161,19 @@ class JudgedCase(NamedTuple):
     judge: Callable[[Any], dict[str, Any]]
 
 
-def contest(
+def measure_case(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
     """Measurements of all contenders on one case, timed in turn; arguments as in `JudgedCase`."""
-    return tournament([JudgedCase(name, case, judge)], contenders, rounds)
+    return measure_cases([JudgedCase(name, case, judge)], contenders, rounds)
 
 
-def tournament(
+def measure_cases(
     entries: Sequence[JudgedCase], contenders: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
     """Measurements of all contenders on all cases, timed in turn."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
-    runs = [partial(failsafe, contender.run, entry.case) for entry, contender in pairs]
+    runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
     raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, raced, strict=True):
@@ -185,7 +185,9 @@ def tournament(
     return measurements
 
 
-def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str, ...], list[Measurement]]:
+def grouped_by_fields(
+    measurements: Iterable[Measurement], *names: str
+) -> dict[tuple[str, ...], list[Measurement]]:
     """Measurements grouped by the values of the named fields, in order of appearance."""
     groups: dict[tuple[str, ...], list[Measurement]] = {}
     for m in measurements:
@@ -206,7 +208,7 @@ def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
     return methods
 
 
-def middle(values: Iterable[float]) -> float:
+def nan_median(values: Iterable[float]) -> float:
     """Median of the values that are not nan; nan if all are nan."""
     numbers = [value for value in values if not isnan(value)]
     return float(median(numbers)) if numbers else nan
@@ -219,7 +221,7 @@ class PrintedNumber(float):
         return "" if isnan(self) else super().__format__(form)
 
 
-def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
+def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
     """Table in Markdown.
 
     head: titles of the columns, separated by |. line: format of a row, such as "{method} | {seconds:.2f}".
@@ -234,6 +236,6 @@ def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
     return "\n".join(lines)
 
 
-def plural(count: int, noun: str) -> str:
+def count_text(count: int, noun: str) -> str:
     """A count with a regular noun: "1 round", "2 rounds"."""
     return f"{count} {noun}{'s' * (count != 1)}"

@@ -9,7 +9,7 @@ from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
-REMARKS = {
+HELP_REMARKS = {
     "length": ", by default the sum of the segments",
     "young": ", and of segments without one",
     "radius": "; or give --width and --height, or --segment",
@@ -54,7 +54,7 @@ def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Calla
 def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
     """Decorator that adds the option of one quantity of an arm."""
     meaning = QUANTITIES[name].meaning
-    help_text = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
+    help_text = f"{meaning[0].upper()}{meaning[1:]}{HELP_REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")
     return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)
 

@@ -64,7 +64,7 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
     return None if shared.stopped else dict(zip(rods, found, strict=True))
 
 
-def say_stopped(team: Team, stop: StopRequest) -> None:
+def report_stop(team: Team, stop: StopRequest) -> None:
     """Prints, on the first rank, that a signal stopped the run before the result file was created.
 
     Collective: all ranks call together.

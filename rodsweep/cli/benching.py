@@ -14,7 +14,7 @@ from ..solve.backend import petsc
 
 MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured")
 """Words that start `rodsweep` in the runs measured by the benchmark of the sweep."""
-HEADING = """# Performance
+REPORT_HEADING = """# Performance
 
 Speed against error of rodsweep, measured on one machine in one run of `rodsweep bench`. The peers, which a
 user might choose instead, are in the folder `benchmarks` of a checkout. Times are processor times, but clock
@@ -32,7 +32,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.peers import Peers, left_out, peer_package, peers_of
+        from ..bench.peers import Peers, peer_package, peers_left_out, peers_of
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
@@ -52,8 +52,8 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     package = peer_package(directory)
     names = [what] if what else list(studies)
     tables = {}
-    blocks = [HEADING, machine_line(package.versions() if package else {})]
-    if package is None and (sentence := left_out(names)):
+    blocks = [REPORT_HEADING, machine_line(package.versions() if package else {})]
+    if package is None and (sentence := peers_left_out(names)):
         blocks.append(sentence)
     click.echo("\n\n".join(blocks[1:]))
     for name in names:

@@ -16,7 +16,7 @@ from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.cost_estimate import MAX_SAMPLE
 from ..sweep.points.points import Points
-from ..tasks.arm.points import NoRod, rod_numbers
+from ..tasks.arm.points import NoRodStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import wall_check
@@ -101,7 +101,7 @@ def _uncovered_lines(points: Points) -> list[str]:
         there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")
         lines.append(f"{different} at {len(there)} points: equal rods are solved once")
-    for status in NoRod:
+    for status in NoRodStatus:
         number = 0 if points.coverage is None else int((points.coverage == status).sum())
         if number:
             lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")

@@ -63,14 +63,14 @@ class InstantSpectra(SpectrumTask):
         def solve(index: int) -> Spectrum:
             points.rod(index)
             if self.killed and index == points.count - 1:
-                note_memory(self.killed)
+                record_memory(self.killed)
                 os.kill(os.getpid(), signal.SIGKILL)
             return outcomes[index % OUTCOME_COUNT]
 
         return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, stretched=None)
 
 
-def note_memory(directory: Path) -> None:
+def record_memory(directory: Path) -> None:
     """Writes the peak memory of this rank in bytes into a file of the directory."""
     (directory / f"{FIRST_RANK if prints_messages() else OTHER_RANKS}-{os.getpid()}").write_text(
         str(peak_memory())
@@ -100,7 +100,7 @@ def run_measured() -> None:
     try:
         main()
     finally:
-        note_memory(notes)
+        record_memory(notes)
 
 
 if __name__ == "__main__":

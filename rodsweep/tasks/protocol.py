@@ -15,11 +15,11 @@ from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
 
-Arrays = dict[str, np.ndarray]
+NamedArrays = dict[str, np.ndarray]
 """Arrays by name: the result of a unit of joint work."""
 InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
-Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
+SolveWrapper = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
 """Wrapper of the solve of a point: (index, starting state, solve) -> (outcome, state for the next point)."""
 CheckRow = tuple[str, bool, str]
 """Row of the table printed by `check`: (effect or result, whether it is modelled, reason)."""
@@ -28,7 +28,7 @@ CheckRow = tuple[str, bool, str]
 class Units(Protocol):
     """Units of work of joint variables, numbered from 0. The object is sent to all ranks."""
 
-    def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
+    def wanted(self, results: Mapping[int, NamedArrays]) -> list[int]:
         """Numbers of the units still to be solved, most urgent first; empty if no unit is left.
 
         results: results of the finished units, by number.
@@ -50,13 +50,13 @@ class JointVariables(Protocol):
     def take(self, starts: Mapping[int, Any]) -> None:
         """Keeps starting data received from a different rank."""
 
-    def solve(self, units: Any, unit: int) -> Arrays:
+    def solve(self, units: Any, unit: int) -> NamedArrays:
         """Solves a unit of work; returns its result."""
 
-    def empty_result(self) -> Arrays:
+    def empty_result(self) -> NamedArrays:
         """Empty result, for a unit of work whose solver raised an unforeseen exception."""
 
-    def variables(self, view: View, units: Any, results: Mapping[int, Arrays]) -> Sequence[Filled]:
+    def variables(self, view: View, units: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
         """Variables of the file; called on the first rank.
 
         view: the file with all points. results: results of all units, by number.
@@ -83,7 +83,7 @@ class Solver:
     """(stretches of neighbouring points, function that solves the points of a stretch by their flat indices);
     replaces `solve`. None without stretches."""
 
-    def within(self, around: Around, together: SolveStretch | None = None, **changed: Any) -> "Solver":
+    def within(self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any) -> "Solver":
         """A copy whose solve of every point is wrapped by `around`, with changed fields.
 
         together: function that solves a stretch instead of the present function, if the solver has stretches.

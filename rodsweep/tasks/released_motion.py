@@ -10,12 +10,12 @@ from ..arrays import Array
 from ..discretization.elements.quadrature import lobatto_points
 from ..solve.exclusive import solving
 from .limit_cycle import LimitCycleTask
-from .running.in_memory import blas
+from .running.in_memory import blas_pool
 from .running.job import Job
 
-NODES = 33
+NODE_COUNT = 33
 """Number of Lobatto nodes of each shape."""
-FRAMES = 32
+FRAMES_PER_RETURN = 32
 """Number of shapes per return of the tip; an animation interpolates between the shapes."""
 MOTION_ACCURACY = 1e-5
 """Relative accuracy of the mesh on which the bent shape is computed, as of motions of the task
@@ -57,7 +57,7 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     rod = job.points.rod(0)
     beam = Beam(near_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
     z = np.zeros(beam.unknowns) if tip is None else held_by_tip(beam, *tip)
-    shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation(lobatto_points(NODES)).T
+    shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation(lobatto_points(NODE_COUNT)).T
     return shape
 
 
@@ -72,8 +72,9 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
 
     task = job.task
     assert isinstance(task, LimitCycleTask)
-    with blas().limit(limits=1, user_api="blas"):  # as in the command: threads change the order of sums
-        cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES))
+    # One thread, as in the command: threads change the order of sums.
+    with blas_pool().limit(limits=1, user_api="blas"):
+        cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES_PER_RETURN))
     if cycle.motion is None:
         return None
     x, y = cycle.motion.shapes

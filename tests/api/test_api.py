@@ -20,7 +20,7 @@ from surveyed import only
 import rodsweep as rs
 from rodsweep.api import options
 from rodsweep.api.answers.picture import SolvedShapes, in_python
-from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.asking import config_tree, job_from
 from rodsweep.cli import commands
 from rodsweep.config.document.reading import yaml_of
 from rodsweep.config.schema import Config
@@ -148,7 +148,7 @@ def test_sweep_gives_the_dataset_of_the_file(name, command, monkeypatch):
 
 def test_text_of_the_config_gives_the_same_points(tmp_path):
     """It is what ranks are given, and what the Dataset carries."""
-    tree = tree_of("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
+    tree = config_tree("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
     again = job_from(YAML(typ="safe").load(yaml_of(tree)))
     assert again.resolved == job_from(tree).resolved
     assert again.text == yaml_of(tree)
@@ -159,7 +159,7 @@ def test_what_yaml_has_read_can_be_given_as_keywords(name):
     tree = YAML(typ="safe").load(small.CONFIGS[name])
     whole = {key: value for key, value in tree.items() if key != "task"}
     task, keywords = keywords_of(small.CONFIGS[name])
-    assert tree_of(task, keywords) == tree_of(task, whole) == tree
+    assert config_tree(task, keywords) == config_tree(task, whole) == tree
 
 
 @pytest.mark.skipif(not (BIN / "mpiexec").exists() and not shutil.which("mpiexec"), reason="no mpiexec")
@@ -216,7 +216,7 @@ def test_a_process_that_cannot_solve_says_why(tmp_path, before, variables, code,
 
 @pytest.mark.parametrize("axis", [np.array([10, 20]), (10, 20.0), range(10, 30, 10), rs.linspace(10, 20, 2)])
 def test_axes_may_be_what_python_has(axis):
-    job = job_from(tree_of("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
+    job = job_from(config_tree("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
     assert [column.tolist() for column in job.points.columns] == [[10, 20], [1e4], [np.inf], [0]]
 
 

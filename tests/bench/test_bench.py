@@ -16,22 +16,28 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, left_out, peer_package, peers_of
+from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, peers_of
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.own import KRYLOV_SCHUR, PLAIN, PROVED, WANTED_MODES, own_spectrum
+from rodsweep.bench.spectrum.own import (
+    CERTIFIED_NAME,
+    KRYLOV_SCHUR,
+    UNCERTIFIED_NAME,
+    WANTED_MODES,
+    own_spectrum,
+)
 from rodsweep.bench.spectrum.study import (
     HARD_RODS,
     ORDERS,
     RACE,
-    every_size,
     hard_table,
     krylov_schur,
+    measure_hard_rods,
     spectrum_study,
 )
-from rodsweep.bench.study import Contender, Measurement, Study, contest, every_nth_setting, race
+from rodsweep.bench.study import Contender, Measurement, Study, every_nth_setting, measure_case, race
 from rodsweep.cli.benching import machine_attributes
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
@@ -99,7 +105,7 @@ def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
     bad = Contender("coarse", "3", "a", lambda arm: np.ones(WANTED_MODES, complex))
     lines = arm_table(arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
-    for name in (PLAIN, PROVED, KRYLOV_SCHUR):
+    for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR):
         (line,) = (line for line in lines if line.startswith(f"| {name} |"))
         assert re.fullmatch(r"\d+\.\d\d ms, \de-1\d", line.split(" | ")[1].rstrip(" |"))
     assert lines[-1].startswith("| coarse | no better than 1e+")
@@ -110,7 +116,7 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
         raise np.linalg.LinAlgError("no convergence")
 
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
-    rows = every_size([Contender("fails", "3", "a", fails)], 1)
+    rows = measure_hard_rods([Contender("fails", "3", "a", fails)], 1)
     assert rows[-1].error == np.inf
     assert rows[-1].failure == "failed (LinAlgError)"
     assert "| fails | failed |" in hard_table(rows)
@@ -134,7 +140,7 @@ def test_race_makes_long_runs_once_a_round(monkeypatch):
 
 def test_slow_method_is_run_once():
     runs = []
-    (measurement,) = contest(
+    (measurement,) = measure_case(
         "c", 3, [Contender("m", "s", "g", runs.append, slow=True)], 5, lambda _: {"error": 0.5}
     )
     assert runs == [3]
@@ -219,7 +225,7 @@ def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_ou
     done = command.afresh("bench", "spectrum", "--quick", "-o", "b.md", PYTHONPATH=str(tmp_path / "site"))
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "b.md").read_text()
-    sentence = left_out(["spectrum"])
+    sentence = peers_left_out(["spectrum"])
     assert f"\n\n{sentence}\n\n## spectrum" in text
     assert sentence in done.stdout
     assert sentence.count(". ") == 0
@@ -269,7 +275,7 @@ def test_a_study_without_peers_in_the_folder_has_none(tmp_path):
     assert package.__file__ == str(ROOT / "benchmarks" / "__init__.py")
     assert peers_of(package, "sweep", True, tmp_path) is NO_PEERS
     assert peers_of(None, "spectrum", True, tmp_path) is NO_PEERS
-    assert left_out(["sweep"]) == ""
+    assert peers_left_out(["sweep"]) == ""
 
 
 @pytest.mark.parametrize("missing", ["pyproject.toml", "benchmarks/__init__.py"])

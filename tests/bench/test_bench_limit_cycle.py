@@ -23,17 +23,17 @@ from rodsweep.bench.limit_cycle.sweeping import (
     ExactCycle,
     SweptRod,
     from_neighbour,
-    sweep_points,
+    measure_sweep_points,
     sweep_table,
 )
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,
     cycle_request,
-    judged_run,
     orbit_of,
-    reference,
     returns_of,
+    run_errors,
+    solve_reference,
 )
 from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender, Measurement, TimedRuns
@@ -46,7 +46,7 @@ COLD = ["cold, leading mode", "cold, Hopf point"]
 
 @cache
 def cycle():
-    return reference()
+    return solve_reference()
 
 
 def test_error_of_an_exact_run_is_that_of_the_measurement():
@@ -54,7 +54,7 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
     run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128)
-    assert judged_run(at, run)["error"] < 1e-8
+    assert run_errors(at, run)["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():
@@ -116,7 +116,7 @@ def test_the_reference_is_the_cycle_on_its_mesh():
 
 
 def test_points_of_a_sweep_are_as_accurate_as_they_say():
-    found = sweep_points(QUICK_RODS, 1)
+    found = measure_sweep_points(QUICK_RODS, 1)
     assert [m.method for m in found] == ["sweep over F", "sweep over k1", *COLD]
     for m in found:
         assert m.error <= m.extra["estimate"] <= ACCURACY
@@ -151,7 +151,7 @@ def test_the_benchmark_times_rodsweep_alone(tmp_path):
 
 def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     """One that fails, one that is rodsweep's own under another name, and a section of its own."""
-    monkeypatch.setattr("rodsweep.bench.limit_cycle.study.sweep_points", lambda *_: [])
+    monkeypatch.setattr("rodsweep.bench.limit_cycle.study.measure_sweep_points", lambda *_: [])
 
     def gives_up(leg):
         raise ArithmeticError("too stiff")

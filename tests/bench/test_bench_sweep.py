@@ -19,12 +19,18 @@ from rodsweep.bench.sweep.launch import (
     KILLED,
     CommandRun,
     SweepCase,
-    launcher,
+    launcher_words,
     run_case,
     spectrum_case,
     uneven_forces,
 )
-from rodsweep.bench.sweep.study import TWO_COMMANDS, growth_table, instant_table, measured, sweep_study
+from rodsweep.bench.sweep.study import (
+    TWO_COMMANDS,
+    growth_table,
+    instant_table,
+    sweep_measurement,
+    sweep_study,
+)
 from rodsweep.cli.benching import MEASURED_COMMAND
 from rodsweep.errors import EnvironmentIncomplete
 
@@ -51,7 +57,7 @@ def row(name, points, ranks, seconds, memory):
         )
         for s in (seconds, 2 * seconds, seconds)
     ]
-    return measured(case, ranks, runs)
+    return sweep_measurement(case, ranks, runs)
 
 
 @survey_only
@@ -64,17 +70,17 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
-    assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher(2))
+    assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher_words(2))
     assert "| no solver | 400 | 1 |" in study.text
     assert "| resumed | 400 | 1 |" in study.text
     assert growth_table([]) in study.text
     assert "| limit cycles | 2 | 1 |" in study.text
     assert "| 12 of F | 144 |" in study.text
-    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher(2))
+    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher_words(2))
     assert not study.drawable
     table = study.table()
     instant = [i for i, case in enumerate(table["case"]) if case == "no solver"]
-    assert len(instant) == (2 if launcher(2) else 1)
+    assert len(instant) == (2 if launcher_words(2) else 1)
     for name in ("ranks", "points", "points_per_second", "rss_megabytes", "file_bytes_per_point"):
         assert all(table[name][i] > 0 for i in instant), name
     assert all(np.isfinite(table["microseconds_overhead"][i]) for i in instant)

@@ -14,7 +14,7 @@ from rodsweep.bench.spectrum.arms import ARM_RACE, ARMS, UnsolvedArms, exact_arm
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.own import WANTED_MODES
 from rodsweep.bench.spectrum.study import HARD_RODS, RACE
-from rodsweep.bench.study import grouped
+from rodsweep.bench.study import grouped_by_fields
 from rodsweep.model.rod import Rod
 
 EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
@@ -33,7 +33,7 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
 @pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
 def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
     roots = exact_arm_spectrum(rod)
-    for (name,), own in grouped(arm_contenders(), "method").items():
+    for (name,), own in grouped_by_fields(arm_contenders(), "method").items():
         errors = [relative_error(contender.run(UnsolvedArms(rod)), roots) for contender in own]
         assert min(errors) < 1e-10, name
         assert errors[0] > 100 * min(errors), name

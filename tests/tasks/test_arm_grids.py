@@ -10,7 +10,7 @@ from contents import content, same
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.asking import config_tree, job_from
 from rodsweep.api.dataset import view_of
 from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
@@ -49,7 +49,7 @@ limit_cycle: {start: neighbour, harmonics: 2}
 
 
 def job(task, **keywords):
-    return job_from(tree_of(task, keywords))
+    return job_from(config_tree(task, keywords))
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from rodsweep.post.summary.arm.validity import validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import NOT_KNOWN, VALIDITY
 from rodsweep.results.layouts.phase_diagram import CLASSES
-from rodsweep.tasks.arm.validity import HOPF_POINTS, MOTION_OF_TASK, ArmValidity
+from rodsweep.tasks.arm.validity import HOPF_KINDS, MOTION_OF_TASK, ArmValidity
 
 SILICONE = {"radius": "5 mm", "young": "100 kPa", "viscosity": "4 Pa s"}
 LENGTHS = ["4 cm", "6 cm", "10 cm", "14 cm"]
@@ -112,7 +112,7 @@ def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
     assert row(record | {"class": np.array([[flutter] * 2])}).missed.tolist() == [True]
     assert row(record | {"class": np.array([[oscillatory] * 2])}).missed.tolist() == [False]
     back = record | {
-        "crossing_kind": np.array([[1, HOPF_POINTS[2], 0]]),
+        "crossing_kind": np.array([[1, HOPF_KINDS[2], 0]]),
         "crossing_frequency": np.array([[1.0, -5.0, 0]]),
     }
     assert row(back | {"class": np.array([[flutter, oscillatory]])}).frequency.tolist() == [5.0]

@@ -17,7 +17,7 @@ from ...post.tables.contents import POINTS
 from ...results.layouts import layout_of
 from ..solved import Result
 from .frames import frame_of, series_of
-from .printing import PrintedAnswer, brief_html, brief_text, first_lines, whole_html, whole_text
+from .printing import PrintedAnswer, brief_html, brief_text, heading_lines, whole_html, whole_text
 
 EIGENVALUE = ("growth_rate", "frequency")
 """Variables with the real and the imaginary part of an eigenvalue."""
@@ -186,7 +186,7 @@ class Answer:
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return PrintedAnswer(
             rod=rod,
-            heading=first_lines(rod, self.rod, self.status, self.sentence, self.message),
+            heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
             numbers=tuple(c for c in own if not c.absent[0]),
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),

@@ -22,7 +22,7 @@ from ...solve.exclusive import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
 from ..dataset import file_path
 from .answer import Answer
-from .tabling import view_for
+from .tabling import view_of_result
 
 P = ParamSpec("P")
 """Parameters of a decorated function."""
@@ -176,7 +176,7 @@ def plot(
             f"{short(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
         )
     values = choices_of(at)
-    views = [section(view_for(one, EXAMPLE), values) for one in several]
+    views = [section(view_of_result(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
     with TemporaryDirectory(prefix="rodsweep-") as place:

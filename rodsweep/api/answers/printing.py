@@ -55,7 +55,7 @@ class PrintedAnswer:
             yield f"none: {', '.join(self.absent)}"
 
 
-def first_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
+def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
     """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning.
 
     name: text of the rod. sentence: meaning of the status. message: of the solve. Without a result in a

@@ -37,10 +37,10 @@ def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ())
     names = [columns] if isinstance(columns, str) else columns
     if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
         raise InputError(f"columns = {short(columns)} is not a list of names, such as ['F', 'growth_rate']")
-    return frame_of(Tables(view_for(data, EXAMPLE)).table(name, tuple(names)).columns)
+    return frame_of(Tables(view_of_result(data, EXAMPLE)).table(name, tuple(names)).columns)
 
 
-def view_for(data: Any, example: str) -> View:
+def view_of_result(data: Any, example: str) -> View:
     """A result as the view that figures and tables read; InputError, with `example`, if `data` is no
     result.
     """

@@ -60,7 +60,7 @@ class IntegratorFamily:
         return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
-def by_petsc(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
+def petsc_run(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
     """Integrates a task by a scheme of PETSc TS, as in the task limit_cycle; ArithmeticError if this fails.
 
     family, variant: type of TS and name of the scheme, such as "arkimex" and "5".
@@ -77,7 +77,7 @@ WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances at which integrators run until the motion is periodic, from the loosest."""
 DEFAULT = IntegratorFamily(
     "ARKIMEX 5 (default)",
-    partial(by_petsc, "arkimex", "5"),
+    partial(petsc_run, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),
     WAITING_TOLERANCES,
 )

@@ -10,13 +10,13 @@ from math import inf, isfinite, log, nan
 import numpy as np
 
 from ...solve.motion.leading_mode import leading_mode
-from ..study import Contender, TimedRuns, by_method, race, table
+from ..study import Contender, TimedRuns, by_method, markdown_table, race
 from .integrators import IntegrationTask
 from .tracking import (
-    AMPLITUDE,
     CYCLE_FORCE,
     FOLLOWED_PERIODS,
     SETTLED_WITHIN,
+    START_DEFLECTION,
     ReferenceCycle,
     cycle_at,
     on_cycle,
@@ -26,11 +26,11 @@ from .tracking import (
 
 NEAR_HOPF_F = 27.43
 """Force 0.003 above the Hopf point, at which a motion approaches the cycle very slowly."""
-SOLVE = "solve_cycle"
+SOLVE_NAME = "solve_cycle"
 """Name, in the table, of the solution by rodsweep's solve_cycle."""
-WAITS = "waiting, "
+WAITING_PREFIX = "waiting, "
 """Beginning of the names, in the table, of integrations until the motion is periodic."""
-PERIODS_OF_WAIT = 15
+WAITING_PERIODS = 15
 """Duration, in periods, of an integration that should reach the cycle."""
 
 
@@ -64,13 +64,13 @@ class SettlingMethod:
             "force": self.force,
             "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
             "tolerance": self.setting,
-            "returns": f"{about}{self.returns:.0f}" if self.settled else f"not settled in {PERIODS_OF_WAIT}",
+            "returns": f"{about}{self.returns:.0f}" if self.settled else f"not settled in {WAITING_PERIODS}",
             "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.settled else "",
             "error": self.error if self.settled else nan,
         }
 
 
-def settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
+def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point; returns their table.
 
     every: contenders of the race WAITING.
@@ -78,7 +78,7 @@ def settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str
     waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
     cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
-    waits = [SettlingMethod(CYCLE_FORCE, SOLVE, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
+    waits = [SettlingMethod(CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
     waits += waiting.values()
     waits += _near_hopf([c for c in every if waiting[c.method].setting == c.setting])
     return settling_table(waits, race([wait.run for wait in waits], [rounds] * len(waits)))
@@ -87,13 +87,14 @@ def settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str
 def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
     """Table of the methods that reach the cycle: returns, times and errors."""
     return (
-        f"From a start of {AMPLITUDE:g} L to the settled cycle. Waiting ends when two successive returns "
+        f"From a start of {START_DEFLECTION:g} L to the settled cycle. Waiting ends when two successive "
+        "returns "
         f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
         "user is assumed to know this tolerance. solve_cycle has the same accuracy; its time includes the "
         f"choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is "
         f"estimated from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the "
         "time per period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
-    ) + table(
+    ) + markdown_table(
         "F | way | tolerance | returns | ms | error left",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
         [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
@@ -109,8 +110,10 @@ def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod
 
     settings: contenders of one integrator, from the loosest tolerance.
     """
-    leg = IntegrationTask(at.beam, AMPLITUDE * leading_mode(at.beam).z.real, PERIODS_OF_WAIT * at.period)
-    way = WAITS + settings[0].method
+    leg = IntegrationTask(
+        at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
+    )
+    way = WAITING_PREFIX + settings[0].method
     failed: tuple[str, ...] = ()
     for contender in settings:
         try:
@@ -139,10 +142,12 @@ def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
     leg = IntegrationTask(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    waits = [SettlingMethod(NEAR_HOPF_F, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF_F))]
+    waits = [
+        SettlingMethod(NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF_F))
+    ]
     for contender in settled:
         run = partial(contender.run, leg)
         times = count / FOLLOWED_PERIODS
-        way = WAITS + contender.method
+        way = WAITING_PREFIX + contender.method
         waits.append(SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLED_WITHIN, run, times))
     return waits

@@ -14,22 +14,22 @@ from ..peers import Peers
 from ..study import (
     Measurement,
     Study,
+    count_text,
     every_nth_setting,
-    grouped,
-    plural,
-    table,
+    grouped_by_fields,
+    markdown_table,
 )
 from .integrators import DEFAULT
-from .settling import settling
-from .sweeping import QUICK_RODS, RODS, sweep_introduction, sweep_points, sweep_table
+from .settling import compare_settling
+from .sweeping import QUICK_RODS, RODS, measure_sweep_points, sweep_introduction, sweep_table
 from .tracking import (
     CYCLE_FORCE,
     CYCLE_ORDER,
     FIG5_ROD,
     FOLLOWED_PERIODS,
-    TARGET,
-    reference,
-    work_precision,
+    TARGET_ERROR,
+    measure_following,
+    solve_reference,
 )
 
 ROUNDS = 9
@@ -51,12 +51,12 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
     """
     warm_up()
     rounds, stride = (QUICK_ROUNDS, 2) if quick else (ROUNDS, 1)
-    at = reference()
+    at = solve_reference()
     followers = every_nth_setting([*DEFAULT.followers(), *peers.of(FOLLOWING)], stride)
-    found = work_precision(at, followers, rounds)
+    found = measure_following(at, followers, rounds)
     blocks = [introduction(rounds), *peers.notes, work_table(found), target_table(found)]
-    blocks.append(settling(at, [*DEFAULT.waiters(), *peers.of(WAITING)], rounds))
-    undrawn = sweep_points(QUICK_RODS if quick else RODS, rounds)
+    blocks.append(compare_settling(at, [*DEFAULT.waiters(), *peers.of(WAITING)], rounds))
+    undrawn = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
     blocks += [sweep_introduction(), sweep_table(undrawn)]
     for section in peers.sections:
         text, further = section(rounds)
@@ -67,7 +67,9 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
         for case, error in DRAWN_ERRORS.items()
         for m in found
     ]
-    return Study("limit_cycle", "\n\n".join([*blocks, *peers.skipped]), drawn, "period", TARGET, undrawn)
+    return Study(
+        "limit_cycle", "\n\n".join([*blocks, *peers.skipped]), drawn, "period", TARGET_ERROR, undrawn
+    )
 
 
 def introduction(rounds: int) -> str:
@@ -79,14 +81,14 @@ def introduction(rounds: int) -> str:
         f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled rate and Jacobian; the "
         "tolerance is per component of the state, in units of the component's largest value. Errors of the "
         "period and of the largest tip y are relative and rms over 5 returns. Times are medians of "
-        f"{plural(rounds, 'interleaved round')}."
+        f"{count_text(rounds, 'interleaved round')}."
     )
 
 
 def work_table(measurements: Sequence[Measurement]) -> str:
     """Table of the race FOLLOWING: steps, time and errors of every method at every tolerance."""
     nothing = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
-    return table(
+    return markdown_table(
         "method | tolerance | steps a period | ms a period | error of period | error of amplitude",
         "{method} | {setting} | {failure}{steps:.1f} | {ms:.2f} | {period_error:.1e} | {amplitude_error:.1e}",
         [
@@ -101,20 +103,21 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 def target_table(measurements: Sequence[Measurement]) -> str:
     """Table of the race FOLLOWING at equal error: interpolated time of every method at the error TARGET."""
     at = {}
-    for (method,), own in grouped(measurements, "method").items():
+    for (method,), own in grouped_by_fields(measurements, "method").items():
         errors = [m.error for m in own]
         median = [m.seconds for m in own]
         least = [m.least_seconds for m in own]
-        at[method] = time_at(TARGET, errors, median), time_at(TARGET, errors, least)
+        at[method] = time_at(TARGET_ERROR, errors, median), time_at(TARGET_ERROR, errors, least)
     default, by_least = at[DEFAULT.name]
     rows = [
         {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / by_least}
         for method, (median, least) in at.items()
     ]
     return (
-        f"At an error of {TARGET:.0e}, the larger of the two errors, interpolated. The last column uses the "
+        f"At an error of {TARGET_ERROR:.0e}, the larger of the two errors, interpolated. The last column "
+        "uses the "
         "minimum times over all rounds, which depend less on the load of the machine:\n\n"
-    ) + table(
+    ) + markdown_table(
         "method | ms a period | times the default's time | by the least times",
         "{method} | {ms:.2f} | {ratio:.2f} | {by_least:.2f}",
         rows,

@@ -22,7 +22,15 @@ from ...solve.orbit.measures import CyclePath
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ...solve.orbit.orbit_mesh import mesh_of
-from ..study import Contender, JudgedCase, Measurement, grouped, middle, table, tournament
+from ..study import (
+    Contender,
+    JudgedCase,
+    Measurement,
+    grouped_by_fields,
+    markdown_table,
+    measure_cases,
+    nan_median,
+)
 from .tracking import REFERENCE_NEWTON_TOLERANCE, cycle_request, orbit_of
 
 RODS = (
@@ -44,17 +52,17 @@ SWEPT_PARAMETERS = NONLINEAR_PARAMETERS[:2]
 """Parameters along which the neighbour of a rod lies."""
 STEP_RATIO = 1.01
 """Ratio of the parameter values of two neighbouring points of the sweep."""
-WARM_UP_POINTS = 6
+WARM_UP_POINT_COUNT = 6
 """Number of points solved before the timed points, after which the mesh is chosen."""
-TIMED_POINTS = 22
+TIMED_POINT_COUNT = 22
 """Number of timed points: from one calibration of the mesh errors up to the next."""
 ACCURACY = 1e-7
 """Relative accuracy requested from rodsweep."""
 REFERENCE_ACCURACY = 1e-11
 """Relative accuracy of the reference cycles."""
-SWEEP = "sweep over "
+SWEEP_PREFIX = "sweep over "
 """Beginning of the names, in the table, of solutions that start from a neighbour's cycle."""
-COLD_START = "cold, "
+COLD_PREFIX = "cold, "
 """Beginning of the names, in the table, of solutions without a neighbour."""
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
 """Values of the option `start` for solutions without a neighbour, by name in the table."""
@@ -110,21 +118,23 @@ class SweptRod:
     workspace: NewtonWorkspace
 
 
-def swept(point: Rod, accuracy: float) -> SweptRod:
+def swept_rod(point: Rod, accuracy: float) -> SweptRod:
     """Solves the untimed points of the sweeps that end at a rod, and the reference cycle of the rod."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
         before: Neighbour | None = None
-        for k in range(WARM_UP_POINTS, 0, -1):
-            there = beyond(point, axis, k + TIMED_POINTS - 1)
-            before = settled(solve_cycle(there, cycle_request(accuracy), before, axis, workspace)).neighbour
+        for k in range(WARM_UP_POINT_COUNT, 0, -1):
+            there = earlier_rod(point, axis, k + TIMED_POINT_COUNT - 1)
+            before = require_cycle(
+                solve_cycle(there, cycle_request(accuracy), before, axis, workspace)
+            ).neighbour
         neighbours[axis] = before
     here = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
     return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours, workspace)
 
 
-def beyond(point: Rod, axis: str, steps: int) -> Rod:
+def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
     """Rod of the sweep along `axis` that comes `steps` points before the rod `point`, at larger values."""
     return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
 
@@ -132,21 +142,21 @@ def beyond(point: Rod, axis: str, steps: int) -> Rod:
 def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the timed points of a sweep along `axis`, each from its neighbour; returns the last cycle."""
     start = rod.neighbours[axis]
-    for k in range(TIMED_POINTS - 1, -1, -1):
-        there = beyond(rod.point, axis, k)
-        cycle = settled(solve_cycle(there, cycle_request(accuracy), start, axis, rod.workspace))
+    for k in range(TIMED_POINT_COUNT - 1, -1, -1):
+        there = earlier_rod(rod.point, axis, k)
+        cycle = require_cycle(solve_cycle(there, cycle_request(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the cycle of a rod without a neighbour; start: value of the option `start`."""
-    return settled(
+    return require_cycle(
         solve_cycle(rod.point, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
     )
 
 
-def settled(cycle: Cycle) -> Cycle:
+def require_cycle(cycle: Cycle) -> Cycle:
     """The cycle unchanged; raises ArithmeticError if the solve found no stable cycle."""
     if cycle.status != CycleStatus.cycle:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
@@ -157,24 +167,24 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
     """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and each cold start."""
     setting = f"{accuracy:.0e}"
     warm = [
-        Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy))
+        Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(from_neighbour, axis, accuracy))
         for axis in SWEPT_PARAMETERS
     ]
     cold = [
-        Contender(COLD_START + name, setting, COLD_START, partial(from_cold, start, accuracy))
+        Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(from_cold, start, accuracy))
         for name, start in COLD_STARTS.items()
     ]
     return warm + cold
 
 
-def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
+def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
     """Measurements of all contenders of `cycle_contenders` on all rods `points`, timed in turn."""
-    rods = [swept(point, ACCURACY) for point in points]
-    entries = [JudgedCase(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
-    return tournament(entries, cycle_contenders(ACCURACY), rounds)
+    rods = [swept_rod(point, ACCURACY) for point in points]
+    entries = [JudgedCase(rod_label(rod.point), rod, partial(cycle_errors, rod.exact)) for rod in rods]
+    return measure_cases(entries, cycle_contenders(ACCURACY), rounds)
 
 
-def name_of(point: Rod) -> str:
+def rod_label(point: Rod) -> str:
     """Label of a rod in the tables: F, k1, k2, gamma3, gamma1, and taper and law if not the default."""
     further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
     further += [] if point.build.standard else [point.build.law, point.build.section]
@@ -182,7 +192,7 @@ def name_of(point: Rod) -> str:
     return ", ".join([*(f"{value:g}" for value in values), *further])
 
 
-def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
+def cycle_errors(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
 
     The mesh and the multipliers are missing if the solve returned no orbit.
@@ -201,7 +211,8 @@ def sweep_introduction() -> str:
     """Description of `sweep_table` for the report."""
     return (
         f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
-        f"{STEP_RATIO - 1:.0%} between neighbours. The time is the mean of {TIMED_POINTS} points up to the "
+        f"{STEP_RATIO - 1:.0%} between neighbours. The time is the mean of {TIMED_POINT_COUNT} points up to "
+        "the "
         "rod, with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the "
         "choice of the mesh, the verdict, and the error estimate, which is the larger of the estimates for "
         "the period and for the extrema. Errors of the period and of the largest tip y are relative to a "
@@ -211,26 +222,31 @@ def sweep_introduction() -> str:
     )
 
 
-def milliseconds(m: Measurement) -> float:
+def milliseconds_per_point(m: Measurement) -> float:
     """Time of one point in milliseconds; nan for a failed point."""
-    points = TIMED_POINTS if m.method.startswith(SWEEP) else 1
+    points = TIMED_POINT_COUNT if m.method.startswith(SWEEP_PREFIX) else 1
     return nan if m.failure else 1e3 * m.seconds / points
 
 
 def sweep_table(measurements: Sequence[Measurement]) -> str:
     """Table of the cost of a point, a line for each rod and start, and of the medians over the rods."""
     lines = [
-        {"rod": m.case, "way": m.method, "ms": milliseconds(m), "failure": m.failure}
+        {"rod": m.case, "way": m.method, "ms": milliseconds_per_point(m), "failure": m.failure}
         | FAILED_COLUMNS
         | m.extra
         for m in measurements
     ]
     medians = [
-        {"rod": "median", "way": way, "ms": middle(map(milliseconds, own)), "failure": ""}
-        | {name: middle(m.extra.get(name, nan) for m in own) for name in FAILED_COLUMNS}
-        for (way,), own in grouped(measurements, "method").items()
+        {
+            "rod": "median",
+            "way": way,
+            "ms": nan_median(map(milliseconds_per_point, own)),
+            "failure": "",
+        }
+        | {name: nan_median(m.extra.get(name, nan) for m in own) for name in FAILED_COLUMNS}
+        for (way,), own in grouped_by_fields(measurements, "method").items()
     ]
-    return table(
+    return markdown_table(
         "F, k1, k2, gamma3, gamma1 | start | ms | error of period | error of amplitude | estimate | "
         "multipliers | order | intervals | stages",
         "{rod} | {way} | {failure}{ms:.1f} | {period_error:.0e} | {amplitude_error:.0e} | {estimate:.0e} | "

@@ -28,7 +28,7 @@ from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
-from ..study import Contender, Measurement, contest
+from ..study import Contender, Measurement, measure_case
 from .integrators import IntegrationTask
 
 FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -47,12 +47,12 @@ negligible."""
 FOLLOWED_PERIODS = 6.3
 """Duration of a run, in periods. Errors omit the first return, because the start is not exactly on the
 cycle."""
-TARGET = 1e-6
+TARGET_ERROR = 1e-6
 """Error at which integrators are compared: the larger of the relative errors of period and amplitude."""
 SETTLED_WITHIN = 1e-7
 """Accuracy requested from solve_cycle; also the relative distance between two successive returns at which an
 integrated motion counts as periodic."""
-AMPLITUDE = 0.1
+START_DEFLECTION = 0.1
 """Tip deflection, in L, of the start from which methods reach the cycle."""
 MAX_RETURNS = 300
 """Maximum number of returns of the tip that solve_cycle may integrate."""
@@ -83,7 +83,7 @@ class ReferenceCycle:
 
 def cycle_request(accuracy: float) -> CycleRequest:
     """Request for a cycle to a relative accuracy, without stored samples or shapes."""
-    return CycleRequest(accuracy, AMPLITUDE, 1, 0, 0, 0, MAX_RETURNS)
+    return CycleRequest(accuracy, START_DEFLECTION, 1, 0, 0, 0, MAX_RETURNS)
 
 
 def cycle_at(force: float) -> Cycle:
@@ -105,23 +105,23 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
 
 
-def reference() -> ReferenceCycle:
+def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
     orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     return ReferenceCycle(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 
-def work_precision(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
+def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
     """Measurements of all contenders that follow the reference cycle `at`; seconds are per period."""
     leg = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
-        for m in contest(f"F = {CYCLE_FORCE:g}", leg, list(contenders), rounds, partial(judged_run, at))
+        for m in measure_case(f"F = {CYCLE_FORCE:g}", leg, list(contenders), rounds, partial(run_errors, at))
     ]
 
 
-def judged_run(at: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
+def run_errors(at: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y.
 
     at: the reference cycle. The first return of the run does not count.

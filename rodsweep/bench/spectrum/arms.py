@@ -16,9 +16,18 @@ from ...model.material.profile import Profile
 from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
-from ..study import Contender, Measurement, contest, grouped, plural, table
+from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
 from .exact import relative_error
-from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
+from .own import (
+    CERTIFIED_NAME,
+    KRYLOV_SCHUR,
+    PENCIL,
+    THIS_TOOL,
+    UNCERTIFIED_NAME,
+    WANTED_MODES,
+    leading,
+    own_spectrum,
+)
 
 ARM_RACE = "arms"
 """Name of the race of spectra of arms."""
@@ -40,7 +49,7 @@ EDGE_ACCURACY = 1e-2
 """Accuracy for which the edges of the elements are chosen; a higher order makes the mesh more accurate."""
 TARGET = 1e-10
 """Relative error at which the methods are compared."""
-EXACT_REFINEMENT = 16.0
+REFERENCE_REFINEMENT = 16.0
 """Factor on |w| for which the elements of the reference D are chosen."""
 NEWTON_STEP_COUNT = 3
 """Number of Newton steps on the reference D."""
@@ -67,7 +76,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     determinant = ArmDeterminant(rod)
     roots: list[complex] = own_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
-        values = [determinant.value_at_level(w, EXACT_REFINEMENT) for w in roots]
+        values = [determinant.value_at_level(w, REFERENCE_REFINEMENT) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
 
@@ -77,7 +86,7 @@ def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
     measurements = []
     for name, rod in ARMS.items():
         judge = partial(_judged, exact_arm_spectrum(rod))
-        measurements += contest(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
+        measurements += measure_case(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
 
 
@@ -89,15 +98,18 @@ def _judged(exact: list[complex], w: Complex) -> dict[str, float]:
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size that reaches TARGET."""
     rows = [
-        {"method": method, "cells": " | ".join(_cheapest(own) for own in grouped(every, "case").values())}
-        for (method,), every in grouped(measurements, "method").items()
+        {
+            "method": method,
+            "cells": " | ".join(_cheapest(own) for own in grouped_by_fields(every, "case").values()),
+        }
+        for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
     return (
         f"Leading {WANTED_MODES} eigenvalues of arms to {TARGET:.0e}: ms and error of the cheapest size that "
-        f"reaches this error, {plural(rounds, 'round')}. Cones have half the radius at their tips, the "
+        f"reaches this error, {count_text(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
         "Errors are distances from the roots of D on elements for 16 times the |w|:\n\n"
-    ) + table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
+    ) + markdown_table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
 
 
 def _cheapest(measurements: Sequence[Measurement]) -> str:
@@ -134,8 +146,8 @@ def _own(certify: bool, arms: UnsolvedArms) -> Complex:
 def contenders() -> list[Contender]:
     """Contenders of ARM_RACE: rodsweep with and without certificate, and Krylov-Schur at all orders."""
     own = [
-        Contender(PLAIN, "", THIS_TOOL, partial(_own, False)),
-        Contender(PROVED, "", THIS_TOOL, partial(_own, True)),
+        Contender(UNCERTIFIED_NAME, "", THIS_TOOL, partial(_own, False)),
+        Contender(CERTIFIED_NAME, "", THIS_TOOL, partial(_own, True)),
     ]
     krylov = [
         Contender(KRYLOV_SCHUR, str(order), PENCIL, partial(on_arm, _krylov_schur, order)) for order in ORDERS

@@ -22,7 +22,7 @@ MAX_ROOT_DISTANCE = 20
 value; a root farther away counts as a different root."""
 
 
-def determinant(rod: Rod) -> Callable[[Any], Any]:
+def multiprecision_determinant(rod: Rod) -> Callable[[Any], Any]:
     """The characteristic determinant D of a rod as a function of w, in multiple precision (mpmath).
 
     D is that of `rodsweep.determinant.value`; the parameters of the rod are taken as exact.
@@ -56,7 +56,7 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
     roots = []
     with mp.workdps(DIGITS + GUARD_DIGITS):
-        D = determinant(rod)
+        D = multiprecision_determinant(rod)
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)

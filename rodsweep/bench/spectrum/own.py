@@ -10,9 +10,9 @@ WANTED_MODES = 4
 """Number of leading eigenvalues that every method computes."""
 ACCURACY = 1e-12
 """Relative accuracy requested from rodsweep, whose error does not depend on the request."""
-PLAIN = "rodsweep, certificate off"
+UNCERTIFIED_NAME = "rodsweep, certificate off"
 """Name of rodsweep without certificate in the tables."""
-PROVED = "rodsweep, certificate on"
+CERTIFIED_NAME = "rodsweep, certificate on"
 """Name of rodsweep with certificate in the tables."""
 KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
 """Name of SLEPc's Krylov-Schur on rodsweep's pencil in the tables."""

@@ -22,18 +22,27 @@ from ..study import (
     Contender,
     Measurement,
     Study,
-    contest,
+    count_text,
     every_nth_setting,
-    failsafe,
-    grouped,
-    middle,
-    plural,
+    grouped_by_fields,
+    markdown_table,
+    measure_case,
+    nan_median,
     race,
-    table,
+    result_or_error,
 )
 from .arms import ARM_RACE, arm_spectra, arm_table
 from .exact import exact_spectrum, relative_error
-from .own import KRYLOV_SCHUR, PENCIL, PLAIN, PROVED, THIS_TOOL, WANTED_MODES, leading, own_spectrum
+from .own import (
+    CERTIFIED_NAME,
+    KRYLOV_SCHUR,
+    PENCIL,
+    THIS_TOOL,
+    UNCERTIFIED_NAME,
+    WANTED_MODES,
+    leading,
+    own_spectrum,
+)
 
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Orders of rodsweep's pencil at which eigensolvers are run."""
@@ -80,14 +89,16 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
     every = contenders() + peers.of(RACE)
     targets = TARGETS[: 1 if quick else None]
-    blocks = [equal_errors(every, rods, exact, target, rounds) for target in targets]
-    measurements = every_size(every_nth_setting(every, stride), rounds)
+    blocks = [equal_error_table(every, rods, exact, target, rounds) for target in targets]
+    measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
     arms = arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_table(measurements), arm_table(arms, rounds), *peers.skipped]
     return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0], undrawn=arms)
 
 
-def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
+def cheapest_contenders(
+    every: Sequence[Contender], rod: Rod, exact: list[Any], target: float
+) -> dict[str, Contender]:
     """For every method that reaches the error `target` on a rod, its contender with the smallest such size.
 
     every: contenders of all methods, sizes increasing. exact: exact eigenvalues of the rod.
@@ -95,22 +106,22 @@ def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: flo
     found: dict[str, Contender] = {}
     for contender in every:
         if contender.method not in found:
-            error = relative_error(failsafe(contender.run, rod), exact)
+            error = relative_error(result_or_error(contender.run, rod), exact)
             found |= {contender.method: contender} if error <= target else {}
     return found
 
 
-def equal_errors(
+def equal_error_table(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
     """Times all methods, at each rod's smallest size with the error `target`; returns their table.
 
     exact: exact eigenvalues of each rod.
     """
-    fit = [cheapest(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
+    fit = [cheapest_contenders(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
-        (name, i): partial(failsafe, fit[i][name].run, rod)
+        (name, i): partial(result_or_error, fit[i][name].run, rod)
         for name in names
         for i, rod in enumerate(rods)
         if name in fit[i]
@@ -122,32 +133,32 @@ def equal_errors(
         row = {
             "method": name,
             "points": len(reached),
-            "ms": 1e3 * middle(timed[name, i].median for i in reached),
+            "ms": 1e3 * nan_median(timed[name, i].median for i in reached),
             "worst": max((relative_error(timed[name, i].outcome, exact[i]) for i in reached), default=nan),
-            "ratio": middle(timed[name, i].median / timed[PLAIN, i].median for i in reached),
+            "ratio": nan_median(timed[name, i].median / timed[UNCERTIFIED_NAME, i].median for i in reached),
         }
         rows.append(row)
     return (
         f"Leading {WANTED_MODES} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
         f"this error; median over {len(rods)} points of the paper's four rods, "
-        f"{plural(rounds, 'round')}:\n\n"
-    ) + table(
+        f"{count_text(rounds, 'round')}:\n\n"
+    ) + markdown_table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
         rows,
     )
 
 
-def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
+def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measurement]:
     """Measurements of the contenders `every` on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(judged_spectrum, exact_spectrum(rod, WANTED_MODES))
-        measurements += contest(case, rod, every, rounds, judge)
+        judge = partial(spectrum_error, exact_spectrum(rod, WANTED_MODES))
+        measurements += measure_case(case, rod, every, rounds, judge)
     return measurements
 
 
-def judged_spectrum(exact: list[Any], w: Complex) -> dict[str, float]:
+def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
     """Field `error` of `Measurement` for eigenvalues w, (modes,)."""
     return {"error": relative_error(w, exact)}
 
@@ -155,17 +166,20 @@ def judged_spectrum(exact: list[Any], w: Complex) -> dict[str, float]:
 def hard_table(measurements: Sequence[Measurement]) -> str:
     """Table of hard rods: the smallest error of every method, and its time for ten times this error."""
     rows = [
-        {"method": method, "cells": " | ".join(best(own) for own in grouped(every, "case").values())}
-        for (method,), every in grouped(measurements, "method").items()
+        {
+            "method": method,
+            "cells": " | ".join(hard_cell(own) for own in grouped_by_fields(every, "case").values()),
+        }
+        for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
     return (
         f"Leading {WANTED_MODES} eigenvalues of hard rods: the smallest relative error that a method reaches "
         "at any size, and the ms of the cheapest size with at most ten times this error (the figure shows "
         "all sizes):\n\n"
-    ) + table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
+    ) + markdown_table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
-def best(measurements: Sequence[Measurement]) -> str:
+def hard_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `hard_table` for one method on one rod; measurements: at all sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
@@ -191,7 +205,7 @@ def krylov_schur(rod: Rod, size: int) -> Complex:
 def contenders() -> list[Contender]:
     """Contenders of RACE: rodsweep with and without certificate, and Krylov-Schur at all sizes."""
     return [
-        Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
-        Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),
+        Contender(UNCERTIFIED_NAME, "", THIS_TOOL, partial(own_spectrum, certify=False)),
+        Contender(CERTIFIED_NAME, "", THIS_TOOL, partial(own_spectrum, certify=True)),
         *(Contender(KRYLOV_SCHUR, str(size), PENCIL, partial(krylov_schur, size=size)) for size in ORDERS),
     ]

@@ -6,8 +6,8 @@ from math import nan, prod
 from pathlib import Path
 
 from ...results.file.view import read_view
-from ..study import Measurement, table
-from .launch import CONFIG, RESULT, SOLVED, CommandRun, SweepCase
+from ..study import Measurement, markdown_table
+from .launch import CONFIG_NAME, RESULT, SOLVED, CommandRun, SweepCase
 
 FOLLOWED_CONFIG = """
 task: spectrum
@@ -70,7 +70,7 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
             text = FOLLOWED_CONFIG.format(
                 *shape, str(method == FOLLOWED).lower(), F_max=axis.F_max, taper=axis.taper
             )
-            (directory / CONFIG).write_text(text)
+            (directory / CONFIG_NAME).write_text(text)
             case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)
             found.append(followed_measurement(case, method, run(case, 1)))
     return found
@@ -103,7 +103,7 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
         "loading of compiled code, scheduling and storing; µs of the solver are from `seconds` in the file. "
         '"With a mesh" counts points that could not be followed or not be proved. Cones have half the '
         "radius at their tips:\n\n"
-    ) + table(
+    ) + markdown_table(
         "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
         "| MB a rank",
         "{axis} | {points:.0f} | {seconds:.2f} | {microseconds:.1f} | {microseconds_solving:.1f} "

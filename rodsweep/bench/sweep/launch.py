@@ -31,7 +31,7 @@ OTHER_RANKS = "other"
 """Beginning of the names of the files with the peak memory of all other ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; random results at once; random results and a kill at the last point."""
-CONFIG = "c.yaml"
+CONFIG_NAME = "c.yaml"
 """Name of the config in the directory of a sweep."""
 SPECTRUM_CONFIG = """
 task: spectrum
@@ -71,7 +71,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
     directory.mkdir()
-    (directory / CONFIG).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
+    (directory / CONFIG_NAME).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
     return SweepCase(name, 2 * forces * softnesses, (directory,), kind)
 
 
@@ -82,7 +82,7 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in uneven_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
-    (directory / CONFIG).write_text(CYCLE_CONFIG)
+    (directory / CONFIG_NAME).write_text(CYCLE_CONFIG)
     return SweepCase("limit cycles", points, (directory,), kind)
 
 
@@ -126,7 +126,7 @@ class CommandRun:
     """Fraction of the ranks' time spent on points instead of waiting; nan without the real solver."""
 
 
-def launcher(ranks: int) -> list[str]:
+def launcher_words(ranks: int) -> list[str]:
     """Words that start a command on several ranks; empty without mpiexec."""
     beside = Path(sys.executable).with_name("mpiexec")
     found = str(beside) if beside.exists() else shutil.which("mpiexec")
@@ -140,7 +140,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     """
     others = _seconds_of_others()
     began = time.monotonic()
-    words = [*launcher(ranks), *command]
+    words = [*launcher_words(ranks), *command]
     started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
     said = [_inside(process, case.kind) for process in started]
     seconds = time.monotonic() - began
@@ -163,7 +163,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
-    run = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
+    run = ["run", CONFIG_NAME, "-o", RESULT, *(["--fresh"] if fresh else [])]
     return subprocess.Popen(
         [*words, str(notes), kind, *run],
         cwd=directory,

@@ -15,7 +15,16 @@ from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ..peers import Peers
 from ..spectrum.arms import SEGMENTS
-from ..study import Contender, Measurement, Study, contest, grouped, middle, plural, table
+from ..study import (
+    Contender,
+    Measurement,
+    Study,
+    count_text,
+    grouped_by_fields,
+    markdown_table,
+    measure_case,
+    nan_median,
+)
 
 ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds: names of the races, of fields of `ThresholdCase`, and of kinds in rodsweep's
@@ -103,7 +112,7 @@ ARM_INTRODUCTION = (
     "0.5 and 0.8. rodsweep finds all changes in 0 < F < 60 to the requested accuracy of 1e-10."
 )
 """Description of the tables of arms for the report."""
-TITLES = {ONSET: "onset", HOPF: "Hopf point"}
+KIND_TITLES = {ONSET: "onset", HOPF: "Hopf point"}
 """Names of the kinds of thresholds in the tables."""
 ROUNDS = 5
 """Number of timed rounds."""
@@ -130,8 +139,8 @@ def thresholds_study(quick: bool, peers: Peers) -> Study:
     found = []
     for group in (cases, ARM_CASES):
         blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
-        for kind in TITLES:
-            measured = timed_on(kind, group, contenders(kind) + peers.of(kind), rounds)
+        for kind in KIND_TITLES:
+            measured = measure_rods(kind, group, contenders(kind) + peers.of(kind), rounds)
             blocks.append(threshold_table(kind, measured))
             found += measured
     return Study("thresholds", "\n\n".join([*blocks, *peers.skipped]), found, "rod")
@@ -159,18 +168,18 @@ def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThresho
     return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
 
 
-def timed_on(
+def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
     """Measurements of the contenders `every` of one kind of threshold on each rod."""
     measurements = []
     for case in cases:
-        name = f"{case.name}, {TITLES[kind]}"
-        measurements += contest(name, case, every, rounds, partial(judged_threshold, case, kind))
+        name = f"{case.name}, {KIND_TITLES[kind]}"
+        measurements += measure_case(name, case, every, rounds, partial(threshold_error, case, kind))
     return measurements
 
 
-def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
+def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
     """Fields of `Measurement` for a computed threshold: error, failure, work, digits per eigenproblem.
 
     Digits are correct decimal digits, 0 if the threshold was missed.
@@ -189,9 +198,9 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     """
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
-    for (method, setting), own in grouped(measurements, "method", "setting").items():
+    for (method, setting), own in grouped_by_fields(measurements, "method", "setting").items():
         solves, determinants, products, digits = (
-            middle(m.extra.get(name, nan) for m in own)
+            nan_median(m.extra.get(name, nan) for m in own)
             for name in ("eigenproblems", "determinants", "products", "digits")
         )
         work = "" if isnan(solves) else f"{solves:.0f}"
@@ -199,9 +208,9 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
             work += "" if isnan(count) else f"{', ' * bool(work)}{count:.0f} {what}"
         errors = [m.failure or ("none" if isnan(m.error) else f"{m.error:.0e}") for m in own]
         row = {"method": method, "setting": setting, "work": work, "digits": digits}
-        rows.append(row | {"ms": middle(1e3 * m.seconds for m in own), "errors": " | ".join(errors)})
-    return table(
-        f"{TITLES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | {' | '.join(rods)}",
+        rows.append(row | {"ms": nan_median(1e3 * m.seconds for m in own), "errors": " | ".join(errors)})
+    return markdown_table(
+        f"{KIND_TITLES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | {' | '.join(rods)}",
         "{method} | {setting} | {ms:.1f} | {work} | {digits:.2g} | {errors}",
         rows,
     )
@@ -211,7 +220,8 @@ def introduction(rounds: int) -> str:
     """Description of the tables of uniform rods for the report; rounds: number of timed rounds."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{plural(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at once. "
+        f"{count_text(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at "
+        "once. "
         "It evaluates D in addition to its eigenproblems, and locates each change to rounding, whatever "
         "accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
     )

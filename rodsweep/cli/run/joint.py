@@ -16,9 +16,9 @@ from ...sweep.loop import Indices, Loop, RankWork, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import NoClaims, RankListener, StopRequest
 from ...sweep.team import Team
-from ...tasks.protocol import Arrays, JointVariables
+from ...tasks.protocol import JointVariables, NamedArrays
 from ...tasks.running.unforeseen import RUN_ENDING_EXCEPTIONS, UnitNote
-from ...watch import Stopped, reporting_to
+from ...watch import SolveStopped, reporting_to
 
 UNIT_NOUN = "halves of curves"
 """Name of the units of work in the progress display: a curve is followed in two directions from its start."""
@@ -51,20 +51,20 @@ class JointWork:
         self.note = note
         self.stop = stop
         self.kept = UnitResults(journal_directory(output), fingerprint)
-        self.results: dict[int, Arrays] = {}
+        self.results: dict[int, NamedArrays] = {}
         """Results of all finished units, on the first rank only."""
 
     def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
         """Solves all units still wanted, on all ranks. title: of the progress display; None for no
         display.
         """
-        found: dict[int, Arrays] = {}
+        found: dict[int, NamedArrays] = {}
 
-        def keep(unit: Indices, result: Arrays) -> None:
+        def keep(unit: Indices, result: NamedArrays) -> None:
             self.kept.write(int(unit), result)
             found[int(unit)] = result
 
-        def taken() -> dict[int, Arrays]:
+        def taken() -> dict[int, NamedArrays]:
             new = found.copy()
             found.clear()
             return new
@@ -99,7 +99,7 @@ class JointWork:
         for starts in self.team.exchange(self.together.starts(units, wanted)):
             self.together.take(starts)
 
-    def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, Arrays]]:
+    def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
             yield unit, self.together.solve(units, unit)
         except RUN_ENDING_EXCEPTIONS:
@@ -115,6 +115,6 @@ class JointWork:
         """
         if units is not None and units.wanted(self.results):
             return None
-        with suppress(Stopped), reporting_to(RankListener(NoClaims(), self.stop)):
+        with suppress(SolveStopped), reporting_to(RankListener(NoClaims(), self.stop)):
             return self.together.variables(read_view(self.output), units, self.results)
         return None

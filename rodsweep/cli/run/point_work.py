@@ -24,7 +24,7 @@ from ...sweep.team import Team
 from ...tasks.protocol import Solver
 from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
-from .contribution import Contribution
+from .contribution import RankReport
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ class PointWork:
 
     def solve(
         self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
-    ) -> Contribution:
+    ) -> RankReport:
         """Solves units of work together with all other ranks; writes this rank's results into its journal.
 
         units, count: from `units`. prepare: called before the first solve.
@@ -95,7 +95,7 @@ class PointWork:
             ) from error
         finally:
             shown.close()
-        return Contribution(host=socket.gethostname(), failures=list(reasons.examples.values()), share=share)
+        return RankReport(host=socket.gethostname(), failures=list(reasons.examples.values()), share=share)
 
     def _solve_unit(
         self, missing: IndexSet, directory: Path

@@ -18,12 +18,12 @@ from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.running.failures import parameters_in_words
 from ...tasks.running.job import Job, job_of, plan_of
-from ...tasks.running.unforeseen import TracebackLog, guarded
+from ...tasks.running.unforeseen import TracebackLog, guarded_solver
 from ...wording import counted
-from ..beforehand import say_stopped, shared_flutter_forces, with_shared_constants
+from ..beforehand import report_stop, shared_flutter_forces, with_shared_constants
 from .contribution import (
     MAX_FAILURES_PRINTED,
-    Contribution,
+    RankReport,
     RunEnd,
     last_run_attributes,
     run_history,
@@ -44,7 +44,7 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
         config, text = team.on_first(lambda: load_config(path, options.overrides))
         flutter = shared_flutter_forces(config, team, stop)
         if flutter is None:
-            say_stopped(team, stop)
+            report_stop(team, stop)
             return STOPPED_STATUS
         job = team.on_first(lambda: job_of(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
@@ -70,7 +70,7 @@ class _RankRun:
         self.started = provenance.now()
         self.seconds = 0.0
         self.log = TracebackLog(output, team.rank, self._where, options.strict)
-        self.solver = guarded(job.solver(), job.layout, self.log)
+        self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
@@ -96,7 +96,7 @@ class _RankRun:
         if self.team.on_first(lambda: replaces or not self.output.exists()):
             plan = with_shared_constants(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
-                say_stopped(self.team, self.stop)
+                report_stop(self.team, self.stop)
                 return STOPPED_STATUS
             self.plan = plan
         missing = self.team.on_first(self._open)
@@ -108,7 +108,7 @@ class _RankRun:
             if self.joint and self._lacks_curves(index_count(missing) - count):
                 kept += ", then curves through all"
             self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
-        contributions: list[Contribution] = []
+        contributions: list[RankReport] = []
         if count:
             self.team.on_first(self._note_kernels)
             contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
@@ -127,7 +127,7 @@ class _RankRun:
         """
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[Contribution]) -> JointDue:
+    def _fold(self, count: int, contributions: list[RankReport]) -> JointDue:
         """Writes the points of all journals into the file; returns the joint work that is still due.
 
         count: number of points to be solved in this run.
@@ -189,7 +189,7 @@ class _RankRun:
             self.joint.kept.drop()
         return False
 
-    def _say_failures(self, contributions: list[Contribution], exceptions: int) -> None:
+    def _say_failures(self, contributions: list[RankReport], exceptions: int) -> None:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
@@ -208,7 +208,7 @@ class _RankRun:
     def _finish(
         self,
         count: int,
-        contributions: list[Contribution],
+        contributions: list[RankReport],
         joint: JointDue,
         shares: list[RankWork],
         exceptions: int,

@@ -29,7 +29,7 @@ SMALLEST_OUTCOME = 10_000
 """Minimum assumed memory of an outcome, in bytes: an outcome has more fields than the stored variables."""
 
 
-class NoRod(PointStatus):
+class NoRodStatus(PointStatus):
     """Statuses, in every task, of points of an arm to which no rod corresponds."""
 
     not_slender = (
@@ -54,10 +54,10 @@ class NoRod(PointStatus):
 
 
 @dataclass(frozen=True, slots=True)
-class UncoveredPoint:
+class OutcomeWithoutRod:
     """Outcome of a point of an arm to which no rod corresponds."""
 
-    status: NoRod
+    status: NoRodStatus
     message: str = ""
 
 
@@ -142,8 +142,8 @@ class _Outcomes:
 class SkippingSolver:
     """A solver that skips the points to which no rod corresponds and gives these points fill values.
 
-    coverage: SLENDER for points with a rod, else a value of `NoRod`, (points,). failures: additional messages
-    by index of the point.
+    coverage: SLENDER for points with a rod, else a value of `NoRodStatus`, (points,). failures: additional
+    messages by index of the point.
     """
 
     inner: Solver
@@ -153,20 +153,20 @@ class SkippingSolver:
 
     def solver(self) -> Solver:
         """The solver of all points, with or without a rod."""
-        statuses = (*self.inner.statuses, *NoRod)
+        statuses = (*self.inner.statuses, *NoRodStatus)
         return self.inner.within(self._solve, self._together, record=self._record, statuses=statuses)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.coverage[index] == SLENDER:
             return solve()
-        return UncoveredPoint(self._status(index), self.failures.get(index, "")), None
+        return OutcomeWithoutRod(self._status(index), self.failures.get(index, "")), None
 
-    def _status(self, index: int) -> NoRod:
+    def _status(self, index: int) -> NoRodStatus:
         """Status of a point without a rod."""
-        return next(status for status in NoRod if status == self.coverage[index])
+        return next(status for status in NoRodStatus if status == self.coverage[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
-        if not isinstance(outcome, UncoveredPoint):
+        if not isinstance(outcome, OutcomeWithoutRod):
             return self.inner.record(index, outcome)
         return self._empty | {STATUS.name: int(outcome.status)}
 

@@ -39,7 +39,7 @@ AT_REST_STATUSES: dict[str, tuple[str, ...]] = {
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
 """By task, the unsuccessful statuses at which an arm without a stored Hopf point counts as at rest."""
-HOPF_POINTS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
+HOPF_KINDS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
 """Values of the variable crossing_kind that are Hopf points."""
 CLASSES_WITH_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
 """Values of the variable class, in a phase diagram, of rods that flutter or may flutter."""
@@ -76,7 +76,7 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     """
 
     def found(record: Record) -> ArmMotion:
-        hopf = np.isin(record["crossing_kind"], HOPF_POINTS)
+        hopf = np.isin(record["crossing_kind"], HOPF_KINDS)
         first = np.argmax(hopf, axis=-1, keepdims=True)
         there = hopf.any(axis=-1)
         pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))

@@ -114,12 +114,12 @@ def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
             yield {f"change_{name}": value for name, value in named.items()}
 
 
-Steps = NDArray[np.int64]
+NeighbourPairs = NDArray[np.int64]
 """Pairs of neighbouring points on lines, (steps, 3): (line, index of the first, index of the second
 point)."""
 
 
-def _sign_changes(w: Complex) -> Steps:
+def _sign_changes(w: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which the leading growth rate changes its sign.
 
     w: eigenvalues, (lines, n, modes).
@@ -130,7 +130,7 @@ def _sign_changes(w: Complex) -> Steps:
     return np.stack([line, before, behind], axis=-1)[differ]
 
 
-def _new_pairs(w: Complex) -> Steps:
+def _new_pairs(w: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which two leading real eigenvalues become a complex pair.
 
     w: eigenvalues, (lines, n, modes).
@@ -153,7 +153,7 @@ def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
     return line[1:][together], point[:-1][together], point[1:][together]
 
 
-def _by_line(steps: Steps) -> dict[int, list[tuple[int, int]]]:
+def _by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
     """Pairs (index of the first point, index of the second point) by line."""
     found: dict[int, list[tuple[int, int]]] = {}
     for line, before, behind in steps.tolist():

@@ -30,11 +30,11 @@ from ..arm.points import SkippingSolver, sharing_equal_rods
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
-LARGEST_FILE = 2**63 - 1
+MAX_FILE_BYTES = 2**63 - 1
 """Maximum size of a file in bytes; also the maximum number of points."""
-BYTES_A_VALUE = 40
+BYTES_PER_VALUE = 40
 """Memory per value of an axis while a run is set up, in bytes: four arrays; 33 to 36 bytes were measured."""
-LARGEST_RECORD = 100_000_000
+MAX_RECORD_BYTES = 100_000_000
 """Maximum size of the results of one point in bytes: they are held in memory and written at once."""
 
 
@@ -102,7 +102,7 @@ class Job:
         )
 
 
-def memory() -> int:
+def machine_memory() -> int:
     """Memory of this machine in bytes."""
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
@@ -124,26 +124,27 @@ def job_of(
     None to solve for these forces. Raises InputError if the results do not fit into memory or a file.
     """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
-    if values * BYTES_A_VALUE > memory():
+    if values * BYTES_PER_VALUE > machine_memory():
         raise InputError(
             f"{path}: parameters make {grid_size(config):.6g} points, whose axes of {values:.6g} values take "
-            f"{values * BYTES_A_VALUE / 1e9:.3g} GB, more than the {memory() / 1e9:.3g} GB of memory of this "
+            f"{values * BYTES_PER_VALUE / 1e9:.3g} GB, more than the {machine_memory() / 1e9:.3g} GB of "
+            "memory of this "
             "machine; use fewer values"
         )
     count = grid_size(config)
     resolved = canonical(config)
     layout = layout_of(resolved)
     each = layout.bytes_per_point
-    if count * each > LARGEST_FILE:
+    if count * each > MAX_FILE_BYTES:
         raise InputError(
             f"{path}: parameters make a grid of {count:.6g} points, whose results take "
-            f"{count * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
+            f"{count * each:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); use "
             "fewer values"
         )
-    if each > LARGEST_RECORD:
+    if each > MAX_RECORD_BYTES:
         raise InputError(
             f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
-            f"{LARGEST_RECORD / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
+            f"{MAX_RECORD_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
             "values are stored"
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)

@@ -28,9 +28,9 @@ from ..protocol import Solver
 
 RUN_ENDING_EXCEPTIONS = (Refusal, OSError)
 """Exceptions that concern the whole run, not a point: the run ends with a sentence."""
-MAX_NOTES = 1000
+MAX_LOGGED_EXCEPTIONS = 1000
 """Maximum number of exceptions that a rank writes into the log; more exceptions would repeat the same bug."""
-FAILED = "failed"
+FAILED_STATUS = "failed"
 """Status, in every task, of a point with an unforeseen exception in the solver."""
 PointNote = Callable[[Sequence[int], Exception], None]
 """Function called with the flat indices of the points that a solver solved together, and its exception."""
@@ -47,7 +47,7 @@ class RecordedOutcome:
     values: dict[str, Any]
 
 
-def guarded(solver: Solver, layout: Layout, note: PointNote) -> Solver:
+def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
     After an exception in a stretch, each point of the stretch is solved alone, so that only the points that
@@ -58,7 +58,7 @@ def guarded(solver: Solver, layout: Layout, note: PointNote) -> Solver:
 
 @dataclass(frozen=True, slots=True)
 class _Guard:
-    """Makes the guarded solver of `guarded` from the solver `inner`."""
+    """Makes the guarded solver of `guarded_solver` from the solver `inner`."""
 
     inner: Solver
     layout: Layout
@@ -85,7 +85,7 @@ class _Guard:
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
         """Outcome of a failed point, with the fill value of every variable."""
-        status = next(status for status in self.inner.statuses if status.name == FAILED)
+        status = next(status for status in self.inner.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_unforeseen(error), self.layout.empty_point | values)
 
@@ -154,7 +154,7 @@ class TracebackLog:
         is appended.
         """
         self.count += 1
-        if self.count <= MAX_NOTES:
+        if self.count <= MAX_LOGGED_EXCEPTIONS:
             self._write(place, error)
         if self.strict:
             error.add_note(f"at {place}")
