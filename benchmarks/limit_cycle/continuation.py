@@ -102,7 +102,7 @@ def measure_continuation(
         run = partial(continue_cycles, program, starts[setting.order], setting, step)
         runs += [partial(result_or_error, run, cycles) for cycles in (SHORT_RUN_CYCLES, LONG_RUN_CYCLES)]
     raced = race(runs, [rounds] * len(runs))
-    ours, exact = len(REQUESTED_ACCURACIES), rods[-1].exact
+    ours, exact = len(REQUESTED_ACCURACIES), rods[-1].exact_cycle
     own = [
         judged_measurement(
             exact,

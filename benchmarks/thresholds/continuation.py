@@ -130,7 +130,7 @@ def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCa
         directory = Path(place)
         (directory / "matrices").write_bytes(pieces.transpose(0, 2, 1).tobytes())
         constants = AUTO_CONSTANTS.format(
-            unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step
+            unknowns=pieces.shape[1], top=case.search_end, tolerance=tolerance, step=step
         )
         said, points = run_auto(program, directory, constants), table_lines(directory)
     at = [float(line.split()[1]) for line in said.splitlines() if line.startswith("at")]
@@ -148,8 +148,8 @@ def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThresh
     stop at the first Hopf point; hence the run ends BEYOND_HOPF above the known Hopf point.
     """
     M0, M1, M2 = matrix_polynomial(case)
-    last = case.top if isnan(case.hopf) else case.hopf
-    start, end = case.onset + START_FRACTION * (last - case.onset), min(last + BEYOND_HOPF, case.top)
+    last = case.search_end if isnan(case.hopf) else case.hopf
+    start, end = case.onset + START_FRACTION * (last - case.onset), min(last + BEYOND_HOPF, case.search_end)
     products = 0
 
     def field(u: Array, F: float) -> Array:

@@ -68,11 +68,12 @@ class LeadingPair:
 def threshold_on_grid(
     estimate: Callable[[Array, Eigenvalues], float], points: int, case: ThresholdCase
 ) -> FirstThreshold:
-    """First threshold of a case, estimated from the leading eigenvalues on a grid of F from 0 to `case.top`.
+    """First threshold of a case, estimated from the leading eigenvalues on a grid of F from 0 to
+    `case.search_end`.
 
     estimate: from (forces, leading eigenvalues), (points,) each, to the threshold. points: of the grid.
     """
-    forces, pair = np.linspace(0.0, case.top, points, dtype=np.float64), LeadingPair(case)
+    forces, pair = np.linspace(0.0, case.search_end, points, dtype=np.float64), LeadingPair(case)
     return FirstThreshold(estimate(forces, np.array([pair(F)[0] for F in map(float, forces)])), points)
 
 
@@ -117,7 +118,7 @@ def threshold_by_steps(
     search: root finder of SciPy. test: from the two leading eigenvalues to a number. tolerance: relative.
     """
     pair = LeadingPair(case)
-    forces = [*map(float, np.arange(0.0, case.top, BRACKETING_STEP)), case.top]
+    forces = [*map(float, np.arange(0.0, case.search_end, BRACKETING_STEP)), case.search_end]
     behind, value = forces[0], test(pair(forces[0]))
     for ahead in forces[1:]:
         value_ahead = test(pair(ahead))

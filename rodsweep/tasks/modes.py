@@ -31,7 +31,7 @@ class ModesTask(ProvedTask):
     config: ModesConfig
 
     not_proved: ClassVar[str] = "modes may be missed"
-    counted_along: ClassVar[str] = "point"
+    count_location: ClassVar[str] = "point"
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""

@@ -26,7 +26,7 @@ class ProvedTask(Task):
 
     not_proved: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
-    counted_along: ClassVar[str] = ""
+    count_location: ClassVar[str] = ""
     """Where the certificate counts modes: "point", at every point, or "line", at some rods of each line."""
     left_out: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
@@ -72,9 +72,9 @@ class ProvedTask(Task):
         if not getattr(self.config, task).certify:
             return False, f"{task}.certify: false; {self.not_proved}"
         proof = "winding number of D"
-        if self.counted_along == "line" and not self.config.standard:
+        if self.count_location == "line" and not self.config.standard:
             proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
-        if self.counted_along == "point" and self._varies:
+        if self.count_location == "point" and self._varies:
             proof += ", estimated in part"
         return True, proof
 

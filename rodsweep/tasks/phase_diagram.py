@@ -26,7 +26,7 @@ class PhaseDiagramTask(ProvedTask):
     config: PhaseDiagramConfig
 
     not_proved: ClassVar[str] = "crossings may be missed"
-    counted_along: ClassVar[str] = "line"
+    count_location: ClassVar[str] = "line"
 
     @property
     def line(self) -> np.ndarray:

@@ -37,7 +37,7 @@ class SpectrumTask(ProvedTask):
     config: SpectrumConfig
 
     not_proved: ClassVar[str] = "modes may be missed"
-    counted_along: ClassVar[str] = "point"
+    count_location: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
         if self.config.spectrum.longitudinal and np.isinf(self.points.by_name["k1"]).any():

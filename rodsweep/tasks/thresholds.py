@@ -29,7 +29,7 @@ class ThresholdsTask(ProvedTask):
     config: ThresholdsConfig
 
     not_proved: ClassVar[str] = "crossings may be missed"
-    counted_along: ClassVar[str] = "line"
+    count_location: ClassVar[str] = "line"
 
     def headline(self) -> str:
         until = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"

@@ -47,13 +47,13 @@ def row(name, points, ranks, seconds, memory):
     runs = [
         CommandRun(
             seconds=s,
-            inside=s - 0.5,
-            solving=0.0,
+            stated_seconds=s - 0.5,
+            solver_seconds=0.0,
             memory=tuple(memory[:ranks]),
-            file=1000 + 62 * points,
-            journal=74 * (points - 1),
-            elsewhere=0.0,
-            busy=1.0,
+            file_bytes=1000 + 62 * points,
+            journal_bytes=74 * (points - 1),
+            other_processors=0.0,
+            busy_fraction=1.0,
         )
         for s in (seconds, 2 * seconds, seconds)
     ]
@@ -124,7 +124,7 @@ def test_a_run_that_fails_is_told(tmp_path):
 
 
 def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
-    monkeypatch.setattr(sweep, "launcher", lambda ranks: [])
+    monkeypatch.setattr(sweep, "launcher_words", lambda ranks: [])
     solved, instant = [], []
 
     def sweeps(into, kinds):

@@ -74,7 +74,7 @@ def test_order_of_interpolation(estimate, exact, order):
     errors = []
     for intervals in (16, 32, 64):
         top = truth * intervals / (0.625 * intervals + 0.5)  # the threshold is halfway between two forces
-        found = threshold_on_grid(estimate, intervals + 1, replace(case, top=top))
+        found = threshold_on_grid(estimate, intervals + 1, replace(case, search_end=top))
         assert found.solves == intervals + 1
         errors.append(abs(found.force - truth))
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([order, order], abs=0.25)
@@ -84,7 +84,7 @@ def test_onset_between_two_forces_is_within_half_a_step():
     case = CASE["filament"]
     for points in (20, 40, 80):
         found = threshold_on_grid(onset_midpoint, points, case)
-        assert abs(found.force - case.onset) <= case.top / (points - 1) / 2
+        assert abs(found.force - case.onset) <= case.search_end / (points - 1) / 2
 
 
 def test_a_grid_too_coarse_for_the_window_misses_it():
@@ -97,7 +97,7 @@ def test_a_grid_too_coarse_for_the_window_misses_it():
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case):
     M0, M1, M2 = matrix_polynomial(case)
-    for F in (0.0, case.onset + 1, 0.9 * case.top):
+    for F in (0.0, case.onset + 1, 0.9 * case.search_end):
         w = LeadingPair(case)(F)
         own = np.linalg.eigvals(M0 + F * M1 + F**2 * M2)
         distance = np.abs(own[:, None] - w).min(axis=0) / np.abs(w)

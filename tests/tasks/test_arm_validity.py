@@ -109,8 +109,8 @@ def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
     flutter, oscillatory = (
         next(v for v, name in CLASSES if name == kind) for kind in ("flutter", "oscillatory")
     )
-    assert row(record | {"class": np.array([[flutter] * 2])}).missed.tolist() == [True]
-    assert row(record | {"class": np.array([[oscillatory] * 2])}).missed.tolist() == [False]
+    assert row(record | {"class": np.array([[flutter] * 2])}).may_be_missed.tolist() == [True]
+    assert row(record | {"class": np.array([[oscillatory] * 2])}).may_be_missed.tolist() == [False]
     back = record | {
         "crossing_kind": np.array([[1, HOPF_KINDS[2], 0]]),
         "crossing_frequency": np.array([[1.0, -5.0, 0]]),

@@ -108,12 +108,12 @@ class ExactCycle:
 class SweptRod:
     """A rod at which a timed sweep ends.
 
-    point: the rod. exact: its reference cycle. neighbours: cycle from which the timed sweep starts, by swept
-    parameter. workspace: buffers of Newton's matrices, shared by all points of a sweep.
+    rod: the rod. exact_cycle: its reference cycle. neighbours: cycle from which the timed sweep starts, by
+    swept parameter. workspace: buffers of Newton's matrices, shared by all points of a sweep.
     """
 
-    point: Rod
-    exact: ExactCycle
+    rod: Rod
+    exact_cycle: ExactCycle
     neighbours: dict[str, Neighbour | None]
     workspace: NewtonWorkspace
 
@@ -143,7 +143,7 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the timed points of a sweep along `axis`, each from its neighbour; returns the last cycle."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
-        there = earlier_rod(rod.point, axis, k)
+        there = earlier_rod(rod.rod, axis, k)
         cycle = require_cycle(solve_cycle(there, cycle_request(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
@@ -152,7 +152,7 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the cycle of a rod without a neighbour; start: value of the option `start`."""
     return require_cycle(
-        solve_cycle(rod.point, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
+        solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
     )
 
 
@@ -180,7 +180,7 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
     """Measurements of all contenders of `cycle_contenders` on all rods `points`, timed in turn."""
     rods = [swept_rod(point, ACCURACY) for point in points]
-    entries = [JudgedCase(rod_label(rod.point), rod, partial(cycle_errors, rod.exact)) for rod in rods]
+    entries = [JudgedCase(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods]
     return measure_cases(entries, cycle_contenders(ACCURACY), rounds)
 
 

@@ -81,13 +81,15 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measu
     variables = read_view(case.directories[0] / RESULT).variables
     extra = {
         "points": float(case.points),
-        "microseconds": 1e6 * run.inside / case.points,
-        "microseconds_solving": 1e6 * run.solving / case.points,
+        "microseconds": 1e6 * run.stated_seconds / case.points,
+        "microseconds_solving": 1e6 * run.solver_seconds / case.points,
         "meshes": float((variables["elements"] > 0).sum()),
         "uncertified": float((variables["certified"] == 0).sum()),
-        "rss_megabytes": max(run.memory) / 1e6,
+        "rss_megabytes": max(run.peak_memory) / 1e6,
     }
-    return Measurement(f"axis, {case.name}", method, f"{case.points} points", run.inside, nan, extra=extra)
+    return Measurement(
+        f"axis, {case.name}", method, f"{case.points} points", run.stated_seconds, nan, extra=extra
+    )
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:

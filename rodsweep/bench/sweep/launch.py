@@ -110,19 +110,19 @@ class CommandRun:
 
     seconds: float
     """Clock time of the whole command, in s."""
-    inside: float
+    stated_seconds: float
     """Clock time printed by the command, in s, without the start of Python and MPI; nan if it was killed."""
-    solving: float
+    solver_seconds: float
     """Time in the solver, in s, summed over the ranks."""
-    memory: tuple[int, ...]
+    peak_memory: tuple[int, ...]
     """Peak memory, in bytes, of the first rank, and the largest peak memory of all other ranks."""
-    file: int
+    file_bytes: int
     """Size of the result files in bytes."""
-    journal: int
+    journal_bytes: int
     """Size, in bytes, of the journals that a killed run left."""
-    elsewhere: float
+    other_processors: float
     """Number of processors that other programs kept busy; nan if unknown."""
-    busy: float
+    busy_fraction: float
     """Fraction of the ranks' time spent on points instead of waiting; nan without the real solver."""
 
 
@@ -149,13 +149,15 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     solved = [_solving(file) if case.kind == SOLVED else (0.0, nan) for file in files]
     return CommandRun(
         seconds=seconds,
-        inside=max(said),
-        solving=sum(spent for spent, _ in solved),
-        memory=tuple(_peak(case, rank) for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]),
-        file=sum(file.stat().st_size for file in files),
-        journal=sum(page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")),
-        elsewhere=float(elsewhere),
-        busy=min(busy for _, busy in solved),
+        stated_seconds=max(said),
+        solver_seconds=sum(spent for spent, _ in solved),
+        peak_memory=tuple(_peak(case, rank) for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]),
+        file_bytes=sum(file.stat().st_size for file in files),
+        journal_bytes=sum(
+            page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
+        ),
+        other_processors=float(elsewhere),
+        busy_fraction=min(busy for _, busy in solved),
     )
 
 

@@ -143,22 +143,22 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
     """Measurement of a sweep from all its runs, mostly medians; the error is nan, as sweeps have no error."""
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
-    memory = [max(values) / MEGABYTE for values in zip(*(run.memory for run in runs), strict=True)]
+    memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
     extra = {
         "ranks": float(ranks),
         "points": float(case.points),
         "points_per_second": case.points / seconds,
-        "inside_seconds": nan_median(run.inside for run in runs),
+        "inside_seconds": nan_median(run.stated_seconds for run in runs),
         "microseconds_overhead": nan_median(
-            1e6 * (processes * r.inside - r.solving) / case.points for r in runs
+            1e6 * (processes * r.stated_seconds - r.solver_seconds) / case.points for r in runs
         ),
         "rss_megabytes": max(memory),
         "rss_megabytes_first": memory[0],
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,
-        "file_bytes_per_point": runs[0].file / case.points,
-        "journal_bytes_per_point": runs[0].journal / (case.points - 1) if case.kind == KILLED else nan,
-        "processors_elsewhere": nan_median(run.elsewhere for run in runs),
-        "share_busy": nan_median(run.busy for run in runs),
+        "file_bytes_per_point": runs[0].file_bytes / case.points,
+        "journal_bytes_per_point": runs[0].journal_bytes / (case.points - 1) if case.kind == KILLED else nan,
+        "processors_elsewhere": nan_median(run.other_processors for run in runs),
+        "share_busy": nan_median(run.busy_fraction for run in runs),
     }
     return Measurement(
         case.name, count_text(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra

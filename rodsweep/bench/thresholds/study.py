@@ -39,7 +39,7 @@ class ThresholdCase:
     """A rod with its exact first thresholds.
 
     onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if there is
-    none. top: F at which the searches of peers end.
+    none. search_end: F at which the searches of peers end.
     """
 
     name: str
@@ -48,7 +48,7 @@ class ThresholdCase:
     gamma3: float
     onset: float
     hopf: float
-    top: float = 60.0
+    search_end: float = 60.0
     taper: float = 1.0
     build: Build = STANDARD
 

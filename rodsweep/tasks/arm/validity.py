@@ -58,7 +58,7 @@ class ArmMotion:
     """Follower force of each motion, used if F is no parameter of the points; None if unknown."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
-    missed: NDArray[np.bool_] | bool = False
+    may_be_missed: NDArray[np.bool_] | bool = False
     """Whether the point may have a motion whose frequency is not known, (n,)."""
 
 
@@ -87,9 +87,9 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
 
 
 def _of_row(record: Record) -> ArmMotion:
-    """Motion of the first Hopf point of a row; `missed` if rods of the row flutter or may flutter."""
+    """Motion of the first Hopf point of a row; `may_be_missed` if rods of the row flutter or may flutter."""
     beats = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
-    return replace(_of_hopf_point("crossing_at")(record), missed=beats)
+    return replace(_of_hopf_point("crossing_at")(record), may_be_missed=beats)
 
 
 def _of_flutter(record: Record) -> ArmMotion:
@@ -143,9 +143,9 @@ class ArmValidity:
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
         motion = MOTION_OF_TASK[self.task](record)
-        missed = motion.missed | ~np.isin(record[STATUS.name], self.searched)
+        missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched)
         arm = self._arm_of(int(np.ravel(index)[0]))
-        return self._validity(arm, replace(motion, missed=missed), index)
+        return self._validity(arm, replace(motion, may_be_missed=missed), index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at the n points with a rod, (n,), as if all arms were at rest."""
@@ -178,7 +178,7 @@ class ArmValidity:
         applies = validity.reshape(*np.shape(index), -1).max(axis=-1)
         moves = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
         # Compression or weight beyond its limit ends the model whatever the motion.
-        known = moves | ~np.asarray(motion.missed) | (applies == Validity.does_not_apply)
+        known = moves | ~np.asarray(motion.may_be_missed) | (applies == Validity.does_not_apply)
         return {
             "model_applies": np.where(known, applies, NOT_KNOWN),
             "neglected_effect": np.where(known & (at_worst > 0), number, -1),
