@@ -30,7 +30,9 @@ Listener = Callable[[MakePosition], None]
 
 
 class SolveStopped(BaseException):
-    """Raised by a listener to end a running solve. Solvers do not catch it with their own errors."""
+    """Raised by a listener to end a running solve. Solvers that catch their own errors do not catch this
+    one.
+    """
 
 
 class _SolvePart(NamedTuple):

@@ -129,7 +129,7 @@ class LimitCycleTask(Task):
             ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
             if marched
             else self._stored("tip from the start to the cycle", "transient", TRANSIENT),
-            ("period in tau1 too", options.time == "tau1", f"limit_cycle.time: {options.time}"),
+            ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 

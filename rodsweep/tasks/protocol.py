@@ -57,7 +57,7 @@ class JointVariables(Protocol):
         """Empty result, for a unit of work whose solver raised an unforeseen exception."""
 
     def variables(self, view: View, units: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
-        """Variables of the file; called on the first rank.
+        """The joint variables for the result file; called on the first rank only.
 
         view: the file with all points. results: results of all units, by number.
         """

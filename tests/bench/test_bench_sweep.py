@@ -49,7 +49,7 @@ def row(name, points, ranks, seconds, memory):
             seconds=s,
             stated_seconds=s - 0.5,
             solver_seconds=0.0,
-            memory=tuple(memory[:ranks]),
+            peak_memory=tuple(memory[:ranks]),
             file_bytes=1000 + 62 * points,
             journal_bytes=74 * (points - 1),
             other_processors=0.0,
@@ -95,9 +95,9 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
     for points in (2_000, 50_000):
         case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
         killed = run(case, 1)
-        assert killed.journal > 74 * (points - 1)
+        assert killed.journal_bytes > 74 * (points - 1)
         resumed = run(replace(case, kind="instant"), 1, fresh=False)
-        peaks[points] = [killed.memory[0], resumed.memory[0]]
+        peaks[points] = [killed.peak_memory[0], resumed.peak_memory[0]]
     for few, many in zip(*peaks.values(), strict=True):
         assert 5e7 < few < many + 1e6 * FEW_MEGABYTES
         assert many < few + 1e6 * FEW_MEGABYTES
@@ -107,13 +107,13 @@ def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
     case = spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
     taken = run(case, 1)
     assert case.points == 20_000
-    assert taken.file < MOST_BYTES * case.points
+    assert taken.file_bytes < MOST_BYTES * case.points
     table = "\n".join(f"{F!r},200,{1e3 + F!r},1e-4" for F in np.linspace(0, 90, 20_000).tolist())
     (case.directories[0] / "p.csv").write_text(f"F,k1,k2,gamma3\n{table}\n")
     (case.directories[0] / "c.yaml").write_text(
         "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 2}\n"
     )
-    assert run(case, 1).file < MOST_BYTES * case.points
+    assert run(case, 1).file_bytes < MOST_BYTES * case.points
 
 
 def test_a_run_that_fails_is_told(tmp_path):

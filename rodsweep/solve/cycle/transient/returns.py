@@ -143,4 +143,4 @@ def why_not_settled(waited: int, returns: int, last: float) -> str:
         return f"{waited} returns of the tip, the last at a relative distance of {last:.1e}"
     if isnan(last):
         return f"the tip passes theta = 0 {counted(returns, 'time')} in all, so that no period is seen"
-    return "its deflection has decayed to rounding error, but the straight rod is not stable"
+    return "the deflection has decayed to rounding error, but the straight rod is not stable"
