@@ -248,11 +248,11 @@ def test_parameters_that_are_not_given_have_the_defaults_of_the_table():
 def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
     kinds = {
         "spectrum": options.SpectrumKeywords,
-        "thresholds": options.OfThresholds,
-        "modes": options.OfModes,
-        "limit_cycle": options.OfLimitCycle,
-        "criticality": options.OfCriticality,
-        "branch": options.OfBranch,
+        "thresholds": options.ThresholdsKeywords,
+        "modes": options.ModesKeywords,
+        "limit_cycle": options.LimitCycleKeywords,
+        "criticality": options.CriticalityKeywords,
+        "branch": options.BranchKeywords,
     }
     for task, kind in kinds.items():
         section = CONFIGS[task].model_fields[task].annotation
@@ -384,7 +384,7 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
     assert (tmp_path / "d.pdf").read_bytes().startswith(b"%PDF")
     picture.save(tmp_path / "d.svg")
     assert (tmp_path / "d.svg").exists()
-    with pytest.raises(rs.InputError, match="not whole: F_onset"):
+    with pytest.raises(rs.InputError, match="not a whole result: they lack F_onset"):
         rs.plot(data.isel(k2=0))
     with pytest.raises(rs.InputError, match="not a complete rodsweep result"):
         rs.plot(xr.Dataset())
@@ -440,7 +440,7 @@ def test_a_branch_and_the_criticality_of_one_rod_are_drawn():
         ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double, or a length as '89 mm'"),
         ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest, all"),
         ({"at": {"k1": 100}}, "has no point there; it has k1 = 200"),
-        ({"at": 3}, "at is not allowed; give numbers by parameter"),
+        ({"at": 3}, "at = 3 is not allowed; give numbers by parameter"),
         ({"points": 3}, "points is for results of limit_cycle"),
         ({"what": "maps"}, 'what="maps" is for results of limit_cycle'),
         ({"output": "f.xyz"}, "output f.xyz: the name must end in .png"),

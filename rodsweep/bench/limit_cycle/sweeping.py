@@ -46,8 +46,7 @@ RODS = (
 )
 """Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
 as far from its Hopf point as the first rod, and the first rod made of rubber."""
-QUICK_RODS = (RODS[2],)
-"""Rods of a quick run."""
+QUICK_RODS = (RODS[2],)  # of a quick run
 SWEPT_PARAMETERS = NONLINEAR_PARAMETERS[:2]
 """Parameters along which the neighbour of a rod lies."""
 STEP_RATIO = 1.01
@@ -56,14 +55,10 @@ WARM_UP_POINT_COUNT = 6
 """Number of points solved before the timed points, after which the mesh is chosen."""
 TIMED_POINT_COUNT = 22
 """Number of timed points: from one calibration of the mesh errors up to the next."""
-ACCURACY = 1e-7
-"""Relative accuracy requested from rodsweep."""
-REFERENCE_ACCURACY = 1e-11
-"""Relative accuracy of the reference cycles."""
-SWEEP_PREFIX = "sweep over "
-"""Beginning of the names, in the table, of solutions that start from a neighbour's cycle."""
-COLD_PREFIX = "cold, "
-"""Beginning of the names, in the table, of solutions without a neighbour."""
+ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
+"""Relative accuracy requested from rodsweep, and that of the reference cycles."""
+SWEEP_PREFIX, COLD_PREFIX = "sweep over ", "cold, "
+"""Beginnings of the names, in the table, of solutions from a neighbour's cycle, and without a neighbour."""
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
 """Values of the option `start` for solutions without a neighbour, by name in the table."""
 FAILED_COLUMNS = dict.fromkeys(

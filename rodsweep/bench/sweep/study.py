@@ -39,20 +39,12 @@ SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 SINGLE_RUN_FROM = 10**6
 """Number of points from which a sweep with the instant solver is run only once: its start takes a negligible
 part of its time."""
-SPECTRUM_COUNT = 200_000
-"""Number of points of the sweep of spectra."""
-QUICK_SPECTRUM_COUNT = 6_000
-"""Number of points of the sweep of spectra in a quick run."""
-CYCLE_COUNT = 200
-"""Number of points of the sweep of limit cycles."""
-QUICK_CYCLE_COUNT = 10
-"""Number of points of the sweep of limit cycles in a quick run."""
-ROUNDS = 3
-"""Number of timed rounds of sweeps of spectra."""
-CYCLE_ROUNDS = 2
-"""Number of timed rounds of the sweep of limit cycles."""
-QUICK_ROUNDS = 1
-"""Number of timed rounds of a quick run."""
+SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
+"""Number of points of the sweep of spectra, and that of a quick run."""
+CYCLE_COUNT, QUICK_CYCLE_COUNT = 200, 10
+"""Number of points of the sweep of limit cycles, and that of a quick run."""
+ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
+"""Numbers of timed rounds: of spectra, of limit cycles, and of all sweeps in a quick run."""
 TWO_COMMANDS = "spectra, two commands"
 """Name of the case of two simultaneous commands, each with half of the spectra on one rank. Their speed is an
 upper bound for the speed of two ranks."""

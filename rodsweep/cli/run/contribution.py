@@ -17,7 +17,7 @@ MAX_FAILURES_PRINTED = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RankReport:
+class RunContribution:
     """Report of a rank to the first rank at the end of a run.
 
     host: name of the machine. failures: one failed point in words for each distinct reason. share: statistics
@@ -35,7 +35,7 @@ def last_run_attributes(plan: Plan) -> dict[str, Any]:
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
 
 
-def run_history(contributions: Sequence[RankReport], mpi_library: str) -> dict[str, Any]:
+def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> dict[str, Any]:
     """Attributes of a file with the hosts, the MPI library and the ranks that computed the points of a
     run.
     """

@@ -24,7 +24,7 @@ from ...sweep.team import Team
 from ...tasks.protocol import Solver
 from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
-from .contribution import RankReport
+from .contribution import RunContribution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ class PointWork:
 
     def solve(
         self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
-    ) -> RankReport:
+    ) -> RunContribution:
         """Solves units of work together with all other ranks; writes this rank's results into its journal.
 
         units, count: from `units`. prepare: called before the first solve.
@@ -95,7 +95,9 @@ class PointWork:
             ) from error
         finally:
             shown.close()
-        return RankReport(host=socket.gethostname(), failures=list(reasons.examples.values()), share=share)
+        return RunContribution(
+            host=socket.gethostname(), failures=list(reasons.examples.values()), share=share
+        )
 
     def _solve_unit(
         self, missing: IndexSet, directory: Path

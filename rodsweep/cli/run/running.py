@@ -23,7 +23,7 @@ from ...wording import counted
 from ..beforehand import report_stop, shared_flutter_forces, with_shared_constants
 from .contribution import (
     MAX_FAILURES_PRINTED,
-    RankReport,
+    RunContribution,
     RunEnd,
     last_run_attributes,
     run_history,
@@ -108,7 +108,7 @@ class _RankRun:
             if self.joint and self._lacks_curves(index_count(missing) - count):
                 kept += ", then curves through all"
             self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
-        contributions: list[RankReport] = []
+        contributions: list[RunContribution] = []
         if count:
             self.team.on_first(self._note_kernels)
             contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
@@ -127,7 +127,7 @@ class _RankRun:
         """
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[RankReport]) -> JointDue:
+    def _fold(self, count: int, contributions: list[RunContribution]) -> JointDue:
         """Writes the points of all journals into the file; returns the joint work that is still due.
 
         count: number of points to be solved in this run.
@@ -189,7 +189,7 @@ class _RankRun:
             self.joint.kept.drop()
         return False
 
-    def _say_failures(self, contributions: list[RankReport], exceptions: int) -> None:
+    def _say_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
@@ -208,7 +208,7 @@ class _RankRun:
     def _finish(
         self,
         count: int,
-        contributions: list[RankReport],
+        contributions: list[RunContribution],
         joint: JointDue,
         shares: list[RankWork],
         exceptions: int,

@@ -86,7 +86,7 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """Half a curve of cycles, which is the unit of work with this number; arrays as in `TracedHalf`."""
+        """Half a curve of cycles, the unit of work `unit`; arrays have the shapes of `TracedHalf`."""
         return units.solve(unit, self._special_points, self.workspace)
 
     def empty_result(self) -> dict[str, np.ndarray]:
