@@ -10,7 +10,7 @@ AUTO_LIBRARY = Path(os.environ.get("AUTO_DIR", "/usr/lib/auto-07p")) / "lib"
 """Folder with AUTO-07p's object files. AUTO-07p itself reads AUTO_DIR; the default is Debian's folder."""
 HEAD_MARK = "0"
 """First word of every line in the head of AUTO's table, the file fort.7."""
-SKIPPED = f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran."
+AUTO_SKIPPED = f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran."
 
 
 def auto_program(directory: Path, equations: str) -> Path | None:

@@ -6,9 +6,9 @@ from pathlib import Path
 from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
 from rodsweep.bench.peers import Peers
 
-from ..auto import SKIPPED, auto_program
+from ..auto import AUTO_SKIPPED, auto_program
 from .auto_equations import EQUATIONS
-from .continuation import beside_auto
+from .continuation import compare_with_auto
 from .integrators import CVODE, CVODE_SKIPPED, installed_families
 
 
@@ -21,6 +21,6 @@ def peers(quick: bool, place: Path) -> Peers:
             FOLLOWING: [contender for family in every for contender in family.followers()],
             WAITING: [contender for family in every for contender in family.waiters()],
         },
-        sections=(partial(beside_auto, program, quick),) if program else (),
-        skipped=skipped if program else [*skipped, SKIPPED],
+        sections=(partial(compare_with_auto, program, quick),) if program else (),
+        skipped=skipped if program else [*skipped, AUTO_SKIPPED],
     )

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from rodsweep.arrays import Array, Complex
-from rodsweep.bench.limit_cycle.tracking import height_near, on_cycle
+from rodsweep.bench.limit_cycle.tracking import largest_y_near, state_on_cycle
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
@@ -113,7 +113,7 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     The file has F, the period in tau2, and the states z at `pieces` + 1 equidistant times of one period, both
     ends included.
     """
-    beam, _ = on_cycle(orbit)
+    beam, _ = state_on_cycle(orbit)
     turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
     states = orbit.at(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
@@ -146,4 +146,4 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
     beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
     y = beam.tip(twice[1])[1]
-    return height_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))
+    return largest_y_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))

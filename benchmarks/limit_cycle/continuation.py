@@ -17,8 +17,8 @@ from rodsweep.bench.limit_cycle.sweeping import (
     RODS,
     TIMED_POINT_COUNT,
     ExactCycle,
-    from_neighbour,
     rod_label,
+    solve_from_neighbour,
     swept_rod,
 )
 from rodsweep.bench.limit_cycle.tracking import (
@@ -50,7 +50,7 @@ MAX_ROUNDS = 3
 LARGE_MODULUS = 0.5
 """Modulus above which a Floquet multiplier is counted: multipliers near 1 decide the stability."""
 RODSWEEP = "rodsweep"
-TARGETS = (1e-6, 1e-7)
+TARGET_ERRORS = (1e-6, 1e-7)
 """Errors at which the two codes are compared."""
 REQUESTED_ACCURACIES = (2e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7)
 """Accuracies requested from rodsweep. Its errors are smaller, because its error estimates are cautious."""
@@ -75,7 +75,7 @@ QUICK_SETTINGS = SETTINGS[1:6:4]
 """Settings of a quick run, one for each target."""
 
 
-def beside_auto(program: Path, quick: bool, rounds: int) -> tuple[list[str], list[Measurement]]:
+def compare_with_auto(program: Path, quick: bool, rounds: int) -> tuple[list[str], list[Measurement]]:
     """(blocks of text for the report, measurements) of rodsweep and AUTO on the first rod of the study.
 
     program: AUTO compiled with the rod's equations. quick: QUICK_SETTINGS only. rounds: timed rounds.
@@ -95,7 +95,7 @@ def measure_continuation(
     )
     starts = first_cycles(replace(point, F=point.F - (LONG_RUN_CYCLES - 1) * step), settings)
     runs: list[Callable[[], Any]] = [
-        partial(result_or_error, partial(from_neighbour, "F", accuracy), rod)
+        partial(result_or_error, partial(solve_from_neighbour, "F", accuracy), rod)
         for accuracy, rod in zip(REQUESTED_ACCURACIES, rods, strict=True)
     ]
     for setting in settings:
@@ -190,8 +190,8 @@ def cycle_table(measurements: Sequence[Measurement]) -> str:
 def ratio_table(measurements: Sequence[Measurement]) -> str:
     """Table of the fastest settings of rodsweep and AUTO that reach each target error, and of their ratio."""
     rows = []
-    for target in TARGETS:
-        own, peer = (fastest(measurements, method, target) for method in (RODSWEEP, AUTO))
+    for target in TARGET_ERRORS:
+        own, peer = (fastest_measurement(measurements, method, target) for method in (RODSWEEP, AUTO))
         row = {"target": target, "own": 1e3 * own.seconds, "asked": own.setting}
         row |= {"auto": 1e3 * peer.seconds, "setting": peer.setting, "ratio": peer.seconds / own.seconds}
         rows.append(row)
@@ -205,7 +205,7 @@ def ratio_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def fastest(measurements: Sequence[Measurement], method: str, target: float) -> Measurement:
+def fastest_measurement(measurements: Sequence[Measurement], method: str, target: float) -> Measurement:
     """Fastest measurement of a method with an error of at most `target`; its seconds are NaN if none has."""
     enough = [m for m in measurements if m.method == method and m.error <= target]
     return min(enough, key=lambda m: m.seconds, default=Measurement("", method, "", nan, inf))

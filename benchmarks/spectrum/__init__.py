@@ -4,11 +4,11 @@ from pathlib import Path
 
 from rodsweep.bench.peers import Peers
 from rodsweep.bench.spectrum.arms import ARM_RACE
-from rodsweep.bench.spectrum.study import RACE
+from rodsweep.bench.spectrum.study import SPECTRUM_RACE
 
 from .eigensolvers import arm_contenders, contenders
 
 
 def peers(quick: bool, place: Path) -> Peers:
     """All eigensolvers at all sizes. A quick study skips sizes itself; nothing is compiled in `place`."""
-    return Peers({RACE: contenders(), ARM_RACE: arm_contenders()})
+    return Peers({SPECTRUM_RACE: contenders(), ARM_RACE: arm_contenders()})

@@ -15,9 +15,9 @@ import scipy.sparse.linalg
 
 from rodsweep.arrays import Array
 from rodsweep.bench.spectrum import arms
-from rodsweep.bench.spectrum.arms import mesh_of_arm, on_arm
-from rodsweep.bench.spectrum.own import PENCIL, WANTED_MODES, leading
-from rodsweep.bench.spectrum.study import ORDERS, mesh_of
+from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
+from rodsweep.bench.spectrum.own import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
+from rodsweep.bench.spectrum.study import ORDERS, pencil_mesh
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refined
 from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble
@@ -29,7 +29,7 @@ from ..lapack import Eigenvalues, inverse_spectrum, qz_spectrum, whole_matrices
 
 def pencil_matrices(rod: Rod, size: int) -> tuple[Array, Array]:
     """(A, diagonal of B) of rodsweep's pencil of order `size`, shapes (unknowns, unknowns), (unknowns,)."""
-    return whole_matrices(rod, mesh_of(size) if rod.standard else mesh_of_arm(rod, size))
+    return whole_matrices(rod, pencil_mesh(size) if rod.standard else mesh_of_arm(rod, size))
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
@@ -37,12 +37,12 @@ def dense_qz(rod: Rod, size: int) -> Eigenvalues:
     A, B = pencil_matrices(rod, size)
     scale = np.ones(len(B))
     scale[2 * len(B) // 3 :] = PENCIL_NORM.shear_weight
-    return leading(qz_spectrum(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
+    return leading_eigenvalues(qz_spectrum(A * scale[:, None] * scale, np.diag(B)), MODE_COUNT + 1)
 
 
 def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
     """Leading eigenvalues by LAPACK's LU of A and geev of A^-1 B."""
-    return leading(inverse_spectrum(*pencil_matrices(rod, size)), WANTED_MODES + 1)
+    return leading_eigenvalues(inverse_spectrum(*pencil_matrices(rod, size)), MODE_COUNT + 1)
 
 
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
@@ -53,8 +53,8 @@ def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
     operator = scipy.sparse.linalg.LinearOperator(
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
     )
-    theta = scipy.sparse.linalg.eigs(operator, WANTED_MODES, v0=np.ones(len(B)), return_eigenvectors=False)
-    return leading(shift + 1 / theta, WANTED_MODES + 1)
+    theta = scipy.sparse.linalg.eigs(operator, MODE_COUNT, v0=np.ones(len(B)), return_eigenvectors=False)
+    return leading_eigenvalues(shift + 1 / theta, MODE_COUNT + 1)
 
 
 def lapack_on_d(rod: Rod, size: int) -> Eigenvalues:
@@ -76,7 +76,7 @@ def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
         ]
     )
     A[n:] /= rod.gamma3
-    return leading(scipy.linalg.eigvals(A, check_finite=False), WANTED_MODES + 1)
+    return leading_eigenvalues(scipy.linalg.eigvals(A, check_finite=False), MODE_COUNT + 1)
 
 
 @lru_cache(maxsize=64)
@@ -85,7 +85,7 @@ def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
 
     a, b: shape functions. The matrices are taken from rodsweep's pencil.
     """
-    mesh = mesh_of(size)
+    mesh = pencil_mesh(size)
     pencil = assemble(mesh.elements, mesh.order)
     n = pencil.nodes
     whole = pencil.dense_pieces().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
@@ -118,7 +118,7 @@ def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
     )
     B[rows] = 0.0
     largest = np.abs(A).max(axis=1, keepdims=True)  # without it QZ finds nothing at k2 = 1e8
-    return leading(qz_spectrum(A / largest, B / largest), WANTED_MODES + 1)
+    return leading_eigenvalues(qz_spectrum(A / largest, B / largest), MODE_COUNT + 1)
 
 
 def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
@@ -140,7 +140,7 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
             A[rows[2:], upper[:2] - 4 * n] = -1.0
         if start < last:
             A[rows[:2], lower[2:] + 4 * n] = -1.0
-    return leading(qz_spectrum(A, B), WANTED_MODES + 1)
+    return leading_eigenvalues(qz_spectrum(A, B), MODE_COUNT + 1)
 
 
 def _first_order(rod: Rod, a: float, b: float, size: int) -> tuple[Array, Array]:
@@ -168,7 +168,7 @@ ARM_INTERVALS = (10, 12, 14, 16, 20, 24, 32)
 """Numbers of intervals of the Chebyshev collocation on every segment of an arm."""
 START_ORDERS = (8, 10, 11, 12, 14, 18, 24, 32, 40)
 """Orders of the pencils whose eigenvalues are refined on D."""
-OTHER_MESH = "other discretisations"
+OTHER_MESH_GROUP = "other discretisations"
 """Group, in a figure, of methods that do not use rodsweep's pencil."""
 
 
@@ -182,12 +182,12 @@ class Peer(NamedTuple):
 
 
 PEERS = (
-    Peer("dense LAPACK QZ, same pencil", PENCIL, dense_qz, ORDERS),
-    Peer("dense LAPACK LU and geev, same pencil", PENCIL, dense_inverse, ORDERS),
-    Peer("SciPy eigs (ARPACK), same pencil", PENCIL, scipy_eigs, ORDERS),
-    Peer("displacement spectral elements, geev", OTHER_MESH, displacement_elements, ORDERS),
-    Peer("Chebyshev collocation, QZ", OTHER_MESH, chebyshev_qz, INTERVALS),
-    Peer("Chebyshev, first-order system, QZ", OTHER_MESH, chebyshev_first_order, INTERVALS),
+    Peer("dense LAPACK QZ, same pencil", PENCIL_GROUP, dense_qz, ORDERS),
+    Peer("dense LAPACK LU and geev, same pencil", PENCIL_GROUP, dense_inverse, ORDERS),
+    Peer("SciPy eigs (ARPACK), same pencil", PENCIL_GROUP, scipy_eigs, ORDERS),
+    Peer("displacement spectral elements, geev", OTHER_MESH_GROUP, displacement_elements, ORDERS),
+    Peer("Chebyshev collocation, QZ", OTHER_MESH_GROUP, chebyshev_qz, INTERVALS),
+    Peer("Chebyshev, first-order system, QZ", OTHER_MESH_GROUP, chebyshev_first_order, INTERVALS),
     Peer("LAPACK on a coarse mesh, Newton on D", "roots of D", lapack_on_d, START_ORDERS),
 )
 
@@ -205,7 +205,7 @@ def arm_contenders() -> list[Contender]:
     """The peers that solve arms with properties that vary along the length, at all of their sizes."""
     taken = {dense_inverse: arms.ORDERS, scipy_eigs: arms.ORDERS, chebyshev_first_order: ARM_INTERVALS}
     return [
-        Contender(peer.name, str(size), peer.group, partial(on_arm, peer.solve, size))
+        Contender(peer.name, str(size), peer.group, partial(solve_next_arm, peer.solve, size))
         for peer in PEERS
         for size in taken.get(peer.solve, ())
     ]

@@ -17,7 +17,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import FirstThreshold, ThresholdCase
 
-from ..auto import AUTO, SKIPPED, auto_program, run_auto, table_lines
+from ..auto import AUTO, AUTO_SKIPPED, auto_program, run_auto, table_lines
 from ..installed import optional_module
 from .spectra_by_force import affine_pencil
 
@@ -27,7 +27,7 @@ PYCONT_STEPS = (0.25, 0.5)
 """Steps of PyCont-Lite in F. With steps of 0.5 or more, PyCont-Lite finds the Hopf point of some rods only by
 chance. Quick runs omit 0.5."""
 PYCONT = "PyCont-Lite"
-CONTINUATION = "continuation"
+CONTINUATION_GROUP = "continuation"
 """Group of the continuation codes in the figure."""
 EQUATIONS = """
 subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)
@@ -94,13 +94,13 @@ def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], l
     if program := auto_program(directory, EQUATIONS):
         for step, tolerance in AUTO_SETTINGS:
             by_auto = partial(hopf_by_auto, program, step, tolerance)
-            found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION, by_auto))
+            found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION_GROUP, by_auto))
     else:
-        skipped.append(SKIPPED)
+        skipped.append(AUTO_SKIPPED)
     if module := optional_module(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
-            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION, by_pycont, slow=True))
+            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION_GROUP, by_pycont, slow=True))
     else:
         skipped.append(f"{PYCONT} is skipped: it is not installed (extra `bench`).")
     return found, skipped

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import bisect, brentq
 
 from rodsweep.arrays import Array
-from rodsweep.bench.spectrum.own import leading
+from rodsweep.bench.spectrum.own import leading_eigenvalues
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
@@ -28,7 +28,7 @@ GRIDS, LARGE_GRID = (50, 200), 800
 """Numbers of forces of the grids. A quick run omits LARGE_GRID."""
 TOLERANCES = (1e-3, 1e-6, 1e-12)
 """Relative tolerances of the root finding."""
-SWEEP = "grid and interpolation"
+GRID_GROUP = "grid and interpolation"
 """Group of these methods in the figure."""
 BRACKETING_STEP = 2.0
 """Step in F by which a root is bracketed: the step ends at a change of sign."""
@@ -62,7 +62,7 @@ class LeadingPair:
 
     def __call__(self, F: float) -> Eigenvalues:
         self.solves += 1
-        return leading(inverse_spectrum(self._A0 + F * self._A1, self._B), 2)
+        return leading_eigenvalues(inverse_spectrum(self._A0 + F * self._A1, self._B), 2)
 
 
 def threshold_on_grid(
@@ -145,12 +145,12 @@ def real_or_pair(w: Eigenvalues) -> float:
     return -1.0 if w[0].imag else 1.0
 
 
-BY_GRID = {
+GRID_ESTIMATES = {
     ONSET: {"grid, between two forces": onset_midpoint, "grid, square-root law": onset_by_square_root},
     HOPF: {"grid, linear interpolation": hopf_by_interpolation},
 }
 """Estimates from a grid of forces, by kind of threshold and name of the method."""
-BY_STEPS = {
+STEP_SEARCHES = {
     ONSET: {
         "steps, bisection on Im w > 0": partial(threshold_by_steps, bisect, real_or_pair),
         "steps, Brent on (w1 - w2)^2": partial(threshold_by_steps, brentq, discriminant),
@@ -164,13 +164,15 @@ def contenders(kind: str, quick: bool) -> list[Contender]:
     """All grids and root searches for one kind of threshold; quick: without LARGE_GRID."""
     grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
     by_grid = [
-        Contender(name, f"{n} forces", SWEEP, partial(threshold_on_grid, estimate, n), slow=n == LARGE_GRID)
-        for name, estimate in BY_GRID[kind].items()
+        Contender(
+            name, f"{n} forces", GRID_GROUP, partial(threshold_on_grid, estimate, n), slow=n == LARGE_GRID
+        )
+        for name, estimate in GRID_ESTIMATES[kind].items()
         for n in grids
     ]
     by_search = [
-        Contender(name, f"tolerance {tolerance:.0e}", SWEEP, partial(search, tolerance))
-        for name, search in BY_STEPS[kind].items()
+        Contender(name, f"tolerance {tolerance:.0e}", GRID_GROUP, partial(search, tolerance))
+        for name, search in STEP_SEARCHES[kind].items()
         for tolerance in TOLERANCES
     ]
     return by_grid + by_search

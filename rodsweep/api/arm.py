@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ..verdict.flutter import FlutterRange
     from .answers.rod_portrait import RodPortrait
 
-EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
+ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
 EXCLUSIVE_QUANTITIES = (
     tuple((load,) for load in LOADS),
     SECTION_SIDES,
@@ -54,7 +54,7 @@ class Arm(SlenderArm):
     InputError if the quantities describe no slender arm.
     """
 
-    __init__ = in_sentences(EXAMPLE)(SlenderArm.__init__)
+    __init__ = in_sentences(ARM_EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
     def flutter(self) -> "FlutterRange":

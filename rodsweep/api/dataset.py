@@ -33,11 +33,11 @@ def open_result(path: str | Path) -> xr.Dataset:
 
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
-    path = file_path(path, 'rs.open("RESULT.h5")')
+    path = named_file_path(path, 'rs.open("RESULT.h5")')
     return read_unfolded(path, lambda: _opened(path))
 
 
-def file_path(given: object, example: str) -> Path:
+def named_file_path(given: object, example: str) -> Path:
     """Path of a file named by the user; InputError, with `example`, if `given` is no file name."""
     if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
         raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
@@ -115,7 +115,7 @@ def with_checksums(data: xr.Dataset) -> xr.Dataset:
     return data.assign_attrs({SEAL_ATTRIBUTE: json.dumps(digests)})
 
 
-def view_of(data: xr.Dataset, path: Path) -> View:
+def view_of_dataset(data: xr.Dataset, path: Path) -> View:
     """A Dataset as the view that `show` and `plot` read; InputError if the Dataset is no complete result.
 
     path: name of the result for messages.

@@ -21,7 +21,7 @@ from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
 from ..tasks.running.job import Job, attributes_of
-from .dataset import in_layout_order, view_of, with_arm_selection, with_checksums
+from .dataset import in_layout_order, view_of_dataset, with_arm_selection, with_checksums
 
 
 class Result(Protocol):
@@ -45,7 +45,7 @@ class StoredResult:
     @property
     def view(self) -> View:
         """The view of the Dataset that tables read."""
-        return view_of(self.dataset, Path(str(self.dataset.attrs.get("title", "data"))))
+        return view_of_dataset(self.dataset, Path(str(self.dataset.attrs.get("title", "data"))))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,7 @@ from .study import Contender, Measurement
 
 PEER_PACKAGE_NAME = "benchmarks"
 """Name of the folder of peers in a checkout; also its package name wherever the folder is."""
-CHECKOUT = Path(__file__).parents[2]
+CHECKOUT_FOLDER = Path(__file__).parents[2]
 """Root folder of the checkout, if rodsweep runs from a checkout."""
 PEER_NAMES = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
@@ -66,8 +66,8 @@ def peer_package(directory: Path | None) -> ModuleType | None:
     """
     if directory is not None:
         return _loaded(directory)
-    own = CHECKOUT / PEER_PACKAGE_NAME
-    there = (CHECKOUT / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
+    own = CHECKOUT_FOLDER / PEER_PACKAGE_NAME
+    there = (CHECKOUT_FOLDER / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
     return _loaded(own) if there else None
 
 
@@ -90,7 +90,7 @@ def _loaded(directory: Path) -> ModuleType:
     return package
 
 
-def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
+def study_peers(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
     """Contribution of the installed peers to a study; programs are compiled in the directory `place`.
 
     package: from `peer_package`. quick: fewer settings.

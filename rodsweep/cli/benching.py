@@ -32,7 +32,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.peers import Peers, peer_package, peers_left_out, peers_of
+        from ..bench.peers import Peers, peer_package, peers_left_out, study_peers
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
@@ -58,7 +58,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
         with TemporaryDirectory(prefix="rodsweep-bench-") as place:
-            study = studies[name](quick, peers_of(package, name, quick, Path(place)))
+            study = studies[name](quick, study_peers(package, name, quick, Path(place)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))

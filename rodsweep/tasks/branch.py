@@ -37,7 +37,7 @@ class BranchTask(NonlinearTask):
         options = self.config.branch
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
         return [
-            self.AXIAL,
+            self.AXIAL_DRAG_ROW,
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),

@@ -30,7 +30,7 @@ class CriticalityTask(NonlinearTask):
     def option_rows(self) -> list[CheckRow]:
         most = self.config.criticality.crossings
         return [
-            self.AXIAL,
+            self.AXIAL_DRAG_ROW,
             ("Hopf points and their normal forms", True, f"at most {most} are stored for each rod"),
             ("cycles", False, "to third order in their amplitude only; task: limit_cycle computes them"),
         ]

@@ -28,8 +28,8 @@ from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import arms_line, material_rows, points_clause, points_text, rod_rows
-from .protocol import CheckRow, InOrder, Solver, Task, on_this_rank
+from .parts import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
+from .protocol import CheckRow, OrderedMap, Solver, Task, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
@@ -76,7 +76,7 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
         """Hopf points of the straight rod on the lines through the points."""
         lines = hopf_lines_of(self.points)
         if lines:
@@ -118,8 +118,8 @@ class LimitCycleTask(Task):
         gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
         marched = options.method == "integration"
         return [
-            *rod_rows(self.points.of_rods),
-            *material_rows(self.config, self.points.of_rods),
+            *rod_check_rows(self.points.of_rods),
+            *material_check_rows(self.config, self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),

@@ -30,7 +30,7 @@ class ModesTask(ProvedTask):
 
     config: ModesConfig
 
-    not_proved: ClassVar[str] = "modes may be missed"
+    uncertified_risk: ClassVar[str] = "modes may be missed"
     count_location: ClassVar[str] = "point"
 
     def coordinates(self) -> dict[str, np.ndarray]:

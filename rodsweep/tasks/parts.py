@@ -24,7 +24,7 @@ from .protocol import CheckRow, Task
 class ProvedTask(Task):
     """Base class of tasks whose list of modes or crossings a certificate can prove complete."""
 
-    not_proved: ClassVar[str]
+    uncertified_risk: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
     count_location: ClassVar[str] = ""
     """Where the certificate counts modes: "point", at every point, or "line", at some rods of each line."""
@@ -70,7 +70,7 @@ class ProvedTask(Task):
         """(whether the run proves completeness, method of the proof or reason for its absence)."""
         task = self.config.task
         if not getattr(self.config, task).certify:
-            return False, f"{task}.certify: false; {self.not_proved}"
+            return False, f"{task}.certify: false; {self.uncertified_risk}"
         proof = "winding number of D"
         if self.count_location == "line" and not self.config.standard:
             proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
@@ -88,7 +88,11 @@ class ProvedTask(Task):
 
     def check_rows(self) -> list[CheckRow]:
         what, why = self.left_out
-        parts = [*rod_rows(self.moved), *material_rows(self.config, self.moved), *self.option_rows()]
+        parts = [
+            *rod_check_rows(self.moved),
+            *material_check_rows(self.config, self.moved),
+            *self.option_rows(),
+        ]
         return [*parts, ("certificate", *self.certificate()), (what, False, why)]
 
 
@@ -96,12 +100,12 @@ class ProvedTask(Task):
 class NonlinearTask(ProvedTask):
     """Base class of tasks on cycles: near Hopf points, or on branches from Hopf points."""
 
-    not_proved: ClassVar[str] = "Hopf points may be missed"
+    uncertified_risk: ClassVar[str] = "Hopf points may be missed"
     left_out: ClassVar[tuple[str, str]] = (
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
-    AXIAL: ClassVar[CheckRow] = (
+    AXIAL_DRAG_ROW: ClassVar[CheckRow] = (
         "axial drag",
         True,
         "parameters.gamma1; it changes cycles, but no Hopf point",
@@ -131,7 +135,7 @@ def points_clause(points: Points, clause: str) -> str:
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
-def rod_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
+def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """Rows of `check` on stretch, shear and rotational drag.
 
     columns: values of the rods' parameters by name, arrays of any shape.
@@ -143,7 +147,7 @@ def rod_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     ]
 
 
-def material_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
+def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """Rows of `check` on quantities that vary along the arm, and on the constitutive law.
 
     Empty for uniform arms of linear material. columns: values of the rods' parameters by name, arrays of any

@@ -25,7 +25,7 @@ class PhaseDiagramTask(ProvedTask):
 
     config: PhaseDiagramConfig
 
-    not_proved: ClassVar[str] = "crossings may be missed"
+    uncertified_risk: ClassVar[str] = "crossings may be missed"
     count_location: ClassVar[str] = "line"
 
     @property

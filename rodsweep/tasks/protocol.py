@@ -17,7 +17,7 @@ from ..sweep.points.stretches import SolveStretch, Stretches
 
 NamedArrays = dict[str, np.ndarray]
 """Arrays by name: the result of a unit of joint work."""
-InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
+OrderedMap = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
 SolveWrapper = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
 """Wrapper of the solve of a point: (index, starting state, solve) -> (outcome, state for the next point)."""
@@ -131,7 +131,7 @@ class Task(ABC):
         """Coordinates, (extent,), of the layout's dimensions beside the points, by dimension."""
         return {}
 
-    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
         """Variables of the file that depend on the config alone. in_order: shares slow work among ranks."""
         return ()
 

@@ -24,7 +24,7 @@ from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, points_text
-from .protocol import CheckRow, InOrder, Solver, on_this_rank
+from .protocol import CheckRow, OrderedMap, Solver, on_this_rank
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
@@ -36,7 +36,7 @@ class SpectrumTask(ProvedTask):
 
     config: SpectrumConfig
 
-    not_proved: ClassVar[str] = "modes may be missed"
+    uncertified_risk: ClassVar[str] = "modes may be missed"
     count_location: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
@@ -63,7 +63,7 @@ class SpectrumTask(ProvedTask):
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self, in_order: InOrder = on_this_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = on_this_rank) -> tuple[Filled, ...]:
         """Longitudinal growth rates, if requested, along the parameters on which these rates depend."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:
@@ -127,7 +127,7 @@ class SpectrumTask(ProvedTask):
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
             return ProvedTask.certificate(self)
-        return False, f"spectrum.method: {self.config.spectrum.method}; {self.not_proved}"
+        return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
     def cost(self) -> Estimate:
         options = self.config.spectrum

@@ -28,7 +28,7 @@ class ThresholdsTask(ProvedTask):
 
     config: ThresholdsConfig
 
-    not_proved: ClassVar[str] = "crossings may be missed"
+    uncertified_risk: ClassVar[str] = "crossings may be missed"
     count_location: ClassVar[str] = "line"
 
     def headline(self) -> str:

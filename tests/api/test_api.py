@@ -19,7 +19,7 @@ from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import options
-from rodsweep.api.answers.picture import SolvedShapes, in_python
+from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
 from rodsweep.api.asking import config_tree, job_from
 from rodsweep.cli import commands
 from rodsweep.config.document.reading import yaml_of
@@ -472,7 +472,7 @@ def test_choices_of_a_figure_that_there_are_not_are_refused(choice, sentence):
     ],
 )
 def test_sentences_of_the_command_are_in_the_words_of_python(command, python):
-    assert in_python(command) == python
+    assert as_python_arguments(command) == python
 
 
 def test_choices_of_a_figure_are_those_of_the_command():

@@ -10,7 +10,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.asking import config_tree, job_from
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.api.solving import solve_here
 
 ROD = {"F": 30, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
@@ -30,7 +30,7 @@ def test_solved_points_and_their_dataset_are_read_alike(config):
     task, keywords = CONFIGS[config]
     given = {name: value for name, value in keywords.items() if value is not None}
     solved = solve_here(job_from(config_tree(task, given)))
-    early, late = solved.view, view_of(solved.dataset, Path(task))
+    early, late = solved.view, view_of_dataset(solved.dataset, Path(task))
     assert early.variables.keys() == late.variables.keys()
     for name, values in late.variables.items():
         assert np.array_equal(early.variables[name], values, equal_nan=True)

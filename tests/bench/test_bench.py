@@ -16,7 +16,7 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, peers_of
+from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, study_peers
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
@@ -24,15 +24,15 @@ from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.own import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
+    MODE_COUNT,
     UNCERTIFIED_NAME,
-    WANTED_MODES,
-    own_spectrum,
+    rodsweep_spectrum,
 )
 from rodsweep.bench.spectrum.study import (
     HARD_RODS,
     ORDERS,
-    RACE,
-    hard_table,
+    SPECTRUM_RACE,
+    hard_rod_table,
     krylov_schur,
     measure_hard_rods,
     spectrum_study,
@@ -70,7 +70,7 @@ def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():
 
 def test_the_solver_alone_converges_to_the_exact_eigenvalues():
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
-    roots = exact_spectrum(EASY, WANTED_MODES)
+    roots = exact_spectrum(EASY, MODE_COUNT)
     errors = [relative_error(krylov_schur(EASY, size), roots) for size in ORDERS]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
@@ -80,16 +80,16 @@ def test_the_solver_alone_converges_to_the_exact_eigenvalues():
 def test_own_error_on_the_hard_rods_is_rounding():
     for rod in HARD_RODS.values():
         for certify in (False, True):
-            assert relative_error(own_spectrum(rod, certify), exact_spectrum(rod, WANTED_MODES)) < 1e-14
+            assert relative_error(rodsweep_spectrum(rod, certify), exact_spectrum(rod, MODE_COUNT)) < 1e-14
 
 
 @pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
 def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
     """The other code loses digits in stiff arms."""
-    found = dense_arm.eigenvalues(rod, p=10)[:WANTED_MODES]
+    found = dense_arm.eigenvalues(rod, p=10)[:MODE_COUNT]
     assert relative_error(found, exact_arm_spectrum(rod)) < 1e-8
     for certify in (False, True):
-        assert relative_error(own_spectrum(rod, certify), exact_arm_spectrum(rod)) < 1e-13
+        assert relative_error(rodsweep_spectrum(rod, certify), exact_arm_spectrum(rod)) < 1e-13
 
 
 def test_no_arm_is_solved_twice():
@@ -102,7 +102,7 @@ def test_no_arm_is_solved_twice():
 
 def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
     monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
-    bad = Contender("coarse", "3", "a", lambda arm: np.ones(WANTED_MODES, complex))
+    bad = Contender("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
     lines = arm_table(arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
     for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR):
@@ -119,7 +119,7 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
     rows = measure_hard_rods([Contender("fails", "3", "a", fails)], 1)
     assert rows[-1].error == np.inf
     assert rows[-1].failure == "failed (LinAlgError)"
-    assert "| fails | failed |" in hard_table(rows)
+    assert "| fails | failed |" in hard_rod_table(rows)
 
 
 def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
@@ -159,8 +159,8 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
     monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
-    exact = Contender("a peer", "7", "g", partial(own_spectrum, certify=False))
-    study = spectrum_study(quick=True, peers=Peers({RACE: [exact]}, skipped=["Another is skipped."]))
+    exact = Contender("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
+    study = spectrum_study(quick=True, peers=Peers({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."]))
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
         assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
         assert f"| {name} | 4 |" in study.text
@@ -273,8 +273,8 @@ def write_peers(directory):
 def test_a_study_without_peers_in_the_folder_has_none(tmp_path):
     package = peer_package(None)
     assert package.__file__ == str(ROOT / "benchmarks" / "__init__.py")
-    assert peers_of(package, "sweep", True, tmp_path) is NO_PEERS
-    assert peers_of(None, "spectrum", True, tmp_path) is NO_PEERS
+    assert study_peers(package, "sweep", True, tmp_path) is NO_PEERS
+    assert study_peers(None, "spectrum", True, tmp_path) is NO_PEERS
     assert peers_left_out(["sweep"]) == ""
 
 
@@ -284,7 +284,7 @@ def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, t
     (tmp_path / "benchmarks").mkdir()
     for name in {"pyproject.toml", "benchmarks/__init__.py"} - {missing}:
         (tmp_path / name).touch()
-    monkeypatch.setattr(bench_peers, "CHECKOUT", tmp_path)
+    monkeypatch.setattr(bench_peers, "CHECKOUT_FOLDER", tmp_path)
     assert peer_package(None) is None
 
 

@@ -13,7 +13,7 @@ from rodsweep.bench.limit_cycle.study import (
     WAITING,
     limit_cycle_study,
     target_table,
-    time_at,
+    time_at_error,
     work_table,
 )
 from rodsweep.bench.limit_cycle.sweeping import (
@@ -22,8 +22,8 @@ from rodsweep.bench.limit_cycle.sweeping import (
     RODS,
     ExactCycle,
     SweptRod,
-    from_neighbour,
     measure_sweep_points,
+    solve_from_neighbour,
     sweep_table,
 )
 from rodsweep.bench.limit_cycle.tracking import (
@@ -31,9 +31,9 @@ from rodsweep.bench.limit_cycle.tracking import (
     PERIOD_MAP,
     cycle_request,
     orbit_of,
-    returns_of,
     run_errors,
     solve_reference,
+    tip_returns,
 )
 from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender, Measurement, TimedRuns
@@ -60,7 +60,7 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
 def test_returns_lie_on_the_section():
     at = cycle()
     steps = DEFAULT.integrate(1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period))
-    found = returns_of(at.beam, steps)
+    found = tip_returns(at.beam, steps)
     angle = at.beam.tip(found.states)[2]
     assert len(found.times) >= 6
     assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip(steps.states)[2]).max()
@@ -68,10 +68,10 @@ def test_returns_lie_on_the_section():
 
 def test_interpolation_in_the_logarithms():
     times, errors = [10.0, 20.0, 80.0], [1e-4, 1e-5, 1e-7]
-    assert time_at(1e-6, errors, times) == pytest.approx(40.0)
-    assert time_at(1e-6, [1e-7, *errors], [1.0, *times]) == pytest.approx(40.0)  # once lucky
-    assert np.isnan(time_at(1e-6, errors[:2], times[:2]))
-    assert np.isnan(time_at(1e-6, errors[2:], times[2:]))
+    assert time_at_error(1e-6, errors, times) == pytest.approx(40.0)
+    assert time_at_error(1e-6, [1e-7, *errors], [1.0, *times]) == pytest.approx(40.0)  # once lucky
+    assert np.isnan(time_at_error(1e-6, errors[:2], times[:2]))
+    assert np.isnan(time_at_error(1e-6, errors[2:], times[2:]))
 
 
 def test_table_at_equal_error_states_the_ratios():
@@ -130,7 +130,7 @@ def test_points_of_a_sweep_are_as_accurate_as_they_say():
 def test_a_point_without_a_cycle_is_shown_as_failed():
     rod = SweptRod(replace(RODS[2], F=25.0), exact(), {"F": None}, NewtonWorkspace())
     with pytest.raises(ArithmeticError, match="no cycle: straight"):
-        from_neighbour("F", ACCURACY, rod)
+        solve_from_neighbour("F", ACCURACY, rod)
     failed = Measurement("rod", "sweep over F", "", 1.0, np.inf, failure="failed (ArithmeticError)")
     assert "| rod | sweep over F | failed (ArithmeticError) |  |" in sweep_table([failed])
 

@@ -20,9 +20,9 @@ from rodsweep.bench.sweep.launch import (
     CommandRun,
     SweepCase,
     launcher_words,
+    mixed_forces,
     run_case,
     spectrum_case,
-    uneven_forces,
 )
 from rodsweep.bench.sweep.study import (
     TWO_COMMANDS,
@@ -52,7 +52,7 @@ def row(name, points, ranks, seconds, memory):
             peak_memory=tuple(memory[:ranks]),
             file_bytes=1000 + 62 * points,
             journal_bytes=74 * (points - 1),
-            other_processors=0.0,
+            processors_busy_elsewhere=0.0,
             busy_fraction=1.0,
         )
         for s in (seconds, 2 * seconds, seconds)
@@ -66,7 +66,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
     monkeypatch.setattr(sweep, "QUICK_SPECTRUM_COUNT", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLE_COUNT", 2)
-    monkeypatch.setattr(followed, "QUICK_AXES", followed.QUICK_AXES[1:])
+    monkeypatch.setattr(followed, "QUICK_GRIDS", followed.QUICK_GRIDS[1:])
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
@@ -157,7 +157,7 @@ def test_growth_is_that_of_each_step():
 
 
 def test_uneven_forces_lie_on_both_sides_of_the_hopf_point_and_close_to_it():
-    forces = uneven_forces(60)
+    forces = mixed_forces(60)
     assert len(forces) == 60
     distance = forces / HOPF_FORCE - 1
     assert distance.min() < -0.5

@@ -11,7 +11,7 @@ import pytest
 from surveyed import few, only, survey_only
 
 from benchmarks import auto as auto_peer
-from benchmarks.auto import AUTO, SKIPPED, auto_program
+from benchmarks.auto import AUTO, AUTO_SKIPPED, auto_program
 from benchmarks.limit_cycle import integrators as cycle_peers
 from benchmarks.limit_cycle import peers
 from benchmarks.limit_cycle.auto_cycles import AutoSetting, continue_cycles, rod_file
@@ -32,10 +32,10 @@ from rodsweep.bench.limit_cycle.tracking import (
     PERIOD_MAP,
     cycle_request,
     measure_following,
-    on_cycle,
     orbit_of,
     run_errors,
     solve_reference,
+    state_on_cycle,
 )
 from rodsweep.bench.study import Measurement
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -113,7 +113,7 @@ def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
     found = peers(quick=True, place=tmp_path)
     assert {c.method for c in found.of(FOLLOWING)} == {family.name for family in installed_families()}
     assert {c.method for c in found.of(WAITING)} == {f.name for f in installed_families() if f.waiting}
-    assert (SKIPPED in found.skipped) == (not found.sections)
+    assert (AUTO_SKIPPED in found.skipped) == (not found.sections)
     assert (CVODE_SKIPPED in found.skipped) == (CVODE not in {family.name for family in installed_families()})
 
 
@@ -138,7 +138,7 @@ def auto(tmp_path_factory):
 
 @pytest.mark.skipif(shutil.which("gfortran") is None, reason="gfortran is not installed")
 def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
-    beam, z = on_cycle(soft_rod())
+    beam, z = state_on_cycle(soft_rod())
     n = len(z)
     (tmp_path / "rod").write_bytes(rod_file(soft_rod().form))
     # A library of its own, which finds the rod where it was written.

@@ -16,7 +16,7 @@ from benchmarks.auto import auto_program
 from benchmarks.installed import optional_module
 from benchmarks.thresholds import continuation, peers
 from benchmarks.thresholds.continuation import (
-    CONTINUATION,
+    CONTINUATION_GROUP,
     PYCONT,
     PYCONT_MODULE,
     hopf_by_auto,
@@ -24,7 +24,7 @@ from benchmarks.thresholds.continuation import (
     matrix_polynomial,
 )
 from benchmarks.thresholds.spectra_by_force import (
-    BY_STEPS,
+    STEP_SEARCHES,
     LeadingPair,
     growth_rate,
     hopf_by_interpolation,
@@ -57,7 +57,7 @@ def auto(tmp_path_factory):
 @pytest.mark.parametrize("name", ["Fig. 2b", "filament", "soft"])
 def test_root_finding_reaches_its_tolerance(name, tolerance):
     case = CASE[name]
-    for kind, searches in BY_STEPS.items():
+    for kind, searches in STEP_SEARCHES.items():
         for search in searches.values():
             found = search(tolerance, case)
             assert case.error_of(kind, found.force) < tolerance + FLOOR
@@ -139,7 +139,7 @@ def test_a_continuation_code_that_fails_is_shown_as_failed():
 
     run = partial(hopf_by_pycont, SimpleNamespace(arclengthContinuation=give_up), 1.0)
     for case in (CASE["filament"], CASE["Fig. 2d"]):
-        (result,) = measure_rods(HOPF, [case], [Contender("a", "", CONTINUATION, run, slow=True)], 1)
+        (result,) = measure_rods(HOPF, [case], [Contender("a", "", CONTINUATION_GROUP, run, slow=True)], 1)
         assert result.error == inf
         assert "| failed (RuntimeError) |" in threshold_table(HOPF, [result])
 
@@ -155,11 +155,11 @@ def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_p
 
 def test_peers_that_are_installed_take_part_and_are_explained(tmp_path):
     found = peers(quick=True, place=tmp_path)
-    codes = {c.method for c in found.of(HOPF) if c.group == CONTINUATION}
+    codes = {c.method for c in found.of(HOPF) if c.group == CONTINUATION_GROUP}
     assert (PYCONT in codes) == (optional_module(PYCONT_MODULE) is not None)
     assert len(codes) + len(found.skipped) == 2
     assert len(codes) == len(found.notes) - 1
-    assert not any(c.group == CONTINUATION for c in found.of(ONSET))
+    assert not any(c.group == CONTINUATION_GROUP for c in found.of(ONSET))
 
 
 def test_a_program_that_crashes_is_a_failure(tmp_path):

@@ -11,7 +11,7 @@ from surveyed import few
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.api.dataset import view_of
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.floquet import least_outside
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union
@@ -340,7 +340,7 @@ def test_the_curve_in_the_figure_is_the_branch(k1, stop):
     """Straight pieces between its few cycles miss it by up to a hundredth, next to a Hopf point most."""
     coarse, fine = (
         RodBranches(
-            view_of(
+            view_of_dataset(
                 rs.sweep("branch", k1=k1, k2=1e4, gamma3=1e-4, stop=stop, accuracy=accuracy), Path("b.h5")
             )
         ).curves

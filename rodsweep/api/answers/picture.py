@@ -20,7 +20,7 @@ from ...post.figures.sections import choices_of, section
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
-from ..dataset import file_path
+from ..dataset import named_file_path
 from .answer import Answer
 from .tabling import view_of_result
 
@@ -39,10 +39,10 @@ ARGUMENTS_OF_OPTIONS = (
     (re.compile(r"--(at|what|output|roots|width|style|title)\b"), r"\1"),
 )
 """Regular expressions of options of `rodsweep plot`, each with the corresponding argument of `rs.plot`."""
-EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
+PLOT_EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 
-def in_python(sentence: str) -> str:
+def as_python_arguments(sentence: str) -> str:
     """A sentence in which arguments of `rs.plot` replace options of `rodsweep plot`."""
     sentence = AT_OPTION.sub(_place, sentence)
     for option, argument in ARGUMENTS_OF_OPTIONS:
@@ -64,7 +64,7 @@ def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
         try:
             return function(*values, **named)
         except InputError as error:
-            raise InputError(in_python(str(error))) from None
+            raise InputError(as_python_arguments(str(error))) from None
 
     return call
 
@@ -146,7 +146,7 @@ class Picture:
 
 
 @one_at_a_time
-@in_sentences(EXAMPLE)
+@in_sentences(PLOT_EXAMPLE)
 @refusing_in_python
 def plot(
     data: Drawable | Sequence[Drawable],
@@ -176,13 +176,13 @@ def plot(
             f"{short(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
         )
     values = choices_of(at)
-    views = [section(view_of_result(one, EXAMPLE), values) for one in several]
+    views = [section(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]
-        picture = Picture(views, choices, in_python(shown), path.read_bytes())
+        picture = Picture(views, choices, as_python_arguments(shown), path.read_bytes())
     if output is not None:
-        picture.save(file_path(output, EXAMPLE))
+        picture.save(named_file_path(output, PLOT_EXAMPLE))
     return picture

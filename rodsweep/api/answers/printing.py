@@ -14,7 +14,7 @@ from ...post.tables.alignment import GAP, WIDTH, Line, blocks, column_cells, fol
 from ...post.tables.columns import Column
 from ...wording import counted
 
-BRIEF_LINES = 11
+MAX_BRIEF_LINES = 11
 """Maximum number of lines of the short text of an answer, unless the sentences of the heading need more."""
 MIN_ROWS = 3
 """Minimum number of printed numbers, or printed rows of a list, whatever the length of the heading."""
@@ -75,7 +75,7 @@ def brief_text(printed: PrintedAnswer) -> str:
     """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
     lines = [*_heads(printed), *_number_lines(printed)]
     more = _more(printed)
-    lines += _brief_list(printed, BRIEF_LINES - len(lines) - more.count("\n") - 1)
+    lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - more.count("\n") - 1)
     return "\n".join([*lines, more])
 
 
@@ -84,7 +84,7 @@ def brief_html(printed: PrintedAnswer) -> str:
     parts = [_html_heading(printed)]
     if pairs := _number_pairs(printed):
         parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
-    columns, _ = _brief_cells(printed, BRIEF_LINES)
+    columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
         parts.append(_html_table([name, unit], rows))
@@ -146,7 +146,7 @@ def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
 
 def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the main numbers, after an empty line; no line without numbers."""
-    room = BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
+    room = MAX_BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
     pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
     if not pairs:
         return []

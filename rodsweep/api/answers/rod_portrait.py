@@ -18,11 +18,11 @@ from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
-from ..dataset import file_path, view_of
+from ..dataset import named_file_path, view_of_dataset
 from ..solving import solve_here
 from .answer import Answer
 
-EXAMPLE = 'rod.portrait().save("portrait.png")'
+SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'
 
 
 @dataclass(frozen=True)
@@ -91,10 +91,10 @@ class RodPortrait:
         return portrait_figure(self.results, with_words=False)
 
     @one_at_a_time
-    @in_sentences(EXAMPLE)
+    @in_sentences(SAVE_EXAMPLE)
     def save(self, path: str | Path) -> str:
         """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about it."""
-        output = file_path(path, EXAMPLE)
+        output = named_file_path(path, SAVE_EXAMPLE)
         require_portrait(output)
         return write_portrait(self.results, output)
 
@@ -114,7 +114,7 @@ def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> Ro
     def solve(job: Job) -> View:
         solved = solve_here(job, progress=progress)
         answers[job.text] = Answer(rod, solved, solved.messages[0])
-        return view_of(solved.dataset, Path(job.name))
+        return view_of_dataset(solved.dataset, Path(job.name))
 
     results = rod_results(request, solve)
     return RodPortrait(rod, results, answers)

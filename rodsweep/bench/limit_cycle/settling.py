@@ -19,9 +19,9 @@ from .tracking import (
     START_DEFLECTION,
     ReferenceCycle,
     cycle_at,
-    on_cycle,
     orbit_of,
-    returns_of,
+    state_on_cycle,
+    tip_returns,
 )
 
 NEAR_HOPF_F = 27.43
@@ -117,7 +117,7 @@ def _waited(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod
     failed: tuple[str, ...] = ()
     for contender in settings:
         try:
-            found = returns_of(at.beam, contender.run(leg))
+            found = tip_returns(at.beam, contender.run(leg))
         except ArithmeticError:
             failed += (contender.setting,)
             continue
@@ -139,7 +139,7 @@ def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
     multiplier.
     """
     cycle = cycle_at(NEAR_HOPF_F)
-    leg = IntegrationTask(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
+    leg = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     waits = [

@@ -32,9 +32,9 @@ from .tracking import (
     solve_reference,
 )
 
-ROUNDS = 9
+ROUND_COUNT = 9
 """Number of timed rounds."""
-QUICK_ROUNDS = 1
+QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
 FOLLOWING = "following"
 """Name of the race in which integrators follow a cycle for some periods."""
@@ -50,7 +50,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
     quick: fewer rounds, tolerances and rods.
     """
     warm_up()
-    rounds, stride = (QUICK_ROUNDS, 2) if quick else (ROUNDS, 1)
+    rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     at = solve_reference()
     followers = every_nth_setting([*DEFAULT.followers(), *peers.of(FOLLOWING)], stride)
     found = measure_following(at, followers, rounds)
@@ -107,7 +107,7 @@ def target_table(measurements: Sequence[Measurement]) -> str:
         errors = [m.error for m in own]
         median = [m.seconds for m in own]
         least = [m.least_seconds for m in own]
-        at[method] = time_at(TARGET_ERROR, errors, median), time_at(TARGET_ERROR, errors, least)
+        at[method] = time_at_error(TARGET_ERROR, errors, median), time_at_error(TARGET_ERROR, errors, least)
     default, by_least = at[DEFAULT.name]
     rows = [
         {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / by_least}
@@ -124,7 +124,7 @@ def target_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def time_at(target: float, errors: Sequence[float], times: Sequence[float]) -> float:
+def time_at_error(target: float, errors: Sequence[float], times: Sequence[float]) -> float:
     """Time of a method at the error `target`, interpolated in logarithms; nan if the method does not reach
     it.
 

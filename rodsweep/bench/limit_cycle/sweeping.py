@@ -134,7 +134,7 @@ def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
     return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
 
 
-def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
+def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the timed points of a sweep along `axis`, each from its neighbour; returns the last cycle."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
@@ -144,7 +144,7 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     return cycle
 
 
-def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
+def solve_from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """Solves the cycle of a rod without a neighbour; start: value of the option `start`."""
     return require_cycle(
         solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
@@ -162,11 +162,11 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
     """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and each cold start."""
     setting = f"{accuracy:.0e}"
     warm = [
-        Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(from_neighbour, axis, accuracy))
+        Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
         for axis in SWEPT_PARAMETERS
     ]
     cold = [
-        Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(from_cold, start, accuracy))
+        Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_from_cold, start, accuracy))
         for name, start in COLD_STARTS.items()
     ]
     return warm + cold

@@ -98,7 +98,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
     return cycle.neighbour.branch.orbit
 
 
-def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
+def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     """(beam of an orbit for integrators, state z of the orbit at the largest y of the tip, (unknowns,))."""
     form = orbit.form
     beam = Beam(form.rod, form.mesh)
@@ -109,7 +109,7 @@ def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
     orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
-    return ReferenceCycle(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
+    return ReferenceCycle(*state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 
 def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
@@ -126,7 +126,7 @@ def run_errors(at: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
 
     at: the reference cycle. The first return of the run does not count.
     """
-    found = returns_of(at.beam, run)
+    found = tip_returns(at.beam, run)
     period = _rms(np.diff(found.times)[1:] / at.period - 1)
     amplitude = _rms(found.heights[1:] / at.tip_y_max - 1)
     steps = (len(run.times) - 1) / FOLLOWED_PERIODS
@@ -151,7 +151,7 @@ class TipReturns:
     heights: Array
 
 
-def returns_of(beam: Beam, run: Trajectory) -> TipReturns:
+def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     """All returns of the tip in a run, located by repeating the steps around them."""
     row = angle_weights(beam)
     y = beam.tip(run.states)[1]
@@ -169,11 +169,11 @@ def returns_of(beam: Beam, run: Trajectory) -> TipReturns:
         times.append(run.times[k] + when)
         states.append(_again(beam, run.states[k], when).states[-1])
     for first, last in pairwise(rising):
-        heights.append(height_near(beam, run, first + int(np.argmax(y[first : last + 1]))))
+        heights.append(largest_y_near(beam, run, first + int(np.argmax(y[first : last + 1]))))
     return TipReturns(np.array(times), np.array(states), np.array(heights))
 
 
-def height_near(beam: Beam, run: Trajectory, k: int) -> float:
+def largest_y_near(beam: Beam, run: Trajectory, k: int) -> float:
     """Largest y of the tip, in L, in the two steps of a run that meet at its k-th state."""
     again = _again(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
     height = _spline(again.times, beam.tip(again.states)[1])

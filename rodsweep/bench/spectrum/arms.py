@@ -21,12 +21,12 @@ from .exact import relative_error
 from .own import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
-    PENCIL,
-    THIS_TOOL,
+    MODE_COUNT,
+    PENCIL_GROUP,
+    RODSWEEP_GROUP,
     UNCERTIFIED_NAME,
-    WANTED_MODES,
-    leading,
-    own_spectrum,
+    leading_eigenvalues,
+    rodsweep_spectrum,
 )
 
 ARM_RACE = "arms"
@@ -47,7 +47,7 @@ ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements at which eigensolvers are run."""
 EDGE_ACCURACY = 1e-2
 """Accuracy for which the edges of the elements are chosen; a higher order makes the mesh more accurate."""
-TARGET = 1e-10
+TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""
 REFERENCE_REFINEMENT = 16.0
 """Factor on |w| for which the elements of the reference D are chosen."""
@@ -74,7 +74,7 @@ class UnsolvedArms:
 def exact_arm_spectrum(rod: Rod) -> list[complex]:
     """The WANTED_MODES leading eigenvalues of an arm, by Newton's method on D with finer elements."""
     determinant = ArmDeterminant(rod)
-    roots: list[complex] = own_spectrum(rod, certify=True).tolist()
+    roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
         values = [determinant.value_at_level(w, REFERENCE_REFINEMENT) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
@@ -105,7 +105,8 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
         for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
     return (
-        f"Leading {WANTED_MODES} eigenvalues of arms to {TARGET:.0e}: ms and error of the cheapest size that "
+        f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
+        "that "
         f"reaches this error, {count_text(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
         "Errors are distances from the roots of D on elements for 16 times the |w|:\n\n"
@@ -114,7 +115,7 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
 
 def _cheapest(measurements: Sequence[Measurement]) -> str:
     """Cell of `arm_table` for one method on one arm; measurements: at all sizes."""
-    reached = [m for m in measurements if m.error <= TARGET]
+    reached = [m for m in measurements if m.error <= TARGET_ERROR]
     if not reached:
         return f"no better than {min(m.error for m in measurements):.0e}"
     best = min(reached, key=lambda m: m.seconds)
@@ -123,10 +124,10 @@ def _cheapest(measurements: Sequence[Measurement]) -> str:
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
     """Mesh of an arm with as few elements as resolve its variation, and with elements of the given order."""
-    return ArmMesh(arm_mesh(rod, WANTED_MODES, EDGE_ACCURACY).edges, order)
+    return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
 
 
-def on_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
+def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
     """Eigenvalues, (modes,), of the next arm by an eigensolver of rods; size: order or number of
     intervals.
     """
@@ -135,21 +136,22 @@ def on_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur, without refinement on D."""
-    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, WANTED_MODES, tight=True)
-    return leading(w, WANTED_MODES + 1)
+    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, tight=True)
+    return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
 def _own(certify: bool, arms: UnsolvedArms) -> Complex:
-    return own_spectrum(arms.another(), certify)
+    return rodsweep_spectrum(arms.another(), certify)
 
 
 def contenders() -> list[Contender]:
     """Contenders of ARM_RACE: rodsweep with and without certificate, and Krylov-Schur at all orders."""
     own = [
-        Contender(UNCERTIFIED_NAME, "", THIS_TOOL, partial(_own, False)),
-        Contender(CERTIFIED_NAME, "", THIS_TOOL, partial(_own, True)),
+        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, False)),
+        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_own, True)),
     ]
     krylov = [
-        Contender(KRYLOV_SCHUR, str(order), PENCIL, partial(on_arm, _krylov_schur, order)) for order in ORDERS
+        Contender(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
+        for order in ORDERS
     ]
     return own + krylov

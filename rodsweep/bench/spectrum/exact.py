@@ -11,9 +11,9 @@ from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ...solve.spectrum.status import SpectrumStatus
 
-DIGITS = 30
+DIGIT_COUNT = 30
 """Number of correct decimal digits of the eigenvalues."""
-GUARD_DIGITS = 25
+GUARD_DIGIT_COUNT = 25
 """Number of additional digits of the computation, more than the cancellation in D loses."""
 SECANT_STEP = mp.mpf(10) ** -12
 """Relative distance between the two starting points of the secant method."""
@@ -55,14 +55,14 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     if found.status != SpectrumStatus.ok or not found.certified:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
     roots = []
-    with mp.workdps(DIGITS + GUARD_DIGITS):
+    with mp.workdps(DIGIT_COUNT + GUARD_DIGIT_COUNT):
         D = multiprecision_determinant(rod)
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
             # Near a simple root D grows linearly: from |D| at a relative distance of SECANT_STEP follows |D|
             # at a distance of 10^-DIGITS.
-            small = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGITS / SECANT_STEP
+            small = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
             if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > small:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
@@ -76,6 +76,6 @@ def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
     """
     if isinstance(w, Exception) or not len(w):
         return float("inf")
-    with mp.workdps(DIGITS):
+    with mp.workdps(DIGIT_COUNT):
         computed = [mp.mpc(complex(value)) for value in w]
         return max(float(min(abs(value - root) for value in computed) / abs(root)) for root in exact)

@@ -6,7 +6,7 @@ from ...arrays import Complex
 from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 
-WANTED_MODES = 4
+MODE_COUNT = 4
 """Number of leading eigenvalues that every method computes."""
 ACCURACY = 1e-12
 """Relative accuracy requested from rodsweep, whose error does not depend on the request."""
@@ -16,15 +16,15 @@ CERTIFIED_NAME = "rodsweep, certificate on"
 """Name of rodsweep with certificate in the tables."""
 KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
 """Name of SLEPc's Krylov-Schur on rodsweep's pencil in the tables."""
-THIS_TOOL, PENCIL = "this tool", "the same pencil"
+RODSWEEP_GROUP, PENCIL_GROUP = "this tool", "the same pencil"
 """Groups of methods in the figure: rodsweep, and eigensolvers on rodsweep's pencil."""
 
 
-def own_spectrum(rod: Rod, certify: bool) -> Complex:
+def rodsweep_spectrum(rod: Rod, certify: bool) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by rodsweep, which chooses the mesh itself."""
-    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
+    return solve_spectrum(rod, SpectrumRequest(MODE_COUNT, ACCURACY, certify)).eigenvalues
 
 
-def leading(w: Complex, count: int) -> Complex:
+def leading_eigenvalues(w: Complex, count: int) -> Complex:
     """The `count` eigenvalues of w, (n,), with the largest real parts, largest first; (count,)."""
     return w[np.argsort(-w.real, kind="stable")][:count]

@@ -36,17 +36,17 @@ from .exact import exact_spectrum, relative_error
 from .own import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
-    PENCIL,
-    THIS_TOOL,
+    MODE_COUNT,
+    PENCIL_GROUP,
+    RODSWEEP_GROUP,
     UNCERTIFIED_NAME,
-    WANTED_MODES,
-    leading,
-    own_spectrum,
+    leading_eigenvalues,
+    rodsweep_spectrum,
 )
 
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Orders of rodsweep's pencil at which eigensolvers are run."""
-RACE = "spectrum"
+SPECTRUM_RACE = "spectrum"
 """Name of the race of spectra of rods."""
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
@@ -64,11 +64,11 @@ HARD_RODS = {
     "12 unstable modes: F = 2000, k1 = 1e4": Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4),
 }
 """Rods on which methods lose accuracy or speed, beside an easy rod, by name in the table."""
-TARGETS = (1e-12, 1e-10, 1e-6)
+TARGET_ERRORS = (1e-12, 1e-10, 1e-6)
 """Relative errors at which the methods are compared, smallest first."""
-ROUNDS = 25
+ROUND_COUNT = 25
 """Number of timed rounds."""
-QUICK_ROUNDS = 2
+QUICK_ROUND_COUNT = 2
 """Number of timed rounds of a quick run."""
 QUICK_STRIDE = 3
 """A quick run uses every third size on hard rods and arms."""
@@ -80,20 +80,20 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     quick: fewer rounds, target errors and sizes.
     """
     warm_up()
-    rounds, stride = (QUICK_ROUNDS, QUICK_STRIDE) if quick else (ROUNDS, 1)
+    rounds, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
     rods = [
         Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
         for k1, k2, gamma3, top in PAPER_RODS.values()
         for F in np.linspace(0.1 * top, top, FORCE_COUNT)
     ]
-    exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
-    every = contenders() + peers.of(RACE)
-    targets = TARGETS[: 1 if quick else None]
+    exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
+    every = contenders() + peers.of(SPECTRUM_RACE)
+    targets = TARGET_ERRORS[: 1 if quick else None]
     blocks = [equal_error_table(every, rods, exact, target, rounds) for target in targets]
     measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
     arms = arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
-    blocks += [*peers.notes, hard_table(measurements), arm_table(arms, rounds), *peers.skipped]
-    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0], undrawn=arms)
+    blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
+    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms)
 
 
 def cheapest_contenders(
@@ -139,7 +139,7 @@ def equal_error_table(
         }
         rows.append(row)
     return (
-        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
+        f"Leading {MODE_COUNT} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
         f"this error; median over {len(rods)} points of the paper's four rods, "
         f"{count_text(rounds, 'round')}:\n\n"
     ) + markdown_table(
@@ -153,7 +153,7 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
     """Measurements of the contenders `every` on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(spectrum_error, exact_spectrum(rod, WANTED_MODES))
+        judge = partial(spectrum_error, exact_spectrum(rod, MODE_COUNT))
         measurements += measure_case(case, rod, every, rounds, judge)
     return measurements
 
@@ -163,7 +163,7 @@ def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
     return {"error": relative_error(w, exact)}
 
 
-def hard_table(measurements: Sequence[Measurement]) -> str:
+def hard_rod_table(measurements: Sequence[Measurement]) -> str:
     """Table of hard rods: the smallest error of every method, and its time for ten times this error."""
     rows = [
         {
@@ -173,20 +173,20 @@ def hard_table(measurements: Sequence[Measurement]) -> str:
         for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
     return (
-        f"Leading {WANTED_MODES} eigenvalues of hard rods: the smallest relative error that a method reaches "
+        f"Leading {MODE_COUNT} eigenvalues of hard rods: the smallest relative error that a method reaches "
         "at any size, and the ms of the cheapest size with at most ten times this error (the figure shows "
         "all sizes):\n\n"
     ) + markdown_table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
 def hard_cell(measurements: Sequence[Measurement]) -> str:
-    """Cell of `hard_table` for one method on one rod; measurements: at all sizes."""
+    """Cell of `hard_rod_table` for one method on one rod; measurements: at all sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
 
 
-def mesh_of(order: int) -> Resolution:
+def pencil_mesh(order: int) -> Resolution:
     """Mesh of one element of an order, or of several equal elements if the order exceeds the largest
     allowed.
     """
@@ -198,14 +198,17 @@ def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without refinement on D; size:
     order.
     """
-    w = eigen_solver(mesh_of(size)).solve(rod, problem_of(rod).shift, WANTED_MODES, tight=True)
-    return leading(w, WANTED_MODES + 1)
+    w = eigen_solver(pencil_mesh(size)).solve(rod, problem_of(rod).shift, MODE_COUNT, tight=True)
+    return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
 def contenders() -> list[Contender]:
     """Contenders of RACE: rodsweep with and without certificate, and Krylov-Schur at all sizes."""
     return [
-        Contender(UNCERTIFIED_NAME, "", THIS_TOOL, partial(own_spectrum, certify=False)),
-        Contender(CERTIFIED_NAME, "", THIS_TOOL, partial(own_spectrum, certify=True)),
-        *(Contender(KRYLOV_SCHUR, str(size), PENCIL, partial(krylov_schur, size=size)) for size in ORDERS),
+        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
+        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
+        *(
+            Contender(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
+            for size in ORDERS
+        ),
     ]

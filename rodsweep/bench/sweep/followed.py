@@ -27,7 +27,7 @@ ALONE = "alone"
 
 
 @dataclass(frozen=True, slots=True)
-class LongAxis:
+class ComparedGrids:
     """Two grids over F, k1, k2 and gamma3: one along whose longest axis eigenvalues are followed, and a
     smaller one for points solved alone.
 
@@ -41,18 +41,18 @@ class LongAxis:
     taper: float = 1.0
 
 
-AXES = (
-    LongAxis("512 of F", (512, 2, 98, 2), (512, 2, 5, 2)),
-    LongAxis("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
-    LongAxis("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
-    LongAxis("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
-    LongAxis("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
+GRIDS = (
+    ComparedGrids("512 of F", (512, 2, 98, 2), (512, 2, 5, 2)),
+    ComparedGrids("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
+    ComparedGrids("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
+    ComparedGrids("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
+    ComparedGrids("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
 """Grids of the benchmark."""
-QUICK_AXES = (
-    LongAxis("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
-    LongAxis("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
-    LongAxis("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
+QUICK_GRIDS = (
+    ComparedGrids("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
+    ComparedGrids("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
+    ComparedGrids("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
 )
 """Grids of a quick run."""
 
@@ -63,7 +63,7 @@ def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) ->
     place: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: small grids.
     """
     found = []
-    for axis in QUICK_AXES if quick else AXES:
+    for axis in QUICK_GRIDS if quick else GRIDS:
         for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
             directory = place / f"{method} {axis.name}".replace(" ", "_")
             directory.mkdir()

@@ -80,13 +80,13 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     `directory`.
     """
     directory.mkdir()
-    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in uneven_forces(points).tolist()]
+    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in mixed_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
     (directory / CONFIG_NAME).write_text(CYCLE_CONFIG)
     return SweepCase("limit cycles", points, (directory,), kind)
 
 
-def uneven_forces(count: int) -> np.ndarray:
+def mixed_forces(count: int) -> np.ndarray:
     """Forces far below the Hopf point, just below, just above, and far above it, in random order,
     (count,).
     """
@@ -120,7 +120,7 @@ class CommandRun:
     """Size of the result files in bytes."""
     journal_bytes: int
     """Size, in bytes, of the journals that a killed run left."""
-    other_processors: float
+    processors_busy_elsewhere: float
     """Number of processors that other programs kept busy; nan if unknown."""
     busy_fraction: float
     """Fraction of the ranks' time spent on points instead of waiting; nan without the real solver."""
@@ -156,7 +156,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
         journal_bytes=sum(
             page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
         ),
-        other_processors=float(elsewhere),
+        processors_busy_elsewhere=float(elsewhere),
         busy_fraction=min(busy for _, busy in solved),
     )
 

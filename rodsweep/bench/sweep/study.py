@@ -43,7 +43,7 @@ SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
 """Number of points of the sweep of spectra, and that of a quick run."""
 CYCLE_COUNT, QUICK_CYCLE_COUNT = 200, 10
 """Number of points of the sweep of limit cycles, and that of a quick run."""
-ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
+ROUND_COUNT, CYCLE_ROUND_COUNT, QUICK_ROUND_COUNT = 3, 2, 1
 """Numbers of timed rounds: of spectra, of limit cycles, and of all sweeps in a quick run."""
 TWO_COMMANDS = "spectra, two commands"
 """Name of the case of two simultaneous commands, each with half of the spectra on one rank. Their speed is an
@@ -88,7 +88,9 @@ def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) 
 
     place: directory of the sweeps. ranks: numbers of ranks.
     """
-    rounds, cycle_rounds = (QUICK_ROUNDS, QUICK_ROUNDS) if quick else (ROUNDS, CYCLE_ROUNDS)
+    rounds, cycle_rounds = (
+        (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
+    )
     count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
     spectra = spectrum_case(place / "spectra", "spectra", count, SOLVED)
     cycles = cycle_case(place / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
@@ -108,7 +110,7 @@ def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int])
 
     place: directory of the sweeps. ranks: numbers of ranks. Sweeps are killed at the last point on one rank.
     """
-    sizes, rounds = (QUICK_SIZES, QUICK_ROUNDS) if quick else (SWEEP_SIZES, ROUNDS)
+    sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:
         case = spectrum_case(place / f"instant{size}", "no solver", size, INSTANT)
@@ -149,7 +151,7 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,
         "file_bytes_per_point": runs[0].file_bytes / case.points,
         "journal_bytes_per_point": runs[0].journal_bytes / (case.points - 1) if case.kind == KILLED else nan,
-        "processors_elsewhere": nan_median(run.other_processors for run in runs),
+        "processors_elsewhere": nan_median(run.processors_busy_elsewhere for run in runs),
         "share_busy": nan_median(run.busy_fraction for run in runs),
     }
     return Measurement(

@@ -114,9 +114,9 @@ ARM_INTRODUCTION = (
 """Description of the tables of arms for the report."""
 KIND_TITLES = {ONSET: "onset", HOPF: "Hopf point"}
 """Names of the kinds of thresholds in the tables."""
-ROUNDS = 5
+ROUND_COUNT = 5
 """Number of timed rounds."""
-QUICK_ROUNDS = 1
+QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
 MAX_DIGITS = 16
 """Maximum number of correct digits that a threshold is credited with."""
@@ -134,7 +134,7 @@ def thresholds_study(quick: bool, peers: Peers) -> Study:
     quick: fewer rods and rounds.
     """
     warm_up()
-    cases, rounds = (QUICK_CASES, QUICK_ROUNDS) if quick else (CASES, ROUNDS)
+    cases, rounds = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (CASES, ROUND_COUNT)
     blocks = [" ".join([introduction(rounds), *peers.notes])]
     found = []
     for group in (cases, ARM_CASES):
@@ -149,12 +149,14 @@ def thresholds_study(quick: bool, peers: Peers) -> Study:
 def contenders(kind: str) -> list[Contender]:
     """Contenders of the race of a kind of threshold: rodsweep with and without its proof of completeness."""
     return [
-        Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(own_threshold, kind, True)),
-        Contender("rodsweep, all changes", "without proof", RODSWEEP, partial(own_threshold, kind, False)),
+        Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(rodsweep_threshold, kind, True)),
+        Contender(
+            "rodsweep, all changes", "without proof", RODSWEEP, partial(rodsweep_threshold, kind, False)
+        ),
     ]
 
 
-def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
+def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
     """The first threshold of a kind by rodsweep, which finds all changes of the rod.
 
     certify: whether rodsweep proves the list of changes complete.

@@ -21,7 +21,7 @@ from ...sweep.points.points import Points
 from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
-MODEL_APPLIES = VALIDITY[0].name
+MODEL_APPLIES_NAME = VALIDITY[0].name
 """Name of the variable that states whether the model applies."""
 OUTCOME_MEMORY = 1e8
 """Approximate memory, in bytes, of the outcomes that a rank keeps for equal rods."""
@@ -173,7 +173,7 @@ class SkippingSolver:
     @property
     def _empty(self) -> dict[str, Any]:
         """Every variable of a point without a rod, except its status."""
-        return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES: Validity.does_not_apply}
+        return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         """Results for the points of a stretch, (indices,); only points with a rod are solved."""
