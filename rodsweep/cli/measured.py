@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
+from ..bench.sweep.launch import FIRST_RANK_PREFIX, KILLED, OTHER_RANKS_PREFIX, SOLVED
 from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
@@ -72,9 +72,9 @@ class InstantSpectra(SpectrumTask):
 
 def record_memory(directory: Path) -> None:
     """Writes the peak memory of this rank in bytes into a file of the directory."""
-    (directory / f"{FIRST_RANK if prints_messages() else OTHER_RANKS}-{os.getpid()}").write_text(
-        str(peak_memory())
-    )
+    (
+        directory / f"{FIRST_RANK_PREFIX if prints_messages() else OTHER_RANKS_PREFIX}-{os.getpid()}"
+    ).write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:

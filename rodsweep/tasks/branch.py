@@ -66,11 +66,13 @@ class BranchTask(NonlinearTask):
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
             solve=lambda index: solve_branches(self.points.rod(index), request, workspace),
-            record=lambda index, result: record(result, options.along, options.cycles, options.special),
+            record=lambda index, result: branch_values(
+                result, options.along, options.cycles, options.special
+            ),
         )
 
 
-def record(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
+def branch_values(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
     """Variables of the file for all branches of a rod.
 
     along: the followed parameter. points: length of the list of cycles. special: length of the list of

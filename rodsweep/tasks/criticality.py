@@ -11,7 +11,7 @@ from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
 from .parts import NonlinearTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
-from .thresholds import search_record
+from .thresholds import crossing_values
 
 if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
@@ -52,13 +52,13 @@ class CriticalityTask(NonlinearTask):
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
             solve=lambda index: solve_criticality(self.points.rod(index), request),
-            record=lambda index, result: record(result, options.crossings),
+            record=lambda index, result: criticality_values(result, options.crossings),
         )
 
 
-def record(result: "Criticality", most: int) -> dict[str, Any]:
+def criticality_values(result: "Criticality", most: int) -> dict[str, Any]:
     """Variables of the file for the Hopf points of a rod; most: length of the list of Hopf points."""
-    search = search_record(result, most, "F", "crossing_F")
+    search = crossing_values(result, most, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.crossings, strict=False)

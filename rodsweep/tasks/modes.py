@@ -80,11 +80,11 @@ class ModesTask(ProvedTask):
             statuses=tuple(SpectrumStatus),
             warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), first),
             solve=lambda index: solve_modes(self.points.rod(index), request),
-            record=lambda index, result: record(result, options.growth),
+            record=lambda index, result: mode_values(result, options.growth),
         )
 
 
-def record(result: "Modes", growth: bool) -> dict[str, Any]:
+def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
     values = recorded(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)

@@ -28,7 +28,7 @@ class ProvedTask(Task):
     """Consequence of a missing certificate, as `check` prints it."""
     count_location: ClassVar[str] = ""
     """Where the certificate counts modes: "point", at every point, or "line", at some rods of each line."""
-    left_out: ClassVar[tuple[str, str]] = (
+    never_modelled: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",
     )
@@ -87,7 +87,7 @@ class ProvedTask(Task):
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def check_rows(self) -> list[CheckRow]:
-        what, why = self.left_out
+        what, why = self.never_modelled
         parts = [
             *rod_check_rows(self.moved),
             *material_check_rows(self.config, self.moved),
@@ -101,7 +101,7 @@ class NonlinearTask(ProvedTask):
     """Base class of tasks on cycles: near Hopf points, or on branches from Hopf points."""
 
     uncertified_risk: ClassVar[str] = "Hopf points may be missed"
-    left_out: ClassVar[tuple[str, str]] = (
+    never_modelled: ClassVar[tuple[str, str]] = (
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )

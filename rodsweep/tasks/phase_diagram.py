@@ -13,7 +13,7 @@ from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
 from .parts import ProvedTask
 from .protocol import CheckRow, Solver
-from .thresholds import search_record
+from .thresholds import crossing_values
 
 if TYPE_CHECKING:
     from ..solve.changes.diagram.rows import DiagramRow, RowRequest
@@ -104,7 +104,7 @@ class PhaseDiagramTask(ProvedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod(index), request),
-            record=lambda index, result: record(result, request.name, request.crossings),
+            record=lambda index, result: row_values(result, request.name, request.crossings),
             together=curves if options.curves else None,
         )
         if not options.cycles:
@@ -145,12 +145,12 @@ class PhaseDiagramTask(ProvedTask):
         )
 
 
-def record(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
+def row_values(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
     """Variables of the file for one row.
 
     line: parameter that varies along the row. most: length of the list of crossings.
     """
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    changes = search_record(result.changes, most, line, "crossing_at")
+    changes = crossing_values(result.changes, most, line, "crossing_at")
     certified = result.changes.transitions.proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

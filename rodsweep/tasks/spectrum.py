@@ -155,7 +155,7 @@ class SpectrumTask(ProvedTask):
             statuses=tuple(SpectrumStatus),
             warm_up=warm_up_following if stretches else warm_up,
             solve=lambda index: solve(self.points.rod(index), request),
-            record=lambda index, result: record(result),
+            record=lambda index, result: spectrum_values(result),
             stretched=(stretches, lambda indices: self._together(indices, request)) if stretches else None,
         )
 
@@ -172,7 +172,7 @@ class SpectrumTask(ProvedTask):
         found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
         words = {status.value: status.name for status in SpectrumStatus}
         return StretchResult(
-            values=record(found),
+            values=spectrum_values(found),
             succeeded=found.status == SpectrumStatus.ok,
             message=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
         )
@@ -190,7 +190,7 @@ def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> n
     return np.array(longitudinal_modes(rod, modes))
 
 
-def record(result: "Spectrum") -> dict[str, Any]:
+def spectrum_values(result: "Spectrum") -> dict[str, Any]:
     """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
     values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:

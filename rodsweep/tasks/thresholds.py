@@ -59,11 +59,11 @@ class ThresholdsTask(ProvedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_thresholds(self.points.rod(index), request),
-            record=lambda index, result: record(result, options.crossings),
+            record=lambda index, result: threshold_values(result, options.crossings),
         )
 
 
-def record(result: "Thresholds", most: int) -> dict[str, Any]:
+def threshold_values(result: "Thresholds", most: int) -> dict[str, Any]:
     """Variables of the file for the thresholds of a rod; most: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
     for kind, number in FIRST_CROSSINGS.items():
@@ -71,10 +71,10 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
         first = next((crossing for crossing in result.crossings if crossing.kind == place), None)
         for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):
             values[name] = getattr(first, field, np.nan)
-    return values | search_record(result, most, "F", "crossing_F")
+    return values | crossing_values(result, most, "F", "crossing_F")
 
 
-def search_record(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
+def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
     """Variables of the file for a search for crossings along the parameter `line`.
 
     most: length of the list of crossings. at: name of the variable with the parameter value at a crossing.

@@ -23,7 +23,7 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
-from rodsweep.tasks.branch import record
+from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import make_job
 
 CONFIG = (
@@ -290,7 +290,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
         else Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4)
     )
     found = solve_branches(rod, BranchRequest(along, 50.0, 160.0, 1e-4, True, 500, 64))
-    assert set(record(found, along, 500, 64)) == names
+    assert set(branch_values(found, along, 500, 64)) == names
 
 
 def test_other_parameters_are_followed_from_the_command_line(command):

@@ -26,7 +26,7 @@ from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
 from rodsweep.tasks.diagram.records import cycle_curve_record
 from rodsweep.tasks.running.job import make_job
-from rodsweep.tasks.thresholds import search_record
+from rodsweep.tasks.thresholds import crossing_values
 
 CONFIGS = {
     "spectrum": "parameters: {F: [1, 2], k1: 9, k2: [1, 2], gamma3: 0}\nspectrum: {modes: 3, vectors: true}",
@@ -140,7 +140,7 @@ def record_of(task, index=0):
     if task == "thresholds":
         return thresholds.record(search(index), 4)
     row = {"class": [0, 1, 2], "unstable_count": [0, 0, 2]}
-    return search_record(search(index), 16, "F", "crossing_at") | row
+    return crossing_values(search(index), 16, "F", "crossing_at") | row
 
 
 def filled_file(tmp_path, task):

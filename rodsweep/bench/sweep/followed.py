@@ -48,13 +48,13 @@ GRIDS = (
     ComparedGrids("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
     ComparedGrids("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
-"""Grids of the benchmark."""
+"""Pairs of grids on which followed eigenvalues and points solved alone are timed."""
 QUICK_GRIDS = (
     ComparedGrids("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
     ComparedGrids("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
     ComparedGrids("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
 )
-"""Grids of a quick run."""
+"""Pairs of grids of a quick run."""
 
 
 def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:

@@ -25,9 +25,9 @@ from ...results.run.journal import journal_directory
 RESULT, NOTES = "c.h5", "notes"
 """Names, in the directory of a sweep, of the result file and of the folder in which ranks write their
 memory."""
-FIRST_RANK = "first"
+FIRST_RANK_PREFIX = "first"
 """Beginning of the name of the file with the peak memory of the first rank."""
-OTHER_RANKS = "other"
+OTHER_RANKS_PREFIX = "other"
 """Beginning of the names of the files with the peak memory of all other ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; random results at once; random results and a kill at the last point."""
@@ -151,7 +151,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
         seconds=seconds,
         stated_seconds=max(said),
         solver_seconds=sum(spent for spent, _ in solved),
-        peak_memory=tuple(_peak(case, rank) for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]),
+        peak_memory=tuple(_peak(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]),
         file_bytes=sum(file.stat().st_size for file in files),
         journal_bytes=sum(
             page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")

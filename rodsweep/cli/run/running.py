@@ -33,7 +33,8 @@ from .options import RunOptions
 from .point_work import PointWork
 
 STOPPED_STATUS = 75
-"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues."""
+"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
+run."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:

@@ -31,7 +31,7 @@ from rodsweep.solve.hopf.criticality import (
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
-from rodsweep.tasks.criticality import record
+from rodsweep.tasks.criticality import criticality_values
 from rodsweep.tasks.running.job import make_job
 
 INF = math.inf
@@ -371,7 +371,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path):
     config = tmp_path / "c.yaml"
     config.write_text(CONFIG.format(k1=200))
     names = {variable.name for variable in make_job(config, ()).layout.variables}
-    assert set(record(solved(STRETCHABLE), 16)) == names
+    assert set(criticality_values(solved(STRETCHABLE), 16)) == names
 
 
 def test_rod_answers_in_python():
