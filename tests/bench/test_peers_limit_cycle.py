@@ -103,7 +103,7 @@ def test_order_of_the_errors(name):
 
 
 def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
-    monkeypatch.setattr(cycle_peers, "installed", lambda _: None)
+    monkeypatch.setattr(cycle_peers, "optional_module", lambda _: None)
     found = peers(quick=True, place=tmp_path)
     assert CVODE not in [contender.method for contender in found.of(FOLLOWING)]
     assert found.skipped[0] == CVODE_SKIPPED

@@ -145,7 +145,7 @@ def test_a_continuation_code_that_fails_is_shown_as_failed():
 
 
 def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_path):
-    monkeypatch.setattr(continuation, "installed", lambda _: None)
+    monkeypatch.setattr(continuation, "optional_module", lambda _: None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     found = peers(quick=True, place=tmp_path)
     assert [line.split(" is skipped")[0] for line in found.skipped] == ["AUTO-07p", "PyCont-Lite"]
